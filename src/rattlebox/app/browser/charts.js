@@ -1,0 +1,68 @@
+// Charts of a run. The body that `url` names lists the charts and holds their numbers.
+import { echarts } from "nicegui-echart";
+import { fetchBody } from "rattlebox-binary";
+
+const GREY = "#555";
+
+function series(entry, arrays, shapes) {
+  const x = arrays[entry.x], count = x.length;
+  const y = arrays[entry.y], row = entry.row === undefined ? 0 : entry.row;
+  const xRow = shapes[entry.x].length > 1 ? row : 0;
+  const data = new Array(shapes[entry.x].length > 1 ? shapes[entry.x][1] : count);
+  for (let i = 0; i < data.length; i++) data[i] = [x[xRow * data.length + i], y[row * data.length + i]];
+  const dots = entry.dots === true;
+  return {
+    name: entry.name, type: dots ? "scatter" : "line", data, symbol: dots ? "circle" : "none", symbolSize: 4, animation: false,
+    sampling: entry.portrait ? undefined : "lttb", large: dots, itemStyle: { color: entry.colour },
+    lineStyle: { width: entry.portrait ? 0.7 : 1.3, color: entry.colour, type: entry.dash ? "dashed" : "solid" },
+  };
+}
+
+export default {
+  template: `<div class="rb-charts" style="display:grid;gap:8px;width:100%"></div>`,
+  props: { url: String, columns: Number },
+  data: () => ({ charts: [], wanted: "", busy: false }),
+  mounted() {
+    this.observer = new ResizeObserver(() => this.charts.forEach((chart) => chart.resize()));
+    this.observer.observe(this.$el);
+    this.update();
+  },
+  unmounted() { this.observer.disconnect(); this.charts.forEach((chart) => chart.dispose()); },
+  watch: { url() { this.update(); } },
+  methods: {
+    async update() {
+      this.wanted = this.url;
+      if (this.busy || !this.url) return;
+      this.busy = true;
+      try {
+        while (this.wanted) {
+          const url = this.wanted;
+          this.wanted = "";
+          this.draw(await fetchBody(url));
+        }
+      } catch (error) { console.warn("no charts:", error.message); } finally { this.busy = false; }
+    },
+    draw({ arrays, shapes, about }) {
+      const specs = about.charts || [];
+      this.$el.style.gridTemplateColumns = `repeat(${this.columns || 2}, minmax(0, 1fr))`;
+      while (this.charts.length > specs.length) { const last = this.charts.pop(); const dom = last.getDom(); last.dispose(); dom.remove(); }
+      while (this.charts.length < specs.length) {
+        const box = document.createElement("div");
+        box.style.height = "250px";
+        this.$el.appendChild(box);
+        this.charts.push(echarts.init(box));
+      }
+      specs.forEach((spec, index) => this.charts[index].setOption({
+        title: { text: spec.title, left: 4, top: 0, textStyle: { fontSize: 13, fontWeight: 600, color: "#222" } },
+        legend: spec.series.length > 1 ? { top: 20, left: 4, itemWidth: 18, itemHeight: 8, textStyle: { fontSize: 11 }, type: "scroll" } : { show: false },
+        grid: { left: 62, right: 16, top: spec.series.length > 1 ? 46 : 30, bottom: 42 },
+        tooltip: { trigger: spec.portrait ? "item" : "axis", confine: true, valueFormatter: (value) => Number(value).toPrecision(4) },
+        xAxis: { type: "value", name: spec.x, nameLocation: "middle", nameGap: 26, scale: true, axisLine: { onZero: false }, splitLine: { show: false }, nameTextStyle: { color: GREY }, min: spec.range ? spec.range[0] : undefined, max: spec.range ? spec.range[1] : undefined },
+        yAxis: { type: spec.log ? "log" : "value", name: spec.y, nameLocation: "middle", nameGap: 46, scale: true, nameTextStyle: { color: GREY } },
+        dataZoom: spec.portrait ? [] : [{ type: "inside" }],
+        series: spec.series.map((entry) => series(entry, arrays, shapes)),
+      }, { replaceMerge: ["series"] }));
+      window.rbDrawn = { count: (window.rbDrawn ? window.rbDrawn.count : 0) + 1, at: performance.now() };
+    },
+  },
+};

@@ -1,0 +1,203 @@
+"""The case that a page edits: its text, its tables, and what is wrong with it."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+import rattlebox as rb
+
+MOST_CHARACTERS = 400_000
+DEEPEST = 20
+TEMPLATES = {
+    "steel_ball": "Ball of the reference paper",
+    "row": "Row of three balls",
+    "box": "Shaken box of balls",
+    "boring_bar": "Boring bar",
+    "panel": "Panel in random vibration",
+    "building": "Building on moving ground",
+}
+"""Titles of the templates, by the name of their file."""
+
+Path_ = tuple[str | int, ...]
+
+
+class Draft:
+    """A case in the making.
+
+    Parameters
+    ----------
+    folder
+        Folder of the files that the case may name.
+
+    Attributes
+    ----------
+    text
+        Case file, as the user sees it.
+    given
+        Its tables; those of the last text that was TOML.
+    case
+        The case; None while it is not valid.
+    errors
+        Texts by path ("damper.gap"); "" for those without a field.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.set_text(template("steel_ball"))
+
+    def set_text(self, text: str) -> None:
+        """Replace the whole case by the text of a case file."""
+        self.text = text
+        try:
+            if len(text) > MOST_CHARACTERS:
+                raise rb.CaseError(f"the text has {len(text)} characters, more than {MOST_CHARACTERS}")
+            given = tomllib.loads(text)
+            if _depth(given) > DEEPEST:
+                raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}")
+        except tomllib.TOMLDecodeError as error:
+            self._invalid({"": f"the text is not TOML: {error}"})
+        except RecursionError:
+            self._invalid({"": f"the tables are nested deeper than {DEEPEST}"})
+        except rb.CaseError as error:
+            self._invalid({"": str(error)})
+        else:
+            self.given = given
+            self._check()
+
+    def value(self, path: Path_) -> Any:
+        """Return the value at a path; None if there is none."""
+        node: Any = self.given
+        for part in path:
+            try:
+                node = node[part]
+            except (KeyError, IndexError, TypeError):
+                return None
+        return node
+
+    def set_value(self, path: Path_, value: Any) -> None:
+        """Set the value at a path; None removes it. The text is written anew, without its comments."""
+        node: Any = self.given
+        for part in path[:-1]:
+            node = node.setdefault(part, {}) if isinstance(node, dict) else node[part]
+        if value is None:
+            if isinstance(node, list) or path[-1] in node:
+                del node[path[-1]]
+        elif isinstance(node, list) and path[-1] == len(node):
+            node.append(value)
+        else:
+            node[path[-1]] = value
+        self.text = tomli_w.dumps(self.given)
+        self._check()
+
+    def _check(self) -> None:
+        try:
+            outside(self.given, self.folder)
+            self.case = rb.Case.from_dict(self.given, folder=self.folder)
+            self.errors: dict[str, str] = {}
+        except rb.RattleboxError as error:
+            self._invalid(by_field(str(error)))
+        except (RecursionError, OverflowError) as error:
+            self._invalid({"": f"the case cannot be read: {error}"})
+
+    def _invalid(self, errors: dict[str, str]) -> None:
+        self.case, self.errors = None, errors
+        if not hasattr(self, "given"):
+            self.given = {}
+
+
+def template(name: str) -> str:
+    """Return the case file of a template."""
+    return (files("rattlebox.app") / "templates" / f"{name}.toml").read_text(encoding="utf-8")
+
+
+def by_field(message: str) -> dict[str, str]:
+    """Return the parts of a message about a case by their fields; "" has those without one."""
+    found: dict[str, str] = {}
+    place = ""
+    for line in message.splitlines():
+        if not line.startswith("  "):
+            head = re.match(r"case: ([\w.\[\]]+)(?: = .*)?$", line)
+            place = head[1] if head else ""
+            text = "" if head else line.removeprefix("case: ").removeprefix("case:")
+        else:
+            text = line.strip()
+        if text:
+            found[place] = f"{found[place]}\n{text}" if place in found else text
+    return found
+
+
+def outside(node: Any, folder: Path) -> None:
+    """Raise if a case names a file that is not in the folder.
+
+    Raises
+    ------
+    CaseError
+        With the name of the file.
+    """
+    for file in _named_files(node):
+        if not (folder / file).resolve().is_relative_to(folder.resolve()):
+            raise rb.CaseError(f"case: the file {file!r} is outside of the folder of this page\n  try: a copy in {folder}")
+
+
+def _named_files(node: Any, is_file: bool = False) -> list[str]:
+    if isinstance(node, str):
+        return [node] if is_file else []
+    if isinstance(node, dict):
+        return [file for key, item in node.items() for file in _named_files(item, is_file or key == "file")]
+    return [file for item in node for file in _named_files(item, is_file)] if isinstance(node, list) else []
+
+
+def _depth(node: Any) -> int:
+    """Return the depth of nested tables and lists, without recursion."""
+    level, deepest = [node], 0
+    while level:
+        deepest += 1
+        level = [
+            item
+            for parent in level
+            for item in (parent.values() if isinstance(parent, dict) else parent)
+            if isinstance(item, (dict, list))
+        ]
+    return deepest
+
+
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s].*)?$")
+
+
+def quantity(value: Any) -> tuple[float, str] | None:
+    """Return number and unit of a value such as "0.4 mm" or 0.5; None if it is something else."""
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, (int, float)):
+        return float(value), ""
+    match = _QUANTITY.match(value) if isinstance(value, str) else None
+    return (float(match[1]), (match[2] or "").strip()) if match else None
+
+
+def numeric_paths(given: Any, above: Path_ = ()) -> list[Path_]:
+    """Return the paths of all single numbers with or without a unit in the tables of a case."""
+    if isinstance(given, (dict, list)):
+        items: Sequence[tuple[Any, Any]] = list(given.items() if isinstance(given, dict) else enumerate(given))
+        if isinstance(given, list) and not all(isinstance(item, dict) for item in given):
+            return []
+        return [path for key, item in items for path in numeric_paths(item, (*above, key))]
+    return [above] if above and quantity(given) is not None else []
+
+
+def dotted(path: Path_) -> str:
+    """Return a path in the notation of case files: "dampers[0].gap"."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path).removeprefix(".")
+
+
+def python_script(toml: str, task: str = "") -> str:
+    """Return a Python script that computes a case, or a task with it, again."""
+    quoted = toml.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+    body = task or 'run = rb.simulate(case)\nprint(run.summary())\nrun.plot.motion().savefig("motion.png")\n'
+    return f'import rattlebox as rb\n\ncase = rb.Case.from_toml("""\n{quoted}""")\n{body}'

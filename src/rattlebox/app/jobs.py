@@ -1,0 +1,117 @@
+"""Workers of a page: processes that compute while the page stays responsive."""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+from collections.abc import Callable
+from typing import Any
+
+from .worker import main
+
+_CONTEXT = multiprocessing.get_context("spawn")
+
+
+class TaskFailed(Exception):
+    """A task ended with an error, whose text is for the user."""
+
+
+class Worker:
+    """A process for one task at a time. It starts at once and is replaced after it was stopped."""
+
+    def __init__(self) -> None:
+        self._start()
+
+    def _start(self) -> None:
+        self._connection, child = _CONTEXT.Pipe()
+        self._process = _CONTEXT.Process(target=main, args=(child,), daemon=True, name="rattlebox-app-worker")
+        self._process.start()
+        child.close()
+
+    @property
+    def pid(self) -> int | None:
+        """Process id."""
+        return self._process.pid
+
+    async def do(self, *task: Any, progress: Callable[..., object] = lambda *_: None) -> Any:
+        """Send a task and return its result.
+
+        Parameters
+        ----------
+        *task
+            Name of a task of `rattlebox.app.worker` and its arguments.
+        progress
+            Function called with each report of the task.
+
+        Raises
+        ------
+        TaskFailed
+            If the task ends with an error, or its process ends.
+        """
+        if not self._process.is_alive():
+            self._start()
+        connection = self._connection
+        try:
+            connection.send(task)
+            while True:
+                kind, *content = await asyncio.to_thread(connection.recv)
+                if kind == "progress":
+                    progress(*content)
+                elif kind == "failed":
+                    raise TaskFailed(content[0])
+                else:
+                    return content[0]
+        except (EOFError, OSError):
+            raise TaskFailed("stopped") from None
+
+    def stop(self) -> None:
+        """End the process, whatever it computes."""
+        self._process.kill()
+        self._process.join()
+        self._connection.close()
+
+
+class Live:
+    """Results of the latest request only: requests that arrive while one is computed replace each other.
+
+    Parameters
+    ----------
+    show
+        Function called with the result.
+    fail
+        Function called with the text of an error.
+    longest
+        Time after which a computation is given up [s].
+    """
+
+    def __init__(self, show: Callable[[Any], object], fail: Callable[[str], object], longest: float = 8.0) -> None:
+        self._show, self._fail, self._longest = show, fail, longest
+        self._worker = Worker()
+        self._next: tuple[Any, ...] | None = None
+        self._busy = False
+
+    async def request(self, *task: Any) -> None:
+        """Compute a task unless a newer one arrives first."""
+        self._next = task
+        if self._busy:
+            return
+        self._busy = True
+        try:
+            while (task_now := self._next) is not None:
+                self._next = None
+                try:
+                    self._show(await asyncio.wait_for(self._worker.do(*task_now), self._longest))
+                except TimeoutError:
+                    self._worker.stop()
+                    self._fail(
+                        f"this case takes longer than {self._longest:g} s\n  try: Run, which has no limit, or a shorter case"
+                    )
+                except TaskFailed as error:
+                    self._fail(str(error))
+        finally:
+            self._busy = False
+
+    def stop(self) -> None:
+        """End the process."""
+        self._next = None
+        self._worker.stop()

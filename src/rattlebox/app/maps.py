@@ -1,0 +1,262 @@
+"""The tab with maps: a measure over one or two numbers of the case."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from nicegui import ui
+
+import rattlebox as rb
+
+from .draft import dotted, numeric_paths, python_script, quantity
+from .jobs import TaskFailed, Worker
+from .results import MAP_FORMATS, download_map, maps, new_name
+
+if TYPE_CHECKING:
+    from .page import Page
+
+NONE = "(none)"
+VIRIDIS = ["#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#fde725"]
+POLL = 0.7
+"""Time between looks at the blocks of a running map [s]."""
+MOST_VALUES = 400
+
+
+class MapTab:
+    """Choice of parameters and measure, and the map, which fills while it is computed.
+
+    Parameters
+    ----------
+    page
+        The page.
+    """
+
+    def __init__(self, page: Page) -> None:
+        self._page = page
+        self._worker: Worker | None = None
+        self._name, self._task = "", ("", {}, "")
+        self._grid: tuple[list[str], list[np.ndarray[Any, Any]], list[str]] | None = None
+        self._parameters()
+        with ui.row().classes("w-full items-center gap-2"):
+            measures = {name: measure.long_name for name, measure in rb.MEASURES.items()}
+            self._measure = ui.select(measures, value="rms", label="measure", with_input=True).props("dense options-dense")
+            self._measure.classes("w-64")
+            self._compare = ui.switch("ratio to the case without damper")
+            self._start = ui.button("Compute map", icon="grid_on", on_click=self.compute).props("dense")
+            self._stop = ui.button("Stop", icon="stop", on_click=self.stop).props("dense outline color=negative")
+            self._open = ui.select([], label="open a map").props("dense options-dense").classes("w-36")
+            self._open.on("focus", lambda: self._open.set_options(maps(page.folder)))
+            self._open.on_value_change(lambda event: self.open(event.value) if event.value else None)
+        self._stop.set_visibility(False)
+        self._status = ui.label("").classes("text-sm text-gray-700")
+        self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
+        self._chart = ui.echart({}, on_point_click=self._watch_point).classes("w-full").style("height:460px")
+        with ui.row():
+            for suffix, title in MAP_FORMATS.items():
+                ui.button(title, icon="download", on_click=lambda suffix=suffix: self._download(suffix)).props("flat dense")
+
+    @ui.refreshable_method
+    def _parameters(self) -> None:
+        names = [dotted(path) for path in numeric_paths(self._page.draft.given)]
+        self._rows = []
+        for number, usual in enumerate(("damper.gap", NONE)):
+            with ui.row().classes("w-full items-center gap-2"):
+                options = names if number == 0 else [NONE, *names]
+                name = ui.select(options, value=usual if usual in options else options[0], label=("parameter", "second parameter")[number])
+                name.props("dense options-dense").classes("w-56")
+                low, high = ui.input("from").props("dense").classes("w-24"), ui.input("to").props("dense").classes("w-24")
+                count = ui.number("values", value=12, min=2, max=MOST_VALUES, precision=0).props("dense").classes("w-20")
+                spacing = ui.switch("log")
+                row = (name, low, high, count, spacing)
+                self._rows.append(row)
+                name.on_value_change(lambda _, row=row: self._suggest(row))
+                self._suggest(row)
+
+    def _suggest(self, row: tuple[Any, ...]) -> None:
+        """Fill in a range around the value of the case."""
+        name, low, high = row[0].value, row[1], row[2]
+        paths = {dotted(path): path for path in numeric_paths(self._page.draft.given)}
+        found = quantity(self._page.draft.value(paths[name])) if name in paths else None
+        if found is None:
+            return
+        value, unit = found
+        start, stop = (0.0, 1.0) if not unit and 0 <= value <= 1 else (value / 3, value * 3)
+        if name.endswith("start"):
+            start, stop = -1.0, 1.0
+        low.set_value(f"{start:.3g} {unit}".strip()), high.set_value(f"{stop:.3g} {unit}".strip())
+
+    def case_changed(self) -> None:
+        """Offer the numbers of another case."""
+        self._parameters.refresh()
+
+    # ---- computing
+
+    async def compute(self) -> None:
+        """Compute the map in the background; it fills as blocks of the study are finished."""
+        page = self._page
+        if page.draft.case is None or self._worker is not None:
+            self._failure.set_text("" if page.draft.case else "The case is not valid; see the form.")
+            return
+        axes = {}
+        for name, low, high, count, spacing in self._rows:
+            if name.value != NONE:
+                values = [int(v) if v.isdecimal() else v for v in (str(low.value).strip(), str(high.value).strip())]
+                axes[name.value] = (*[_number(v) for v in values], int(count.value or 0), bool(spacing.value))
+        try:
+            self._name = new_name(page.folder, "map")
+        except OSError as error:
+            self._failure.set_text(f"the folder {page.folder} cannot be used: {error.strerror}")
+            return
+        self._task = (page.draft.text, axes, self._measure.value)
+        self._worker = worker = Worker()
+        self._start.set_visibility(False), self._stop.set_visibility(True)
+        self._failure.set_text("")
+        watch = asyncio.get_running_loop().create_task(self._poll(worker))
+        try:
+            arguments = (page.draft.text, str(page.folder), self._name, axes, self._measure.value, bool(self._compare.value))
+            await worker.do("sweep", *arguments, progress=self._report)
+            self._status.set_text(f"kept as {self._name} in {page.folder}; click a point to watch it")
+        except TaskFailed as error:
+            if self._worker is worker:
+                self._failure.set_text(str(error))
+        finally:
+            watch.cancel()
+            worker.stop()
+            if self._worker is worker:
+                self._worker = None
+                self._start.set_visibility(True), self._stop.set_visibility(False)
+        self._draw()
+
+    def _report(self, _: str, done: int, total: int) -> None:
+        self._status.set_text(f"{done} of {total} variants")
+
+    async def _poll(self, worker: Worker) -> None:
+        while self._worker is worker:
+            await asyncio.sleep(POLL)
+            self._draw()
+
+    def stop(self) -> None:
+        """Stop the computation; finished blocks remain."""
+        self.close()
+        self._start.set_visibility(True), self._stop.set_visibility(False)
+        self._status.set_text(f"stopped; the finished part is {self._name} in {self._page.folder}")
+
+    def close(self) -> None:
+        """End the process of the map."""
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.stop()
+
+    def open(self, name: str) -> None:
+        """Show a map of the folder."""
+        self._name = name
+        self._draw()
+
+    # ---- drawing
+
+    def _draw(self) -> None:
+        store = self._page.folder / f"{self._name}.zarr"
+        if not self._name or not store.exists():
+            return
+        try:
+            study = rb.open_study(store).load()
+            bare_store = store.with_suffix(".bare.zarr")
+            bare = rb.open_study(bare_store).load() if bare_store.exists() else None
+        except rb.RattleboxError as error:
+            if self._worker is None:
+                self._failure.set_text(str(error))
+            return
+        hidden = ("status", "warnings")
+        measure = next(str(name) for name in study.data_vars if name not in hidden and not str(name).endswith("_interval"))
+        values, label = study[measure], f"{study[measure].attrs.get('long_name', measure)} ({study[measure].attrs.get('units', '')})"
+        if bare is not None:
+            values, label = values / bare[measure].squeeze(drop=True), f"{label.partition(' (')[0]} / without damper"
+        axes = [str(dim) for dim in values.dims]
+        points = [study[axis].values for axis in axes]
+        units = [str(study[axis].attrs.get("units", "")) for axis in axes]
+        self._grid = axes, points, units
+        titles = [f"{axis} ({unit})" if unit not in ("", "1") else axis for axis, unit in zip(axes, units, strict=True)]
+        draw = _lines if len(axes) == 1 else _heat
+        self._chart.options.clear()
+        self._chart.options.update(draw(values.values, points, titles, label))
+        self._chart.update()
+
+    def _watch_point(self, event: Any) -> None:
+        """Put the values of a point of the map into the case."""
+        if self._grid is None:
+            return
+        axes, points, units = self._grid
+        indices = [event.data_index] if len(axes) == 1 else [int(number) for number in event.data[:2]]
+        page = self._page
+        paths = {dotted(path): path for path in numeric_paths(page.draft.given)}
+        for axis, values, unit, index in zip(axes, points, units, indices, strict=True):
+            if axis in paths:
+                value = float(values[index])
+                page.draft.set_value(paths[axis], f"{value:.6g} {unit}" if unit not in ("", "1") else value)
+        page.use_text(page.draft.text)
+        page.show_watch()
+
+    def _download(self, suffix: str) -> None:
+        text, axes, measure = self._task
+        if not self._name:
+            self._failure.set_text("There is no map yet.")
+            return
+        try:
+            content = download_map(self._page.folder, self._name, suffix, map_script(text, axes, measure))
+        except (rb.RattleboxError, OSError) as error:
+            self._failure.set_text(str(error))
+            return
+        ui.download.content(content, f"{self._name}.{suffix}")
+
+
+def _number(text: Any) -> Any:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def map_script(toml: str, axes: dict[str, Any], measure: str) -> str:
+    """Return a Python script that computes a map."""
+    spaced = [
+        f"    {path!r}: rb.{'geomspace' if log else 'linspace'}({low!r}, {high!r}, {count}),"
+        for path, (low, high, count, log) in axes.items()
+    ]
+    lines = ["axes = {", *spaced, "}", f"study = rb.sweep(case, axes, {measure!r})", 'rb.plot_map(study).savefig("map.png")', ""]
+    return python_script(toml, "\n".join(lines))
+
+
+def _lines(values: Any, points: list[Any], titles: list[str], label: str) -> dict[str, Any]:
+    data = [[float(x), _finite(y)] for x, y in zip(points[0], values, strict=True)]
+    return {
+        "grid": {"left": 80, "right": 20, "top": 20, "bottom": 50},
+        "tooltip": {"trigger": "item"},
+        "xAxis": {"type": "value", "name": titles[0], "nameLocation": "middle", "nameGap": 30, "scale": True},
+        "yAxis": {"type": "value", "name": label, "nameLocation": "middle", "nameGap": 60, "scale": True},
+        "series": [{"type": "line", "data": data, "symbolSize": 8, "lineStyle": {"width": 1.5}, "color": rb.plots.SERIES_COLOURS[0], "animation": False}],
+    }
+
+
+def _heat(values: Any, points: list[Any], titles: list[str], label: str) -> dict[str, Any]:
+    cells = [[i, j, _finite(values[i, j])] for i in range(values.shape[0]) for j in range(values.shape[1])]
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    axis = [[f"{x:.4g}" for x in each] for each in points]
+    return {
+        "grid": {"left": 80, "right": 120, "top": 20, "bottom": 50},
+        "tooltip": {"position": "top"},
+        "xAxis": {"type": "category", "data": axis[0], "name": titles[0], "nameLocation": "middle", "nameGap": 30},
+        "yAxis": {"type": "category", "data": axis[1], "name": titles[1], "nameLocation": "middle", "nameGap": 60},
+        "visualMap": {
+            "min": low, "max": high if high > low else low + 1.0, "calculable": True, "right": 4, "top": "center",
+            "text": [label, ""], "textGap": 6, "precision": 4, "inRange": {"color": VIRIDIS},
+        },
+        "series": [{"type": "heatmap", "data": cells, "animation": False, "emphasis": {"itemStyle": {"borderColor": "#000"}}}],
+    }  # fmt: skip
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None

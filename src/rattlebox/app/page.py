@@ -1,0 +1,382 @@
+"""The page: the case on the left, and on the right what it does, maps of it, and the results that were kept."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from nicegui import ui
+
+import rattlebox as rb
+
+from .draft import TEMPLATES, Draft, dotted, numeric_paths, python_script, quantity, template
+from .elements import Balls, Charts, Particles
+from .form import Form, written
+from .jobs import Live, TaskFailed, Worker
+from .kept import KeptTab
+from .maps import MapTab
+from .results import new_name
+
+Bodies = dict[str, Callable[..., bytes]]
+
+MOST_SLIDERS = 4
+PINNED = {
+    "steel_ball": ("damper.gap", "load.amplitude", "damper.start", "damper.ball.radius"),
+    "row": ("damper.gap", "load.amplitude", "damper.contact.restitution"),
+    "building": ("damper.gap", "damper.contact.restitution", "damper.ball.mass"),
+}
+"""Numbers with a slider at the start, by template."""
+
+
+class Page:
+    """One open page.
+
+    Parameters
+    ----------
+    folder
+        Folder for files.
+    bodies
+        Functions that return the binary bodies which the browser may fetch, by key; the page adds and removes its own.
+    """
+
+    def __init__(self, folder: Path, bodies: Bodies) -> None:
+        self.folder, self._bodies = folder, bodies
+        self.draft = Draft(folder)
+        self._keys: dict[str, str] = {}
+        self._pinned = list(PINNED["steel_ball"])
+        self._live = Live(self._show_view, self._show_failure)
+        self._worker: Worker | None = None
+        self._build()
+
+    # ---- bodies
+
+    def publish(self, slot: str, body: Callable[..., bytes]) -> str:
+        """Offer a body under a new URL, in place of the last one of the slot."""
+        self.withdraw(slot)
+        self._keys[slot] = key = secrets.token_urlsafe(12)
+        self._bodies[key] = body
+        return f"/data/{key}"
+
+    def withdraw(self, slot: str) -> None:
+        """Remove the body of a slot."""
+        self._bodies.pop(self._keys.pop(slot, ""), None)
+
+    def close(self) -> None:
+        """Stop all computations of the page, and forget its data."""
+        self._live.stop()
+        self.stop_run()
+        self.map_tab.close()
+        for slot in list(self._keys):
+            self.withdraw(slot)
+
+    # ---- layout
+
+    def _build(self) -> None:
+        ui.add_head_html("<style>.nicegui-content{padding:0} .rb-left .q-field__label{text-transform:none}</style>")
+        with ui.header().classes("items-center bg-slate-800 text-white py-1 gap-3"):
+            ui.label("Rattlebox").classes("text-lg font-bold")
+            self._templates = ui.select(TEMPLATES, value="steel_ball", label="template").props("dark dense options-dense")
+            self._templates.classes("w-64").on_value_change(self._use_template)
+            ui.button("Open", icon="upload", on_click=self._open_dialog).props("flat dense color=white")
+            ui.button("Download case", icon="download", on_click=self._download_case).props("flat dense color=white")
+            ui.button("Python script", icon="code", on_click=self._download_script).props("flat dense color=white")
+            ui.space()
+            ui.label(f"files in {self.folder}").classes("text-xs opacity-80 truncate max-w-xs")
+        with ui.row().classes("w-full no-wrap items-start gap-0"):
+            with ui.column().classes("rb-left gap-1 p-2 border-r").style("width:33%;min-width:320px;max-width:460px"):
+                self._build_case()
+            with ui.column().classes("grow gap-1 p-2").style("min-width:0"):
+                self._build_results()
+
+    def _build_case(self) -> None:
+        with ui.tabs().props("dense align=left") as tabs:
+            form, text, drawing = ui.tab("form", "Form"), ui.tab("text", "TOML"), ui.tab("drawing", "Drawing")
+        with ui.tab_panels(tabs, value="form", animated=False).classes("w-full").props("keep-alive"):
+            with ui.tab_panel(form).classes("p-0"):
+                self.form = Form(self.draft, self._edited)
+            with ui.tab_panel(text).classes("p-0"):
+                with ui.row().classes("w-full items-center"):
+                    ui.button("Copy", icon="content_copy", on_click=self._copy).props("dense flat")
+                    ui.label("edits apply as you type").classes("text-xs text-gray-600")
+                self._text = ui.textarea(value=self.draft.text).props("outlined debounce=300 input-class=font-mono autogrow")
+                self._text.classes("w-full text-xs").on_value_change(self._text_edited)
+                self._text_error = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
+            with ui.tab_panel(drawing).classes("p-0"):
+                self._drawing = ui.html("", sanitize=False).classes("w-full")
+        tabs.on_value_change(lambda event: self._draw_case() if event.value == "drawing" else None)
+        self._tabs = tabs
+
+    def _build_results(self) -> None:
+        with ui.tabs().props("dense align=left") as tabs:
+            watch, maps, kept = ui.tab("watch", "Watch"), ui.tab("map", "Map"), ui.tab("kept", "Results")
+        self._right = tabs
+        with ui.tab_panels(tabs, value="watch", animated=False).classes("w-full").props("keep-alive"):
+            with ui.tab_panel(watch).classes("p-0 gap-1"):
+                self._build_watch()
+            with ui.tab_panel(maps).classes("p-0"):
+                self.map_tab = MapTab(self)
+            with ui.tab_panel(kept).classes("p-0"):
+                self.kept_tab = KeptTab(self)
+        tabs.on_value_change(lambda event: self.kept_tab.refresh() if event.value == "kept" else None)
+
+    def _build_watch(self) -> None:
+        with ui.row().classes("w-full items-center gap-2"):
+            self._run_button = ui.button("Run and keep", icon="play_arrow", on_click=self.run).props("dense")
+            self._pause_button = ui.button("Pause", icon="pause", on_click=self._pause).props("dense outline")
+            self._cancel_button = ui.button("Cancel", icon="stop", on_click=self._cancel).props("dense outline color=negative")
+            self._progress = ui.linear_progress(value=0, show_value=False).classes("w-48")
+            self._compare = ui.switch("compare without damper", on_change=self._changed)
+            self._status = ui.label("").classes("text-sm text-gray-700")
+        self._show_running(False)
+        self._sliders()
+        self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
+        self._warnings = ui.label("").classes("text-amber-800 text-sm whitespace-pre-wrap")
+        self._balls = Balls().classes("w-full")
+        self._particles = Particles().classes("w-full")
+        self._particles.set_visibility(False)
+        self._charts = Charts().classes("w-full")
+        with ui.expansion("Summary", value=False).classes("w-full"):
+            self._summary = ui.label("").classes("font-mono text-xs whitespace-pre")
+        ui.timer(0.05, self._changed, once=True)
+
+    # ---- sliders
+
+    @ui.refreshable_method
+    def _sliders(self) -> None:
+        numbers = {dotted(path): path for path in numeric_paths(self.draft.given)}
+        with ui.row().classes("w-full items-center gap-4"):
+            for name in [name for name in self._pinned if name in numbers]:
+                self._slider(name, numbers[name])
+            choice = ui.select(list(numbers), label="slider for", multiple=True, value=[n for n in self._pinned if n in numbers])
+            choice.props(f"dense options-dense max-values={MOST_SLIDERS}").classes("w-44")
+            choice.on_value_change(lambda event: self._pin(event.value))
+
+    def _pin(self, names: list[str]) -> None:
+        self._pinned = names[:MOST_SLIDERS]
+        self._sliders.refresh()
+
+    def _slider(self, name: str, path: Any) -> None:
+        """Show a slider over a factor of four each way; over -1 to 1, or 0 to 1, for numbers that are shares."""
+        number, unit = quantity(self.draft.value(path)) or (0.0, "")
+        share = not unit and abs(number) <= 1
+        low = (-1.0 if name.endswith("start") else 0.0) if share else -1.0
+
+        def text(place: float) -> Any:
+            value = place if share else number * 4**place
+            return float(f"{value:.4g}") if not unit else f"{value:.4g} {unit}"
+
+        with ui.column().classes("gap-0").style("width:150px"):
+            label = ui.label(f"{name.removeprefix('damper.')}: {written(self.draft.value(path))}").classes("text-xs")
+
+            def move(event: Any) -> None:
+                place = float(event.args)
+                label.set_text(f"{name.removeprefix('damper.')}: {written(text(place))}")
+                self.draft.set_value(path, text(place))
+                self._text_is_stale()
+                self._changed()
+
+            slider = ui.slider(min=low, max=1.0, step=0.01, value=number if share else 0.0)
+            slider.props(f'dense aria-label="{name}"').on("update:model-value", move, throttle=0.03, leading_events=True)
+
+    # ---- changes of the case
+
+    def _edited(self) -> None:
+        """React to an edit in the form."""
+        self._text_is_stale()
+        self._changed()
+
+    def _text_is_stale(self) -> None:
+        self._silent = True
+        self._text.set_value(self.draft.text)
+        self._silent = False
+
+    _silent = False
+
+    def _text_edited(self, event: Any) -> None:
+        if self._silent or event.value == self.draft.text:
+            return
+        self.draft.set_text(event.value or "")
+        self.form.refresh()
+        self._sliders.refresh()
+        self._changed()
+
+    def use_text(self, text: str, pinned: tuple[str, ...] = ()) -> None:
+        """Replace the case by the text of a case file."""
+        self.stop_run()
+        self._pinned = list(pinned) or self._pinned
+        self.draft.set_text(text)
+        self._text_is_stale()
+        self.form.refresh()
+        self._sliders.refresh()
+        self.map_tab.case_changed()
+        self._changed()
+
+    def _use_template(self, event: Any) -> None:
+        self.use_text(template(event.value), PINNED.get(event.value, ("damper.friction",)))
+
+    def _changed(self) -> None:
+        """Show errors, or compute a case of balls on a line again."""
+        self.form.show_errors()
+        draft = self.draft
+        self._text_error.set_text("\n".join(f"{name}: {text}" if name else text for name, text in draft.errors.items()))
+        if self._tabs.value == "drawing":
+            self._draw_case()
+        if draft.case is None:
+            self._failure.set_text("The case is not valid; see the red lines in the form.")
+            return
+        self._failure.set_text("")
+        particles = bool(draft.case.particle_dampers)
+        self._balls.set_visibility(not particles)
+        self._particles.set_visibility(particles)
+        self._pause_button.set_visibility(particles and self._worker is not None)
+        if particles:
+            if self._worker is None:
+                self._status.set_text("press Run; particles are computed in the background")
+            return
+        request = ("live", draft.text, str(self.folder), bool(self._compare.value))
+        asyncio.get_running_loop().create_task(self._live.request(*request))
+
+    def _draw_case(self) -> None:
+        if self.draft.case is None:
+            return
+        import io
+
+        picture = io.StringIO()
+        rb.plot_case(self.draft.case).savefig(picture, format="svg")
+        self._drawing.set_content(picture.getvalue().partition("<svg")[1] + picture.getvalue().partition("<svg")[2])
+
+    # ---- runs
+
+    def _show_view(self, body: bytes) -> None:
+        """Draw a run."""
+        from .binary import decode
+
+        _, about = decode(body)
+        url = self.publish("view", lambda: body)
+        self._charts.show(url)
+        if "gaps" in about:
+            self._balls.show(url)
+        self._summary.set_text(about["summary"])
+        self._warnings.set_text("\n".join(about["warnings"]))
+        self._failure.set_text("" if about["status"] in ("finished", "interrupted") else about["status"])
+        shown = f"; drawn from {about['shown']}" if about["shown"] else ""
+        self._status.set_text(f"{about['status']} at t = {about['end']:.4g} s{shown}" if "gaps" in about else self._status.text)
+
+    def show_watch(self) -> None:
+        """Show the tab with the run."""
+        self._right.set_value("watch")
+
+    def _show_failure(self, text: str) -> None:
+        self._failure.set_text(text)
+
+    def _show_running(self, running: bool) -> None:
+        self._run_button.set_visibility(not running)
+        self._cancel_button.set_visibility(running)
+        self._progress.set_visibility(running)
+        case = self.draft.case
+        self._pause_button.set_visibility(running and case is not None and bool(case.particle_dampers))
+
+    async def run(self, resume: str = "") -> None:
+        """Run the case in the background and keep the result in the folder."""
+        draft = self.draft
+        if draft.case is None or self._worker is not None:
+            return
+        try:
+            name = self._paused if self._paused and self._paused_text == draft.text else new_name(self.folder, "run")
+        except OSError as error:
+            self._show_failure(f"the folder {self.folder} cannot be used: {error.strerror}")
+            return
+        self._paused = ""
+        self._running, self._running_text = name, draft.text
+        self._worker = worker = Worker()
+        self._show_running(True)
+        self._failure.set_text("")
+        particles = bool(draft.case.particle_dampers)
+        if particles:
+            from .views import view_of_snapshots
+
+            file = self.folder / f"{name}.vtkhdf"
+            self._particles.show(self.publish("particles", lambda first=0: view_of_snapshots(file, first)), growing=True)
+        try:
+            self._show_view(
+                await worker.do("run", draft.text, str(self.folder), name, bool(self._compare.value), progress=self._report)
+            )
+            self._status.set_text(f"kept as {name} in {self.folder}")
+        except TaskFailed as error:
+            if self._worker is worker:
+                self._show_failure(str(error))
+        finally:
+            worker.stop()
+            if self._worker is worker:
+                self._worker = None
+            self._show_running(self._worker is not None)
+            if particles:
+                self._particles.show(self._particles._props.get("url", ""), growing=False)
+
+    _paused = _paused_text = _running = _running_text = ""
+
+    def _report(self, what: str, *content: Any) -> None:
+        if what == "steps":
+            done, total = content
+            self._progress.set_value(done / max(1, total))
+            self._status.set_text(f"{100 * done / max(1, total):.0f} % of {total} steps")
+        elif what == "view":
+            self._show_view(content[0])
+
+    def stop_run(self) -> None:
+        """Stop the run in progress, if any."""
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.stop()
+
+    def _pause(self) -> None:
+        """Stop a particle run; its last checkpoint remains, from which Run resumes."""
+        self._paused, self._paused_text = self._running, self._running_text
+        self.stop_run()
+        self._show_running(False)
+        self._status.set_text("paused; Run resumes from the last checkpoint")
+
+    def _cancel(self) -> None:
+        """Stop a run and remove its unfinished files."""
+        self.stop_run()
+        self._show_running(False)
+        if not (self.folder / f"{self._running}.nc").exists():
+            for suffix in (".checkpoint", ".vtkhdf"):
+                (self.folder / f"{self._running}{suffix}").unlink(missing_ok=True)
+        self._particles.show("")
+        self._status.set_text("cancelled")
+
+    # ---- files of the case
+
+    def _copy(self) -> None:
+        ui.clipboard.write(self.draft.text)
+        ui.notify("copied")
+
+    def _download_case(self) -> None:
+        ui.download.content(self.draft.text, "case.toml")
+
+    def _download_script(self) -> None:
+        ui.download.content(python_script(self.draft.text), "case.py")
+
+    def _open_dialog(self) -> None:
+        names = sorted(path.name for path in self.folder.glob("*.toml"))
+        with ui.dialog() as dialog, ui.card():
+            ui.label("Open a case file").classes("font-semibold")
+            for name in names[:30]:
+                ui.button(name, on_click=lambda name=name: (dialog.close(), self._open(name))).props("flat dense no-caps")
+
+            async def read(event: Any) -> None:
+                dialog.close()
+                self.use_text((await event.file.read()).decode("utf-8", errors="replace"))
+
+            ui.upload(label="from this computer", on_upload=read, auto_upload=True, max_file_size=1_000_000).props("accept=.toml")
+        dialog.open()
+
+    def _open(self, name: str) -> None:
+        try:
+            self.use_text((self.folder / name).read_text(encoding="utf-8-sig"))
+        except (OSError, UnicodeDecodeError) as error:
+            self._show_failure(f"{name} cannot be read: {error}")

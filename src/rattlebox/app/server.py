@@ -1,0 +1,104 @@
+"""The server of the application, on this machine only."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+from pathlib import Path
+from typing import Any
+
+from fastapi import HTTPException, Response
+from nicegui import app, core, ui
+
+import rattlebox as rb
+
+from .guard import MOST_BYTES, Guard
+from .page import Bodies, Page
+
+HOST = "127.0.0.1"
+
+
+def build(folder: Path, port: int, token: str) -> None:
+    """Add the page, its data and the guard to the application of NiceGUI.
+
+    Parameters
+    ----------
+    folder
+        Folder from which files are read and to which they are written.
+    port
+        Port of the server, for the host header.
+    token
+        Random token of the URL.
+    """
+    bodies: Bodies = {}
+
+    @ui.page("/", title="Rattlebox")
+    def index() -> None:
+        page = Page(folder, bodies)
+        ui.context.client.on_delete(page.close)
+
+    @app.get("/data/{key}")
+    def data(key: str, first: int = 0) -> Response:
+        body = bodies.get(key)
+        if body is None or not 0 <= first < 10**9:
+            raise HTTPException(404)
+        try:
+            content = body(first) if first or body.__defaults__ else body()  # type: ignore[attr-defined]
+        except rb.RattleboxError as error:
+            raise HTTPException(409, str(error)) from None
+        return Response(content, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})
+
+    app.add_middleware(Guard, token=token, hosts=(f"{HOST}:{port}", f"localhost:{port}"))
+    core.sio.eio.max_http_buffer_size = MOST_BYTES
+
+
+def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
+    """Start the application and serve it until Ctrl-C.
+
+    Parameters
+    ----------
+    folder
+        Folder for case files and results; created if it does not exist.
+    port
+        Port on 127.0.0.1; 0 chooses a free one.
+    show
+        Whether to open the page in the browser.
+
+    Raises
+    ------
+    DataError
+        If the folder cannot be created or written.
+    ResourceError
+        If the port is in use.
+    """
+    place = _folder(Path(folder))
+    port = _free_port(port)
+    token = secrets.token_urlsafe(24)
+    build(place, port, token)
+    url = f"http://{HOST}:{port}/?token={token}"
+    app.on_startup(lambda: print(f"Rattlebox runs at {url}\nFiles are in {place}. Ctrl-C ends it.", flush=True))
+    options: dict[str, Any] = {"host": HOST, "port": port, "title": "Rattlebox", "reload": False, "favicon": "\N{HAMMER}"}
+    ui.run(show=f"/?token={token}" if show else False, show_welcome_message=False, reconnect_timeout=3.0, **options)
+
+
+def _folder(folder: Path) -> Path:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / f".rattlebox-{secrets.token_hex(4)}"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise rb.DataError(f"{folder} cannot be written: {error.strerror}", "a folder of your own") from None
+    return folder.resolve()
+
+
+def _free_port(port: int) -> int:
+    with socket.socket() as trial:
+        trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            trial.bind((HOST, port))
+        except OverflowError:
+            raise rb.ResourceError(f"port {port} does not exist; ports are from 1 to 65535", "--port 0") from None
+        except OSError as error:
+            raise rb.ResourceError(f"port {port} cannot be used: {error.strerror}", "--port 0, a free one") from None
+        return int(trial.getsockname()[1])

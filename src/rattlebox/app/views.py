@@ -1,0 +1,237 @@
+"""What the page draws of a run: curves, impacts, frames and the summary, as one binary body."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import rattlebox as rb
+
+from .binary import encode
+
+MOST_SAMPLES = 6000
+"""Samples of a curve; longer runs are drawn by every n-th sample, and the page says so."""
+MOST_FRAMES = 3000
+"""Frames of an animation of balls on a line."""
+FLASH = 0.004
+"""Duration over that of the run for which a contact lights up."""
+MOST_BYTES = 200_000_000
+"""Size of the frames of particles; further frames are left out, every n-th remains."""
+
+
+def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
+    """Return the curves, the animation and the summary of a run.
+
+    Parameters
+    ----------
+    run
+        The run.
+    bare
+        Run of the same case without dampers, drawn beside it.
+
+    Returns
+    -------
+    bytes
+        Body in the format of `rattlebox.app.binary`. Lengths are in mm, energies in mJ.
+    """
+    motion, energy = run.motion, run.energy
+    time = motion.time.values
+    rows = _rows(time.size)
+    arrays: dict[str, Any] = {"time": time[rows]}
+    along = _along(run)
+    points = [str(point) for point in motion.point.values] if "displacement" in motion else []
+    for k, point in enumerate(points):
+        arrays[f"displacement {point}"] = 1e3 * _component(motion.displacement.values[:, k], along)[rows]
+    for name in ("mode_energy", "ball_energy", "kinetic_energy", "rotation_energy", "contact_energy", "gravity_energy"):
+        if name in energy:
+            arrays[name] = 1e3 * _total(energy[name])[rows]
+    for name in ("work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss"):
+        if name in energy:
+            arrays[name] = 1e3 * _total(energy[name])[rows]
+    if bare is not None:
+        chosen = _rows(bare.motion.time.size)
+        arrays["bare time"] = bare.motion.time.values[chosen]
+        arrays["bare displacement"] = 1e3 * bare.motion.displacement.values[chosen, 0]
+    about: dict[str, Any] = {
+        "points": points,
+        "summary": str(run.summary()),
+        "status": run.status,
+        "warnings": list(run.notes),
+        "shown": f"every {rows.step} of {time.size} samples" if rows.step > 1 else "",
+        "end": float(time[-1]),
+    }
+    if "impacts" in run.groups:
+        arrays |= _balls(run, rows)
+        about["gaps"] = (1e3 * motion.clearance.values / 2).tolist() if "clearance" in motion else []
+        about["damper_of_ball"] = motion.ball_damper.values.tolist() if "ball_damper" in motion else []
+    about["charts"] = _charts(arrays, points, run)
+    return encode(arrays, **about)
+
+
+def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run) -> list[dict[str, Any]]:
+    """Return the charts of a run: title, labels of the axes, and series that name arrays."""
+    colours = rb.plots.SERIES_COLOURS
+
+    def line(number: int, name: str, y: str, **more: Any) -> dict[str, Any]:
+        return {"name": name, "x": "time", "y": y, "colour": colours[number % len(colours)], **more}
+
+    motion = [line(k, point, f"displacement {point}") for k, point in enumerate(points)]
+    if "bare displacement" in arrays:
+        motion[:1] = [line(0, f"{points[0]}, with damper", f"displacement {points[0]}")]
+        motion.append(line(4, f"{points[0]}, without", "bare displacement", x="bare time", dash=True))
+    charts = [{"title": "Motion", "x": "Time (s)", "y": "Displacement (mm)", "series": motion}] if motion else []
+    names = {name: label for name, label in _ENERGIES.items() if name in arrays and np.any(arrays[name])}
+    ledger = [line(k, label, name, dash=name.endswith("loss")) for k, (name, label) in enumerate(names.items())]
+    charts.append({"title": "Energy", "x": "Time (s)", "y": "Energy (mJ)", "series": ledger})
+    if "place" in arrays:
+        balls = range(len(arrays["place"]))
+        names_of = [str(ball) for ball in run.motion.ball.values]
+        portrait = [
+            {"name": names_of[i], "x": "place", "y": "speed", "row": i, "colour": colours[i % 6], "portrait": True}
+            for i in balls
+        ]
+        charts.append(
+            {
+                "title": "Phase portrait in the cavity",
+                "x": "Position from the centre of the cavity (mm)",
+                "y": "Velocity (m/s)",
+                "series": portrait,
+                "portrait": True,
+            }
+        )
+        hits = [{"name": "impacts", "x": "impact time", "y": "impact speed", "colour": colours[0], "dots": True}]
+        charts.append({"title": "Impacts", "x": "Time (s)", "y": "Approach speed (m/s)", "series": hits, "range": [0, float(run.arrays.time[-1])]})
+    return charts
+
+
+_ENERGIES = {
+    "work": "work of load and base",
+    "mode_energy": "structure",
+    "ball_energy": "balls",
+    "kinetic_energy": "particles",
+    "rotation_energy": "rotation",
+    "gravity_energy": "gravity",
+    "viscous_loss": "lost in the structure",
+    "normal_loss": "lost in normal damping",
+    "plastic_loss": "lost in plastic flow",
+    "sliding_loss": "lost in sliding",
+    "rolling_loss": "lost in rolling",
+}
+"""Labels of the energies and losses."""
+
+
+def _rows(count: int) -> slice:
+    return slice(0, None, max(1, -(-count // MOST_SAMPLES)))
+
+
+def _along(run: rb.Run) -> np.ndarray[Any, Any] | None:
+    """Return the direction of the first damper; None if the motion is along one line."""
+    if "axis" not in run.motion.dims:
+        return None
+    directions = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+    given = run.case.particle_dampers[0].direction
+    vector = np.asarray(directions.get(given, given) if isinstance(given, str) else given, float)
+    return vector / np.linalg.norm(vector)
+
+
+def _component(values: np.ndarray[Any, Any], along: np.ndarray[Any, Any] | None) -> np.ndarray[Any, Any]:
+    return values if values.ndim == 1 or along is None else values @ along
+
+
+def _total(values: Any) -> np.ndarray[Any, Any]:
+    """Return an energy summed over all modes, dampers and partners."""
+    return np.asarray(values.sum([dim for dim in values.dims if dim != "time"]).values, float)
+
+
+def _balls(run: rb.Run, rows: slice) -> dict[str, Any]:
+    """Return positions in the cavity, the phase portrait, the impacts and the frames of a 1-D run."""
+    motion, log = run.motion, run.impacts
+    time = motion.time.values
+    frames = np.linspace(time[0], time[-1], min(MOST_FRAMES, max(2, time.size)))
+    arrays: dict[str, Any] = {"frame time": frames}
+    if "displacement" in motion and motion.sizes["point"]:
+        arrays["frame displacement"] = 1e3 * np.interp(frames, time, motion.displacement.values[:, 0])
+    if motion.sizes.get("ball"):
+        place = 1e3 * (motion.relative_position - motion.ball_centre).values
+        arrays["place"] = place[rows].T
+        arrays["speed"] = motion.relative_velocity.values[rows].T
+        arrays["frame place"] = np.array([np.interp(frames, time, column) for column in place.T])
+        at = log.time.values
+        arrays["impact time"], arrays["impact speed"] = at, log.approach_speed.values
+        arrays["impact force"], arrays["impact loss"] = log.peak_force.values, 1e3 * log.energy_lost.values
+        arrays["impact contact"], arrays["impact damper"] = log.contact.values, log.damper.values
+        after = frames - at[np.searchsorted(at, frames, side="right") - 1] if at.size else np.full(frames.size, np.inf)
+        flash = FLASH * (time[-1] - time[0])
+        arrays["frame flash"] = np.where((after >= 0) & (after < flash), 1 - after / flash, 0.0)
+    return arrays
+
+
+def view_of_snapshots(path: Path, first: int = 0) -> bytes:
+    """Return the particles of the snapshots of a run, also while it runs.
+
+    Parameters
+    ----------
+    path
+        Snapshot file.
+    first
+        Number of the first snapshot.
+
+    Returns
+    -------
+    bytes
+        Body with `position` (frames, particles, 3) and `shift` of the cavities (frames, cavities, 3) [m], `speed` [m/s] and
+        `spin` [rad/s] (frames, particles), `radius` [m], `species` and `cavity`, and `time` [s]. Long runs have every n-th
+        snapshot from 0 on.
+    """
+    snapshots = rb.Snapshots(path)
+    frames = range(len(snapshots))
+    if len(snapshots):
+        size = 20 * snapshots[0].radius.size
+        frames = frames[:: max(1, -(-len(snapshots.planned) * size // MOST_BYTES))]
+    new = [snapshots[number] for number in frames if number >= first]
+    cavities = _cavities(rb.Case.from_toml(snapshots.case_toml)) if new else []
+    reach = max((2 * abs(cavity["place"][1]) + max(cavity["size"]) for cavity in cavities), default=1.0)
+    about = {"next": len(snapshots), "planned": len(snapshots.planned), "cavities": cavities, "reach": reach}
+    return encode(_particles(new), **about)
+
+
+def _cavities(case: rb.Case) -> list[dict[str, Any]]:
+    """Return form, size [m], axes and place in the picture [m] of each cavity; they stand side by side along y."""
+    cavities = [damper.cavity for damper in case.particle_dampers]
+    widths = np.array([float(cavity.lengths.max()) for cavity in cavities])
+    ends = np.cumsum(1.3 * widths)
+    places = ends - 0.65 * widths - ends[-1] / 2
+    return [
+        {
+            "kind": cavity.kind,
+            "size": cavity.lengths.tolist(),
+            "frame": np.asarray(cavity.frame).tolist(),
+            "place": [0.0, float(place), 0.0],
+        }
+        for cavity, place in zip(cavities, places, strict=True)
+    ]
+
+
+def _particles(frames: Sequence[Any]) -> dict[str, Any]:
+    if not frames:
+        return {}
+    return {
+        "time": [frame.time for frame in frames],
+        "position": [frame.position for frame in frames],
+        "shift": [frame.displacement for frame in frames],
+        "speed": [np.linalg.norm(frame.velocity - _carried(frame), axis=1) for frame in frames],
+        "spin": [np.linalg.norm(frame.spin, axis=1) for frame in frames],
+        "radius": frames[0].radius,
+        "species": frames[0].species,
+        "cavity": frames[0].cavity,
+    }
+
+
+def _carried(frame: Any) -> Any:
+    """Return the mean velocity of the particles of each cavity, for each particle (n, 3) [m/s]."""
+    count = np.bincount(frame.cavity)
+    mean = np.array([np.bincount(frame.cavity, frame.velocity[:, axis]) / count for axis in range(3)]).T
+    return mean[frame.cavity]

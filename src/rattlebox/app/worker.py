@@ -1,0 +1,120 @@
+"""A process that computes for one page: runs, maps and live views, so that the server itself never blocks.
+
+The parent sends a task, a tuple of a name of `TASKS` and its arguments; the worker answers with ("progress", ...) and at
+last ("done", result) or ("failed", text). It ends when its parent ends. Finished results are written before they are
+reported, so that a server that is killed loses none.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import rattlebox as rb
+
+from .views import view_of_run
+
+Report = Callable[..., None]
+
+FIRST_LOOK = 1.0
+"""Computing time until the first intermediate result of a particle run [s]; later ones take twice as long each."""
+MOST_WAIT = 16.0
+
+
+def main(connection: Connection) -> None:
+    """Do the tasks of a connection until it closes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the server, which ends its workers
+    threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True).start()
+    while True:
+        try:
+            name, *arguments = connection.recv()
+        except EOFError:
+            return
+        try:
+            result = TASKS[name](lambda *what: connection.send(("progress", *what)), *arguments)
+            answer: tuple[Any, ...] = ("done", result)
+        except (rb.RattleboxError, ValueError, MemoryError, RecursionError) as error:
+            answer = ("failed", str(error) or "the memory is exhausted\n  try: a shorter or smaller case")
+        try:
+            connection.send(answer)
+        except BrokenPipeError:
+            return
+
+
+def _end_with_parent(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(1)
+
+
+def live(report: Report, toml: str, folder: str, compare: bool) -> bytes:
+    """Run a 1-D case and return its view; nothing is written."""
+    case = rb.Case.from_toml(toml, folder=Path(folder))
+    return _view(rb.simulate(case, progress=False), case, compare)
+
+
+def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> bytes:
+    """Run a case, write its results, and report views of the motion so far.
+
+    A particle run is stopped at intervals and resumed from its checkpoint, which gives the same bits.
+    """
+    case = rb.Case.from_toml(toml, folder=Path(folder))
+    target = Path(folder) / f"{name}.nc"
+    if not case.particle_dampers:
+        result = rb.simulate(case, progress=False)
+    else:
+        checkpoint, snapshots = target.with_suffix(".checkpoint"), target.with_suffix(".vtkhdf")
+        wait = FIRST_LOOK
+        while True:
+            due = time.monotonic() + wait
+
+            def proceed(done: int, total: int, due: float = due) -> bool:
+                report("steps", done, total)
+                return time.monotonic() < due or done >= total
+
+            result = rb.simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=proceed)
+            if result.status != "interrupted":
+                break
+            report("view", view_of_run(result))
+            wait = min(2 * wait, MOST_WAIT)
+        checkpoint.unlink(missing_ok=True)
+    result.save(target)
+    return _view(result, case, compare)
+
+
+def _view(result: rb.Run, case: rb.Case, compare: bool) -> bytes:
+    bare = None
+    if compare and case.dampers and case.modes.decay.size and "impacts" in result.groups:
+        bare = rb.simulate(case.model_copy(update={"dampers": ()}), progress=False)
+    return view_of_run(result, bare)
+
+
+def kept(report: Report, folder: str, name: str) -> bytes:
+    """Return the view of a run in the folder."""
+    return view_of_run(rb.load(Path(folder) / f"{name}.nc"))
+
+
+def sweep(report: Report, toml: str, folder: str, name: str, axes: dict[str, Any], measure: str, compare: bool) -> None:
+    """Run a case over one or two axes and write the map to the folder, and the same without dampers if requested."""
+    case = rb.Case.from_toml(toml, folder=Path(folder))
+    spaced = {path: _spaced(*values) for path, values in axes.items()}
+    store = Path(folder) / f"{name}.zarr"
+    rb.sweep(case, spaced, measure, store=store, progress=lambda done, total: report("variants", done, total))
+    if compare:
+        varied = {path: values for path, values in spaced.items() if not path.startswith("damper")}
+        without = case.model_copy(update={"dampers": ()})
+        varied = varied or {"duration": [case.duration]}
+        rb.sweep(without, varied, measure, store=store.with_suffix(".bare.zarr"), progress=False)
+
+
+def _spaced(start: str, stop: str, count: int, logarithmic: bool) -> Any:
+    return (rb.geomspace if logarithmic else rb.linspace)(start, stop, count)
+
+
+TASKS: dict[str, Callable[..., Any]] = {"live": live, "run": run, "kept": kept, "sweep": sweep}
