@@ -50,6 +50,9 @@ class Draft:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.case: rb.Case | None = None
+        self.errors: dict[str, str] = {}
+        self.given: dict[str, Any] = {}
         self.set_text(template("steel_ball"))
 
     def set_text(self, text: str) -> None:
@@ -61,12 +64,12 @@ class Draft:
             given = tomllib.loads(text)
             if _depth(given) > DEEPEST:
                 raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}")
-        except tomllib.TOMLDecodeError as error:
+        except rb.CaseError as error:
+            self._invalid({"": str(error)})
+        except ValueError as error:  # also numbers of thousands of digits
             self._invalid({"": f"the text is not TOML: {error}"})
         except RecursionError:
             self._invalid({"": f"the tables are nested deeper than {DEEPEST}"})
-        except rb.CaseError as error:
-            self._invalid({"": str(error)})
         else:
             self.given = given
             self._check()
@@ -87,7 +90,7 @@ class Draft:
         for part in path[:-1]:
             node = node.setdefault(part, {}) if isinstance(node, dict) else node[part]
         if value is None:
-            if isinstance(node, list) or path[-1] in node:
+            if not isinstance(node, dict) or path[-1] in node:
                 del node[path[-1]]
         elif isinstance(node, list) and path[-1] == len(node):
             node.append(value)
@@ -99,8 +102,7 @@ class Draft:
     def _check(self) -> None:
         try:
             outside(self.given, self.folder)
-            self.case = rb.Case.from_dict(self.given, folder=self.folder)
-            self.errors: dict[str, str] = {}
+            self.case, self.errors = rb.Case.from_dict(self.given, folder=self.folder), {}
         except rb.RattleboxError as error:
             self._invalid(by_field(str(error)))
         except (RecursionError, OverflowError) as error:
@@ -108,8 +110,6 @@ class Draft:
 
     def _invalid(self, errors: dict[str, str]) -> None:
         self.case, self.errors = None, errors
-        if not hasattr(self, "given"):
-            self.given = {}
 
 
 def template(name: str) -> str:
@@ -143,7 +143,9 @@ def outside(node: Any, folder: Path) -> None:
     """
     for file in _named_files(node):
         if not (folder / file).resolve().is_relative_to(folder.resolve()):
-            raise rb.CaseError(f"case: the file {file!r} is outside of the folder of this page\n  try: a copy in {folder}")
+            raise rb.CaseError(
+                f"case: the file {file!r} is outside of the folder of this page\n  try: a copy in {folder}"
+            )
 
 
 def _named_files(node: Any, is_file: bool = False) -> list[str]:

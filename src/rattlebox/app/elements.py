@@ -22,7 +22,9 @@ class _Drawing(Element):
         self.update()
 
 
-class Charts(_Drawing, component="browser/charts.js", esm={**_BINARY, "nicegui-echart": str(_ELEMENTS / "echart" / "dist")}):
+class Charts(
+    _Drawing, component="browser/charts.js", esm={**_BINARY, "nicegui-echart": str(_ELEMENTS / "echart" / "dist")}
+):
     """Motion, energy, phase portrait and impacts of a run."""
 
 

@@ -32,7 +32,7 @@ def variants(node: Schema) -> list[Schema]:
         return variants(schema()["$defs"][node["$ref"].rpartition("/")[2]])
     for key in ("anyOf", "oneOf"):
         if key in node:
-            inherited = {name: node[name] for name in ("description", "examples") if name in node}
+            inherited: Schema = {name: node[name] for name in ("description", "examples") if name in node}
             return [{**inherited, **found} for each in node[key] for found in variants(each)]
     return [] if node.get("type") == "null" else [node]
 
@@ -59,7 +59,9 @@ def helps(table: Schema) -> dict[str, str]:
     """Return the descriptions of the fields in the docstring of a table."""
     found: dict[str, str] = {}
     section = re.search(r"Parameters\n-+\n(.*?)(?:\n\n[A-Z]\w+\n-+\n|\Z)", table.get("description", ""), re.DOTALL)
-    for names, text in re.findall(r"^(\w[\w, ]*)\n((?: {4}.*\n?|\n)+)", section[1] + "\n" if section else "", re.MULTILINE):
+    for names, text in re.findall(
+        r"^(\w[\w, ]*)\n((?: {4}.*\n?|\n)+)", section[1] + "\n" if section else "", re.MULTILINE
+    ):
         plain = " ".join(text.split())
         found |= {name.strip(): plain for name in names.split(",")}
     return found
@@ -116,8 +118,19 @@ class Form:
 
     def refresh(self) -> None:
         """Build all inputs again, after the text of the case was changed."""
-        self._inputs.clear(), self._labels.clear()
+        self._inputs.clear()
+        self._labels.clear()
         self._tree.refresh()
+
+    def show_value(self, path: Path_) -> None:
+        """Show the value of the case in the input of a path."""
+        element = self._inputs.get(dotted(path))
+        if element is not None:
+            self._silent = True
+            element.set_value(written(self._draft.value(path)))
+            self._silent = False
+
+    _silent = False
 
     def show_errors(self) -> None:
         """Show each error at the nearest input, and remove those that are gone."""
@@ -139,6 +152,8 @@ class Form:
             label.set_text("\n".join(filter(None, [label.text, text])))
 
     def _set(self, path: Path_, value: Any, *, rebuild: bool = False) -> None:
+        if self._silent:
+            return
         self._draft.set_value(path, value)
         if rebuild:
             self.refresh()
@@ -255,8 +270,11 @@ class Form:
             example = next((each["examples"][0] for each in (node, *allowed) if each.get("examples")), None)
             names = list(rb.materials()) if name == "material" else choices
             default = node.get("default")
-            hint = written(default) if default not in (None, [], "") else written(example) and f"for example {written(example)}"
-            element = ui.input(label, value=written(value), placeholder=hint, autocomplete=[str(each) for each in names])
+            hint = f"for example {written(example)}" if example else ""
+            hint = hint if default in (None, [], "") else written(default)
+            element = ui.input(
+                label, value=written(value), placeholder=hint, autocomplete=[str(each) for each in names]
+            )
             element.props("dense debounce=150 stack-label hide-bottom-space")
             element.on_value_change(lambda event: self._set(path, parse(event.value or "")))
             self._inputs[dotted(path)] = element

@@ -69,7 +69,10 @@ class Guard:
         return None
 
     def _has_token_in_url(self, scope: Any) -> bool:
-        given = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=50).get("token", [""])
+        try:
+            given = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=50).get("token", [""])
+        except ValueError:  # too many fields
+            return False
         return secrets.compare_digest(given[0].encode(), self._token.encode())
 
     def _has_cookie(self, headers: dict[str, str]) -> bool:

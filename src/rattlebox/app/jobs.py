@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import multiprocessing
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from .worker import main
 
@@ -19,8 +19,28 @@ class TaskFailed(Exception):
 class Worker:
     """A process for one task at a time. It starts at once and is replaced after it was stopped."""
 
+    _spare: ClassVar[list[Worker]] = []
+
     def __init__(self) -> None:
         self._start()
+
+    @classmethod
+    def ready(cls) -> Worker:
+        """Return a worker that has probably loaded its libraries already, and start the next one."""
+        worker = cls._spare.pop() if cls._spare else cls()
+        cls.start_spare()
+        return worker
+
+    @classmethod
+    def start_spare(cls) -> None:
+        """Start a worker in advance."""
+        cls._spare.append(cls())
+
+    @classmethod
+    def stop_spare(cls) -> None:
+        """End the worker that waits."""
+        while cls._spare:
+            cls._spare.pop().stop()
 
     def _start(self) -> None:
         self._connection, child = _CONTEXT.Pipe()
@@ -86,7 +106,7 @@ class Live:
 
     def __init__(self, show: Callable[[Any], object], fail: Callable[[str], object], longest: float = 8.0) -> None:
         self._show, self._fail, self._longest = show, fail, longest
-        self._worker = Worker()
+        self._worker = Worker.ready()
         self._next: tuple[Any, ...] | None = None
         self._busy = False
 

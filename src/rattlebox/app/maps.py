@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,12 +36,15 @@ class MapTab:
     def __init__(self, page: Page) -> None:
         self._page = page
         self._worker: Worker | None = None
-        self._name, self._task = "", ("", {}, "")
+        self._name = ""
+        self._task: tuple[str, dict[str, Any], str] = ("", {}, "")
         self._grid: tuple[list[str], list[np.ndarray[Any, Any]], list[str]] | None = None
         self._parameters()
         with ui.row().classes("w-full items-center gap-2"):
             measures = {name: measure.long_name for name, measure in rb.MEASURES.items()}
-            self._measure = ui.select(measures, value="rms", label="measure", with_input=True).props("dense options-dense")
+            self._measure = ui.select(measures, value="rms", label="measure", with_input=True).props(
+                "dense options-dense"
+            )
             self._measure.classes("w-64")
             self._compare = ui.switch("ratio to the case without damper")
             self._start = ui.button("Compute map", icon="grid_on", on_click=self.compute).props("dense")
@@ -56,7 +58,8 @@ class MapTab:
         self._chart = ui.echart({}, on_point_click=self._watch_point).classes("w-full").style("height:460px")
         with ui.row():
             for suffix, title in MAP_FORMATS.items():
-                ui.button(title, icon="download", on_click=lambda suffix=suffix: self._download(suffix)).props("flat dense")
+                button = ui.button(title, icon="download", on_click=lambda suffix=suffix: self._download(suffix))
+                button.props("flat dense")
 
     @ui.refreshable_method
     def _parameters(self) -> None:
@@ -65,10 +68,11 @@ class MapTab:
         for number, usual in enumerate(("damper.gap", NONE)):
             with ui.row().classes("w-full items-center gap-2"):
                 options = names if number == 0 else [NONE, *names]
-                name = ui.select(options, value=usual if usual in options else options[0], label=("parameter", "second parameter")[number])
-                name.props("dense options-dense").classes("w-56")
-                low, high = ui.input("from").props("dense").classes("w-24"), ui.input("to").props("dense").classes("w-24")
-                count = ui.number("values", value=12, min=2, max=MOST_VALUES, precision=0).props("dense").classes("w-20")
+                chosen, label = usual if usual in options else options[0], "second parameter" if number else "parameter"
+                name = ui.select(options, value=chosen, label=label).props("dense options-dense").classes("w-56")
+                low, high = (ui.input(text).props("dense").classes("w-24") for text in ("from", "to"))
+                count = ui.number("values", value=12, min=2, max=MOST_VALUES, precision=0)
+                count.props("dense").classes("w-20")
                 spacing = ui.switch("log")
                 row = (name, low, high, count, spacing)
                 self._rows.append(row)
@@ -116,7 +120,14 @@ class MapTab:
         self._failure.set_text("")
         watch = asyncio.get_running_loop().create_task(self._poll(worker))
         try:
-            arguments = (page.draft.text, str(page.folder), self._name, axes, self._measure.value, bool(self._compare.value))
+            arguments = (
+                page.draft.text,
+                str(page.folder),
+                self._name,
+                axes,
+                self._measure.value,
+                bool(self._compare.value),
+            )
             await worker.do("sweep", *arguments, progress=self._report)
             self._status.set_text(f"kept as {self._name} in {page.folder}; click a point to watch it")
         except TaskFailed as error:
@@ -152,7 +163,7 @@ class MapTab:
 
     def open(self, name: str) -> None:
         """Show a map of the folder."""
-        self._name = name
+        self._name, self._task = name, ("", {}, "")
         self._draw()
 
     # ---- drawing
@@ -170,19 +181,34 @@ class MapTab:
                 self._failure.set_text(str(error))
             return
         hidden = ("status", "warnings")
-        measure = next(str(name) for name in study.data_vars if name not in hidden and not str(name).endswith("_interval"))
-        values, label = study[measure], f"{study[measure].attrs.get('long_name', measure)} ({study[measure].attrs.get('units', '')})"
+        measure = next(
+            str(name) for name in study.data_vars if name not in hidden and not str(name).endswith("_interval")
+        )
+        values, label = (
+            study[measure],
+            f"{study[measure].attrs.get('long_name', measure)} ({study[measure].attrs.get('units', '')})",
+        )
         if bare is not None:
             values, label = values / bare[measure].squeeze(drop=True), f"{label.partition(' (')[0]} / without damper"
         axes = [str(dim) for dim in values.dims]
         points = [study[axis].values for axis in axes]
         units = [str(study[axis].attrs.get("units", "")) for axis in axes]
+        shown = [self._as_typed(*axis) for axis in zip(axes, points, units, strict=True)]
+        points, units = [list(each) for each in zip(*shown, strict=True)]
         self._grid = axes, points, units
         titles = [f"{axis} ({unit})" if unit not in ("", "1") else axis for axis, unit in zip(axes, units, strict=True)]
         draw = _lines if len(axes) == 1 else _heat
         self._chart.options.clear()
         self._chart.options.update(draw(values.values, points, titles, label))
         self._chart.update()
+
+    def _as_typed(self, axis: str, values: Any, unit: str) -> tuple[Any, str]:
+        """Return the values of an axis in the unit in which the user typed its range, and this unit."""
+        typed = [quantity(text) for text in self._task[1].get(axis, ())[:2]]
+        for stored, each in zip((values[0], values[-1]), typed, strict=False):
+            if each is not None and each[1] and each[0] and stored:
+                return values * (each[0] / stored), each[1]
+        return values, unit
 
     def _watch_point(self, event: Any) -> None:
         """Put the values of a point of the map into the case."""
@@ -225,37 +251,43 @@ def map_script(toml: str, axes: dict[str, Any], measure: str) -> str:
         f"    {path!r}: rb.{'geomspace' if log else 'linspace'}({low!r}, {high!r}, {count}),"
         for path, (low, high, count, log) in axes.items()
     ]
-    lines = ["axes = {", *spaced, "}", f"study = rb.sweep(case, axes, {measure!r})", 'rb.plot_map(study).savefig("map.png")', ""]
+    lines = [
+        "axes = {",
+        *spaced,
+        "}",
+        f"study = rb.sweep(case, axes, {measure!r})",
+        'rb.plot_map(study).savefig("map.png")',
+        "",
+    ]
     return python_script(toml, "\n".join(lines))
+
+
+def _axis(kind: str, title: str, gap: int, **more: Any) -> dict[str, Any]:
+    return {"type": kind, "name": title, "nameLocation": "middle", "nameGap": gap, "scale": True, **more}
 
 
 def _lines(values: Any, points: list[Any], titles: list[str], label: str) -> dict[str, Any]:
     data = [[float(x), _finite(y)] for x, y in zip(points[0], values, strict=True)]
-    return {
-        "grid": {"left": 80, "right": 20, "top": 20, "bottom": 50},
-        "tooltip": {"trigger": "item"},
-        "xAxis": {"type": "value", "name": titles[0], "nameLocation": "middle", "nameGap": 30, "scale": True},
-        "yAxis": {"type": "value", "name": label, "nameLocation": "middle", "nameGap": 60, "scale": True},
-        "series": [{"type": "line", "data": data, "symbolSize": 8, "lineStyle": {"width": 1.5}, "color": rb.plots.SERIES_COLOURS[0], "animation": False}],
-    }
+    line = {"type": "line", "data": data, "symbolSize": 8, "color": rb.plots.SERIES_COLOURS[0], "animation": False}
+    axes = {"xAxis": _axis("value", titles[0], 30), "yAxis": _axis("value", label, 60)}
+    return {"grid": {"left": 80, "right": 20, "top": 20, "bottom": 50}, "tooltip": {}, **axes, "series": [line]}
 
 
 def _heat(values: Any, points: list[Any], titles: list[str], label: str) -> dict[str, Any]:
     cells = [[i, j, _finite(values[i, j])] for i in range(values.shape[0]) for j in range(values.shape[1])]
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    axis = [[f"{x:.4g}" for x in each] for each in points]
+    first, second = ([f"{x:.4g}" for x in each] for each in points)
+    colours = {"min": low, "max": high if high > low else low + 1.0, "inRange": {"color": VIRIDIS}, "right": 4}
     return {
-        "grid": {"left": 80, "right": 120, "top": 20, "bottom": 50},
+        "title": {"text": label, "right": 10, "top": 0, "textStyle": {"fontSize": 13}},
+        "grid": {"left": 80, "right": 110, "top": 34, "bottom": 50},
         "tooltip": {"position": "top"},
-        "xAxis": {"type": "category", "data": axis[0], "name": titles[0], "nameLocation": "middle", "nameGap": 30},
-        "yAxis": {"type": "category", "data": axis[1], "name": titles[1], "nameLocation": "middle", "nameGap": 60},
-        "visualMap": {
-            "min": low, "max": high if high > low else low + 1.0, "calculable": True, "right": 4, "top": "center",
-            "text": [label, ""], "textGap": 6, "precision": 4, "inRange": {"color": VIRIDIS},
-        },
-        "series": [{"type": "heatmap", "data": cells, "animation": False, "emphasis": {"itemStyle": {"borderColor": "#000"}}}],
-    }  # fmt: skip
+        "xAxis": _axis("category", titles[0], 30, data=first),
+        "yAxis": _axis("category", titles[1], 60, data=second),
+        "visualMap": {**colours, "top": "center", "text": [f"{high:.4g}", f"{low:.4g}"]},
+        "series": [{"type": "heatmap", "data": cells, "animation": False}],
+    }
 
 
 def _finite(value: Any) -> float | None:

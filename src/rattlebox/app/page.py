@@ -78,7 +78,9 @@ class Page:
         ui.add_head_html("<style>.nicegui-content{padding:0} .rb-left .q-field__label{text-transform:none}</style>")
         with ui.header().classes("items-center bg-slate-800 text-white py-1 gap-3"):
             ui.label("Rattlebox").classes("text-lg font-bold")
-            self._templates = ui.select(TEMPLATES, value="steel_ball", label="template").props("dark dense options-dense")
+            self._templates = ui.select(TEMPLATES, value="steel_ball", label="template").props(
+                "dark dense options-dense"
+            )
             self._templates.classes("w-64").on_value_change(self._use_template)
             ui.button("Open", icon="upload", on_click=self._open_dialog).props("flat dense color=white")
             ui.button("Download case", icon="download", on_click=self._download_case).props("flat dense color=white")
@@ -101,7 +103,9 @@ class Page:
                 with ui.row().classes("w-full items-center"):
                     ui.button("Copy", icon="content_copy", on_click=self._copy).props("dense flat")
                     ui.label("edits apply as you type").classes("text-xs text-gray-600")
-                self._text = ui.textarea(value=self.draft.text).props("outlined debounce=300 input-class=font-mono autogrow")
+                self._text = ui.textarea(value=self.draft.text).props(
+                    "outlined debounce=300 input-class=font-mono autogrow"
+                )
                 self._text.classes("w-full text-xs").on_value_change(self._text_edited)
                 self._text_error = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
             with ui.tab_panel(drawing).classes("p-0"):
@@ -126,10 +130,12 @@ class Page:
         with ui.row().classes("w-full items-center gap-2"):
             self._run_button = ui.button("Run and keep", icon="play_arrow", on_click=self.run).props("dense")
             self._pause_button = ui.button("Pause", icon="pause", on_click=self._pause).props("dense outline")
-            self._cancel_button = ui.button("Cancel", icon="stop", on_click=self._cancel).props("dense outline color=negative")
+            self._cancel_button = ui.button("Cancel", icon="stop", on_click=self._cancel)
+            self._cancel_button.props("dense outline color=negative")
             self._progress = ui.linear_progress(value=0, show_value=False).classes("w-48")
             self._compare = ui.switch("compare without damper", on_change=self._changed)
             self._status = ui.label("").classes("text-sm text-gray-700")
+            self._about = ui.label("").classes("text-sm text-gray-700")
         self._show_running(False)
         self._sliders()
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
@@ -138,6 +144,16 @@ class Page:
         self._particles = Particles().classes("w-full")
         self._particles.set_visibility(False)
         self._charts = Charts().classes("w-full")
+        with ui.expansion("Impacts", value=False).classes("w-full") as self._impacts:
+            columns = {
+                "number": "number",
+                "time": "time (s)",
+                "speed": "approach speed (m/s)",
+                "force": "peak force (N)",
+            }
+            columns["loss"] = "energy lost (mJ)"
+            listed = [{"name": name, "field": name, "label": label} for name, label in columns.items()]
+            self._impact_list = ui.table(columns=listed, rows=[], row_key="number", pagination=10).props("dense")
         with ui.expansion("Summary", value=False).classes("w-full"):
             self._summary = ui.label("").classes("font-mono text-xs whitespace-pre")
         ui.timer(0.05, self._changed, once=True)
@@ -150,7 +166,8 @@ class Page:
         with ui.row().classes("w-full items-center gap-4"):
             for name in [name for name in self._pinned if name in numbers]:
                 self._slider(name, numbers[name])
-            choice = ui.select(list(numbers), label="slider for", multiple=True, value=[n for n in self._pinned if n in numbers])
+            pinned = [name for name in self._pinned if name in numbers]
+            choice = ui.select(list(numbers), label="slider for", multiple=True, value=pinned)
             choice.props(f"dense options-dense max-values={MOST_SLIDERS}").classes("w-44")
             choice.on_value_change(lambda event: self._pin(event.value))
 
@@ -175,11 +192,14 @@ class Page:
                 place = float(event.args)
                 label.set_text(f"{name.removeprefix('damper.')}: {written(text(place))}")
                 self.draft.set_value(path, text(place))
+                self.form.show_value(path)
                 self._text_is_stale()
                 self._changed()
 
             slider = ui.slider(min=low, max=1.0, step=0.01, value=number if share else 0.0)
-            slider.props(f'dense aria-label="{name}"').on("update:model-value", move, throttle=0.03, leading_events=True)
+            slider.props(f'dense aria-label="{name}"').on(
+                "update:model-value", move, throttle=0.03, leading_events=True
+            )
 
     # ---- changes of the case
 
@@ -232,9 +252,9 @@ class Page:
         self._balls.set_visibility(not particles)
         self._particles.set_visibility(particles)
         self._pause_button.set_visibility(particles and self._worker is not None)
+        if self._worker is None:
+            self._status.set_text("press Run; particles are computed in the background" if particles else "")
         if particles:
-            if self._worker is None:
-                self._status.set_text("press Run; particles are computed in the background")
             return
         request = ("live", draft.text, str(self.folder), bool(self._compare.value))
         asyncio.get_running_loop().create_task(self._live.request(*request))
@@ -257,13 +277,16 @@ class Page:
         _, about = decode(body)
         url = self.publish("view", lambda: body)
         self._charts.show(url)
-        if "gaps" in about:
+        self._impacts.set_visibility("impacts" in about)
+        if "impacts" in about:
             self._balls.show(url)
+            self._impacts.set_text(f"Impacts: {about['impact_count']}")
+            self._impact_list.rows = about["impacts"]
         self._summary.set_text(about["summary"])
         self._warnings.set_text("\n".join(about["warnings"]))
         self._failure.set_text("" if about["status"] in ("finished", "interrupted") else about["status"])
         shown = f"; drawn from {about['shown']}" if about["shown"] else ""
-        self._status.set_text(f"{about['status']} at t = {about['end']:.4g} s{shown}" if "gaps" in about else self._status.text)
+        self._about.set_text(f"{about['status']} at t = {about['end']:.4g} s{shown}")
 
     def show_watch(self) -> None:
         """Show the tab with the run."""
@@ -299,10 +322,14 @@ class Page:
             from .views import view_of_snapshots
 
             file = self.folder / f"{name}.vtkhdf"
-            self._particles.show(self.publish("particles", lambda first=0: view_of_snapshots(file, first)), growing=True)
+            self._particles.show(
+                self.publish("particles", lambda first=0: view_of_snapshots(file, first)), growing=True
+            )
         try:
             self._show_view(
-                await worker.do("run", draft.text, str(self.folder), name, bool(self._compare.value), progress=self._report)
+                await worker.do(
+                    "run", draft.text, str(self.folder), name, bool(self._compare.value), progress=self._report
+                )
             )
             self._status.set_text(f"kept as {name} in {self.folder}")
         except TaskFailed as error:
@@ -366,13 +393,16 @@ class Page:
         with ui.dialog() as dialog, ui.card():
             ui.label("Open a case file").classes("font-semibold")
             for name in names[:30]:
-                ui.button(name, on_click=lambda name=name: (dialog.close(), self._open(name))).props("flat dense no-caps")
+                ui.button(name, on_click=lambda name=name: (dialog.close(), self._open(name))).props(
+                    "flat dense no-caps"
+                )
 
             async def read(event: Any) -> None:
                 dialog.close()
                 self.use_text((await event.file.read()).decode("utf-8", errors="replace"))
 
-            ui.upload(label="from this computer", on_upload=read, auto_upload=True, max_file_size=1_000_000).props("accept=.toml")
+            upload = ui.upload(label="from this computer", on_upload=read, auto_upload=True, max_file_size=1_000_000)
+            upload.props("accept=.toml")
         dialog.open()
 
     def _open(self, name: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import re
 import tempfile
@@ -132,12 +131,7 @@ def download_map(folder: Path, name: str, suffix: str, script: str) -> bytes:
         return script.encode()
     study = rb.open_study(inside(folder, name, ".zarr")).load()
     if suffix == "csv":
-        text = io.StringIO()
-        table = study.to_dataframe().reset_index()
-        writer = csv.writer(text)
-        writer.writerow(table.columns)
-        writer.writerows(table.itertuples(index=False))
-        return text.getvalue().encode()
+        return bytes(study.to_dataframe().to_csv().encode())
     with tempfile.TemporaryDirectory() as place:
         target = Path(place) / f"{name}.{suffix}"
         if suffix == "nc":

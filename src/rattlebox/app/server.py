@@ -13,6 +13,7 @@ from nicegui import app, core, ui
 import rattlebox as rb
 
 from .guard import MOST_BYTES, Guard
+from .jobs import Worker
 from .page import Bodies, Page
 
 HOST = "127.0.0.1"
@@ -43,13 +44,15 @@ def build(folder: Path, port: int, token: str) -> None:
         if body is None or not 0 <= first < 10**9:
             raise HTTPException(404)
         try:
-            content = body(first) if first or body.__defaults__ else body()  # type: ignore[attr-defined]
+            content = body(first) if first or body.__defaults__ else body()
         except rb.RattleboxError as error:
             raise HTTPException(409, str(error)) from None
         return Response(content, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})
 
     app.add_middleware(Guard, token=token, hosts=(f"{HOST}:{port}", f"localhost:{port}"))
     core.sio.eio.max_http_buffer_size = MOST_BYTES
+    app.on_startup(Worker.start_spare)
+    app.on_shutdown(Worker.stop_spare)
 
 
 def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
@@ -77,7 +80,13 @@ def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
     build(place, port, token)
     url = f"http://{HOST}:{port}/?token={token}"
     app.on_startup(lambda: print(f"Rattlebox runs at {url}\nFiles are in {place}. Ctrl-C ends it.", flush=True))
-    options: dict[str, Any] = {"host": HOST, "port": port, "title": "Rattlebox", "reload": False, "favicon": "\N{HAMMER}"}
+    options: dict[str, Any] = {
+        "host": HOST,
+        "port": port,
+        "title": "Rattlebox",
+        "reload": False,
+        "favicon": "\N{HAMMER}",
+    }
     ui.run(show=f"/?token={token}" if show else False, show_welcome_message=False, reconnect_timeout=3.0, **options)
 
 

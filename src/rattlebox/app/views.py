@@ -16,6 +16,8 @@ MOST_SAMPLES = 6000
 """Samples of a curve; longer runs are drawn by every n-th sample, and the page says so."""
 MOST_FRAMES = 3000
 """Frames of an animation of balls on a line."""
+MOST_LISTED = 200
+"""Impacts in the list."""
 FLASH = 0.004
 """Duration over that of the run for which a contact lights up."""
 MOST_BYTES = 200_000_000
@@ -42,9 +44,14 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     rows = _rows(time.size)
     arrays: dict[str, Any] = {"time": time[rows]}
     along = _along(run)
-    points = [str(point) for point in motion.point.values] if "displacement" in motion else []
+    points = (
+        [str(point) for point in motion.point.values] if "displacement" in motion and run.case.modes.decay.size else []
+    )
     for k, point in enumerate(points):
         arrays[f"displacement {point}"] = 1e3 * _component(motion.displacement.values[:, k], along)[rows]
+    if not points:
+        arrays["displacement base"] = 1e3 * _component(motion.base_displacement.values, along)[rows]
+        points = ["base"]
     for name in ("mode_energy", "ball_energy", "kinetic_energy", "rotation_energy", "contact_energy", "gravity_energy"):
         if name in energy:
             arrays[name] = 1e3 * _total(energy[name])[rows]
@@ -65,6 +72,14 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     }
     if "impacts" in run.groups:
         arrays |= _balls(run, rows)
+        log = run.impacts
+        first = {"time": log.time, "speed": log.approach_speed, "force": log.peak_force, "loss": 1e3 * log.energy_lost}
+        columns = {name: values.values[:MOST_LISTED].astype(float) for name, values in first.items()}
+        about["impacts"] = [
+            {"number": k + 1, **{name: f"{values[k]:.5g}" for name, values in columns.items()}}
+            for k in range(min(MOST_LISTED, log.sizes["impact"]))
+        ]
+        about["impact_count"] = int(log.sizes["impact"])
         about["gaps"] = (1e3 * motion.clearance.values / 2).tolist() if "clearance" in motion else []
         about["damper_of_ball"] = motion.ball_damper.values.tolist() if "ball_damper" in motion else []
     about["charts"] = _charts(arrays, points, run)
@@ -75,35 +90,30 @@ def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run) -> list[
     """Return the charts of a run: title, labels of the axes, and series that name arrays."""
     colours = rb.plots.SERIES_COLOURS
 
-    def line(number: int, name: str, y: str, **more: Any) -> dict[str, Any]:
-        return {"name": name, "x": "time", "y": y, "colour": colours[number % len(colours)], **more}
+    def series(number: int, name: str, y: str, x: str = "time", **more: Any) -> dict[str, Any]:
+        return {"name": name, "x": x, "y": y, "colour": colours[number % len(colours)], **more}
 
-    motion = [line(k, point, f"displacement {point}") for k, point in enumerate(points)]
+    def chart(title: str, x: str, y: str, lines: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+        return {"title": title, "x": x, "y": y, "series": lines, **more}
+
+    motion = [series(k, point, f"displacement {point}") for k, point in enumerate(points)]
     if "bare displacement" in arrays:
-        motion[:1] = [line(0, f"{points[0]}, with damper", f"displacement {points[0]}")]
-        motion.append(line(4, f"{points[0]}, without", "bare displacement", x="bare time", dash=True))
-    charts = [{"title": "Motion", "x": "Time (s)", "y": "Displacement (mm)", "series": motion}] if motion else []
-    names = {name: label for name, label in _ENERGIES.items() if name in arrays and np.any(arrays[name])}
-    ledger = [line(k, label, name, dash=name.endswith("loss")) for k, (name, label) in enumerate(names.items())]
-    charts.append({"title": "Energy", "x": "Time (s)", "y": "Energy (mJ)", "series": ledger})
+        motion[:1] = [series(0, f"{points[0]}, with damper", f"displacement {points[0]}")]
+        motion.append(series(4, f"{points[0]}, without", "bare displacement", "bare time", dash=True))
+    present = [(name, label) for name, label in _ENERGIES.items() if name in arrays and np.any(arrays[name])]
+    ledger = [series(k, label, name, dash=name.endswith("loss")) for k, (name, label) in enumerate(present)]
+    charts = [
+        chart("Motion", "Time (s)", "Displacement (mm)", motion),
+        chart("Energy", "Time (s)", "Energy (mJ)", ledger),
+    ]
     if "place" in arrays:
-        balls = range(len(arrays["place"]))
-        names_of = [str(ball) for ball in run.motion.ball.values]
-        portrait = [
-            {"name": names_of[i], "x": "place", "y": "speed", "row": i, "colour": colours[i % 6], "portrait": True}
-            for i in balls
-        ]
-        charts.append(
-            {
-                "title": "Phase portrait in the cavity",
-                "x": "Position from the centre of the cavity (mm)",
-                "y": "Velocity (m/s)",
-                "series": portrait,
-                "portrait": True,
-            }
-        )
-        hits = [{"name": "impacts", "x": "impact time", "y": "impact speed", "colour": colours[0], "dots": True}]
-        charts.append({"title": "Impacts", "x": "Time (s)", "y": "Approach speed (m/s)", "series": hits, "range": [0, float(run.arrays.time[-1])]})
+        balls = enumerate(run.motion.ball.values)
+        lines = [series(i, str(ball), "speed", "place", row=i, portrait=True) for i, ball in balls]
+        place = "Position from the centre of the cavity (mm)"
+        charts.append(chart("Phase portrait in the cavity", place, "Velocity (m/s)", lines, portrait=True))
+        hits = [series(0, "impacts", "impact speed", "impact time", dots=True)]
+        limits = [0.0, float(run.arrays.time[-1])]
+        charts.append(chart("Impacts", "Time (s)", "Approach speed (m/s)", hits, range=limits))
     return charts
 
 
@@ -133,11 +143,11 @@ def _along(run: rb.Run) -> np.ndarray[Any, Any] | None:
         return None
     directions = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
     given = run.case.particle_dampers[0].direction
-    vector = np.asarray(directions.get(given, given) if isinstance(given, str) else given, float)
+    vector: np.ndarray[Any, Any] = np.asarray(directions[given] if isinstance(given, str) else given, float)
     return vector / np.linalg.norm(vector)
 
 
-def _component(values: np.ndarray[Any, Any], along: np.ndarray[Any, Any] | None) -> np.ndarray[Any, Any]:
+def _component(values: Any, along: Any) -> Any:
     return values if values.ndim == 1 or along is None else values @ along
 
 
@@ -152,8 +162,13 @@ def _balls(run: rb.Run, rows: slice) -> dict[str, Any]:
     time = motion.time.values
     frames = np.linspace(time[0], time[-1], min(MOST_FRAMES, max(2, time.size)))
     arrays: dict[str, Any] = {"frame time": frames}
-    if "displacement" in motion and motion.sizes["point"]:
-        arrays["frame displacement"] = 1e3 * np.interp(frames, time, motion.displacement.values[:, 0])
+    if run.case.modes.decay.size:
+        names = [str(point) for point in motion.point.values]
+        point = run.case.impact_dampers[0].point if run.case.impact_dampers else None
+        moved = motion.displacement.values[:, names.index(point) if point in names else 0]
+    else:
+        moved = motion.base_displacement.values
+    arrays["frame displacement"] = 1e3 * np.interp(frames, time, moved)
     if motion.sizes.get("ball"):
         place = 1e3 * (motion.relative_position - motion.ball_centre).values
         arrays["place"] = place[rows].T
@@ -186,6 +201,8 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
         `spin` [rad/s] (frames, particles), `radius` [m], `species` and `cavity`, and `time` [s]. Long runs have every n-th
         snapshot from 0 on.
     """
+    if not path.exists():  # the bed settles before the first snapshot
+        return encode({}, next=0, planned=0)
     snapshots = rb.Snapshots(path)
     frames = range(len(snapshots))
     if len(snapshots):

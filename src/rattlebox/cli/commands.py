@@ -280,6 +280,23 @@ def demo(
     run_demo(out)
 
 
+@app.command("app", cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+def browser_app(
+    ctx: typer.Context,
+    folder: Annotated[Path, typer.Argument(help="Folder for case files and results.")] = Path("rattlebox"),
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port on 127.0.0.1; 0 chooses a free one.")] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only.")] = False,
+) -> None:
+    """Open the browser application: change a case and watch it, map it, keep results."""
+    _check_single(ctx, folder)
+    from rattlebox._util.optional_imports import optional_import
+
+    optional_import("nicegui", "app")
+    from rattlebox.app.server import serve
+
+    serve(folder, port=port, show=not no_browser)
+
+
 @app.command(cls=_Command)
 def schema(
     out: Annotated[

@@ -54,7 +54,7 @@ export default {
       }
       specs.forEach((spec, index) => this.charts[index].setOption({
         title: { text: spec.title, left: 4, top: 0, textStyle: { fontSize: 13, fontWeight: 600, color: "#222" } },
-        legend: spec.series.length > 1 ? { top: 20, left: 4, itemWidth: 18, itemHeight: 8, textStyle: { fontSize: 11 }, type: "scroll" } : { show: false },
+        legend: spec.series.length > 1 ? { show: true, top: 20, left: 4, itemWidth: 18, itemHeight: 8, textStyle: { fontSize: 11 }, type: "scroll" } : { show: false },
         grid: { left: 62, right: 16, top: spec.series.length > 1 ? 46 : 30, bottom: 42 },
         tooltip: { trigger: spec.portrait ? "item" : "axis", confine: true, valueFormatter: (value) => Number(value).toPrecision(4) },
         xAxis: { type: "value", name: spec.x, nameLocation: "middle", nameGap: 26, scale: true, axisLine: { onZero: false }, splitLine: { show: false }, nameTextStyle: { color: GREY }, min: spec.range ? spec.range[0] : undefined, max: spec.range ? spec.range[1] : undefined },
