@@ -114,13 +114,17 @@ class Form:
         self._draft, self._changed = draft, changed
         self._inputs: dict[str, Any] = {}
         self._labels: dict[str, Any] = {}
-        self._tree()
+        self._box = ui.column().classes("w-full gap-1")
+        self.refresh()
 
     def refresh(self) -> None:
         """Build all inputs again, after the text of the case was changed."""
         self._inputs.clear()
         self._labels.clear()
-        self._tree.refresh()
+        self._box.clear()
+        with self._box:
+            self._error_label("")
+            self._table(schema(), (), self._draft.given)
 
     def show_value(self, path: Path_) -> None:
         """Show the value of the case in the input of a path."""
@@ -136,10 +140,7 @@ class Form:
         """Show each error at the nearest input, and remove those that are gone."""
         errors = dict(self._draft.errors)
         for name, element in self._inputs.items():
-            message = errors.pop(name, "")
-            element.props["error"] = bool(message)
-            element.props["error-message"] = message.replace("\n", "; ")
-            element.update()
+            element.error = errors.pop(name, "").replace("\n", "; ") or None
         for label in self._labels.values():
             label.set_text("")
         for name, message in errors.items():
@@ -158,12 +159,6 @@ class Form:
         if rebuild:
             self.refresh()
         self._changed()
-
-    @ui.refreshable_method
-    def _tree(self) -> None:
-        with ui.column().classes("w-full gap-1"):
-            self._error_label("")
-            self._table(schema(), (), self._draft.given)
 
     def _error_label(self, name: str) -> None:
         self._labels[name] = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
@@ -233,7 +228,7 @@ class Form:
                 change = ui.select(list(kinds), value=kind if kind in kinds else None, label="kind").classes("grow")
                 change.props("dense options-dense")
                 change.on_value_change(lambda event: self._set_kind(path, item, kinds[event.value], event.value))
-                self._inputs[dotted((*path, "kind"))] = change
+                self._inputs[dotted((*path, "kind"))] = change.without_auto_validation()
             if len(path) > 1 or path[0] != "structure":
                 remove = ui.button(icon="delete", on_click=lambda: self._set(path, None, rebuild=True))
                 remove.props('flat dense size=sm aria-label="remove"')
@@ -263,7 +258,7 @@ class Form:
         elif choices and len(choices) >= len(allowed) and (value is None or value in choices):
             element = ui.select(choices, value=value, label=label, clearable=True).props("dense options-dense")
             element.on_value_change(lambda event: self._set(path, event.value))
-            self._inputs[dotted(path)] = element
+            self._inputs[dotted(path)] = element.without_auto_validation()
         else:
             about = next((each["description"] for each in (node, *allowed) if "description" in each), "")
             about = "" if about.startswith(tuple("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) else about
@@ -277,7 +272,7 @@ class Form:
             )
             element.props("dense debounce=150 stack-label hide-bottom-space")
             element.on_value_change(lambda event: self._set(path, parse(event.value or "")))
-            self._inputs[dotted(path)] = element
+            self._inputs[dotted(path)] = element.without_auto_validation()
             text = text or about
         element.classes("w-full")
         if text:

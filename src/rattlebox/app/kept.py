@@ -34,16 +34,18 @@ class KeptTab:
             ui.button("Refresh", icon="refresh", on_click=self.refresh).props("flat dense")
             ui.button("Compare the chosen runs", icon="stacked_line_chart", on_click=self._compare).props("dense")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
-        self._list()
+        self._box = ui.column().classes("w-full gap-0")
+        self.refresh()
         self._charts = Charts().classes("w-full")
         self._charts._props["columns"] = 1
         self._table = ui.label("").classes("font-mono text-xs whitespace-pre")
 
     def refresh(self) -> None:
         """Read the folder again."""
-        self._list.refresh()
+        self._box.clear()
+        with self._box:
+            self._list()
 
-    @ui.refreshable_method
     def _list(self) -> None:
         try:
             names = runs(self._page.folder)

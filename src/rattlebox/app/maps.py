@@ -39,7 +39,8 @@ class MapTab:
         self._name = ""
         self._task: tuple[str, dict[str, Any], str] = ("", {}, "")
         self._grid: tuple[list[str], list[np.ndarray[Any, Any]], list[str]] | None = None
-        self._parameters()
+        self._box = ui.column().classes("w-full gap-1")
+        self.case_changed()
         with ui.row().classes("w-full items-center gap-2"):
             measures = {name: measure.long_name for name, measure in rb.MEASURES.items()}
             self._measure = ui.select(measures, value="rms", label="measure", with_input=True).props(
@@ -61,8 +62,13 @@ class MapTab:
                 button = ui.button(title, icon="download", on_click=lambda suffix=suffix: self._download(suffix))
                 button.props("flat dense")
 
-    @ui.refreshable_method
-    def _parameters(self) -> None:
+    def case_changed(self) -> None:
+        """Offer the numbers of the case."""
+        self._box.clear()
+        with self._box:
+            self._show_parameters()
+
+    def _show_parameters(self) -> None:
         names = [dotted(path) for path in numeric_paths(self._page.draft.given)]
         self._rows = []
         for number, usual in enumerate(("damper.gap", NONE)):
@@ -91,10 +97,6 @@ class MapTab:
         if name.endswith("start"):
             start, stop = -1.0, 1.0
         low.set_value(f"{start:.3g} {unit}".strip()), high.set_value(f"{stop:.3g} {unit}".strip())
-
-    def case_changed(self) -> None:
-        """Offer the numbers of another case."""
-        self._parameters.refresh()
 
     # ---- computing
 

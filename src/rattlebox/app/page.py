@@ -137,7 +137,8 @@ class Page:
             self._status = ui.label("").classes("text-sm text-gray-700")
             self._about = ui.label("").classes("text-sm text-gray-700")
         self._show_running(False)
-        self._sliders()
+        self._slider_row = ui.row().classes("w-full items-center gap-4")
+        self._show_sliders()
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._warnings = ui.label("").classes("text-amber-800 text-sm whitespace-pre-wrap")
         self._balls = Balls().classes("w-full")
@@ -160,10 +161,10 @@ class Page:
 
     # ---- sliders
 
-    @ui.refreshable_method
-    def _sliders(self) -> None:
+    def _show_sliders(self) -> None:
         numbers = {dotted(path): path for path in numeric_paths(self.draft.given)}
-        with ui.row().classes("w-full items-center gap-4"):
+        self._slider_row.clear()
+        with self._slider_row:
             for name in [name for name in self._pinned if name in numbers]:
                 self._slider(name, numbers[name])
             pinned = [name for name in self._pinned if name in numbers]
@@ -173,7 +174,7 @@ class Page:
 
     def _pin(self, names: list[str]) -> None:
         self._pinned = names[:MOST_SLIDERS]
-        self._sliders.refresh()
+        self._show_sliders()
 
     def _slider(self, name: str, path: Any) -> None:
         """Show a slider over a factor of four each way; over -1 to 1, or 0 to 1, for numbers that are shares."""
@@ -220,7 +221,7 @@ class Page:
             return
         self.draft.set_text(event.value or "")
         self.form.refresh()
-        self._sliders.refresh()
+        self._show_sliders()
         self._changed()
 
     def use_text(self, text: str, pinned: tuple[str, ...] = ()) -> None:
@@ -230,7 +231,7 @@ class Page:
         self.draft.set_text(text)
         self._text_is_stale()
         self.form.refresh()
-        self._sliders.refresh()
+        self._show_sliders()
         self.map_tab.case_changed()
         self._changed()
 
