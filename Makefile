@@ -8,7 +8,7 @@ CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*
 
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: setup demo reproduction test verify sanitize sanitize-memory sanitize-threads coverage mutate lint stub docs bench bench-guard \
+.PHONY: setup demo reproduction test app-test verify sanitize sanitize-memory sanitize-threads coverage mutate lint stub docs bench bench-guard \
     format clean
 
 setup: $(VENV)/.installed
@@ -38,7 +38,11 @@ reproduction: $(PACKAGE)
 
 # A worker takes tests that follow each other, so that most module fixtures are built once.
 test: setup
-	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m 'not slow'
+	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m 'not slow and not browser'
+
+# The application in a browser, if there is one; its simulated page is among the other tests.
+app-test: setup
+	$(BIN)/python -m pytest -q -rs -m browser tests/browser
 
 verify: setup sanitize coverage mutate
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m slow

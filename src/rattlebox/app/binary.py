@@ -15,20 +15,7 @@ from numpy.typing import ArrayLike
 
 
 def encode(arrays: Mapping[str, ArrayLike], **about: Any) -> bytes:
-    """Return arrays and a description as one binary body.
-
-    Parameters
-    ----------
-    arrays
-        Arrays of numbers by name; values beyond float32 become NaN.
-    **about
-        Further entries of the header, in JSON types.
-
-    Returns
-    -------
-    bytes
-        The body.
-    """
+    """Return arrays and further entries of the header as one body; values beyond float32 become NaN."""
     listed, parts, offset = {}, [], 0
     for name, values in arrays.items():
         with np.errstate(over="ignore"):
@@ -43,20 +30,7 @@ def encode(arrays: Mapping[str, ArrayLike], **about: Any) -> bytes:
 
 
 def decode(body: bytes) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-    """Return the arrays and the rest of the header of a body that `encode` made.
-
-    Parameters
-    ----------
-    body
-        The body.
-
-    Returns
-    -------
-    arrays : dict
-        Arrays by name.
-    about : dict
-        The other entries of the header.
-    """
+    """Return the arrays by name and the rest of the header of a body that `encode` made."""
     size = int.from_bytes(body[:4], "little")
     about = json.loads(body[4 : 4 + size])
     data = np.frombuffer(body, "<f4", offset=4 + size)

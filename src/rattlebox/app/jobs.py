@@ -82,7 +82,8 @@ class Worker:
                 else:
                     return content[0]
         except (EOFError, OSError):
-            raise TaskFailed("stopped") from None
+            ended = "the process that computed ended; it may have needed more memory than this machine has"
+            raise TaskFailed(f"{ended}\n  try: a shorter or smaller case") from None
 
     def stop(self) -> None:
         """End the process, whatever it computes."""

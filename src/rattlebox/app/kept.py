@@ -19,13 +19,7 @@ from .elements import Charts
 
 
 class KeptTab:
-    """List of the runs in the folder.
-
-    Parameters
-    ----------
-    page
-        The page.
-    """
+    """List of the runs in the folder."""
 
     def __init__(self, page: Page) -> None:
         self._page = page
@@ -70,7 +64,7 @@ class KeptTab:
 
     async def _download(self, name: str, suffix: str) -> None:
         try:
-            content = await threads.io_bound(download, self._page.folder, name, suffix)
+            content = await threads.io_bound(download, self._page.folder, name, suffix) or b""
         except (rb.RattleboxError, OSError) as error:
             self._failure.set_text(str(error))
             return
@@ -98,7 +92,7 @@ class KeptTab:
             return
         self._failure.set_text("")
         body = comparison(moving)
-        self._charts.show(self._page.publish("comparison", lambda: body))
+        self._charts.show(self._page.publish("comparison", lambda _: body))
         self._table.set_text("\n\n".join(f"{name}\n{run.summary()}" for name, run in moving.items()))
 
 

@@ -25,13 +25,7 @@ MOST_VALUES = 400
 
 
 class MapTab:
-    """Choice of parameters and measure, and the map, which fills while it is computed.
-
-    Parameters
-    ----------
-    page
-        The page.
-    """
+    """Choice of parameters and measure, and the map, which fills while it is computed."""
 
     def __init__(self, page: Page) -> None:
         self._page = page

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import io
 import secrets
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ from nicegui import ui
 
 import rattlebox as rb
 
+from .binary import decode
 from .draft import TEMPLATES, Draft, dotted, numeric_paths, python_script, quantity, template
 from .elements import Balls, Charts, Particles
 from .form import Form, written
@@ -19,9 +22,17 @@ from .jobs import Live, TaskFailed, Worker
 from .kept import KeptTab
 from .maps import MapTab
 from .results import new_name
+from .views import view_of_snapshots
 
 Bodies = dict[str, Callable[..., bytes]]
 
+IMPACT_COLUMNS = {
+    "number": "number",
+    "time": "time (s)",
+    "speed": "approach speed (m/s)",
+    "force": "peak force (N)",
+    "loss": "energy lost (mJ)",
+}
 MOST_SLIDERS = 4
 PINNED = {
     "steel_ball": ("damper.gap", "load.amplitude", "damper.start", "damper.ball.radius"),
@@ -47,7 +58,7 @@ class Page:
         self.draft = Draft(folder)
         self._keys: dict[str, str] = {}
         self._pinned = list(PINNED["steel_ball"])
-        self._live = Live(self._show_view, self._show_failure)
+        self._live = Live(self._show_view, lambda text: self._failure.set_text(text))
         self._worker: Worker | None = None
         self._build()
 
@@ -78,13 +89,14 @@ class Page:
         ui.add_head_html("<style>.nicegui-content{padding:0} .rb-left .q-field__label{text-transform:none}</style>")
         with ui.header().classes("items-center bg-slate-800 text-white py-1 gap-3"):
             ui.label("Rattlebox").classes("text-lg font-bold")
-            self._templates = ui.select(TEMPLATES, value="steel_ball", label="template").props(
-                "dark dense options-dense"
+            self._templates = ui.select(TEMPLATES, value="steel_ball", label="template").classes("w-64")
+            self._templates.props("dark dense options-dense").on_value_change(self._use_template)
+            downloads = (
+                ("Download case", "download", self._download_case),
+                ("Python script", "code", self._download_script),
             )
-            self._templates.classes("w-64").on_value_change(self._use_template)
-            ui.button("Open", icon="upload", on_click=self._open_dialog).props("flat dense color=white")
-            ui.button("Download case", icon="download", on_click=self._download_case).props("flat dense color=white")
-            ui.button("Python script", icon="code", on_click=self._download_script).props("flat dense color=white")
+            for title, icon, action in (("Open", "upload", self._open_dialog), *downloads):
+                ui.button(title, icon=icon, on_click=action).props("flat dense color=white")
             ui.space()
             ui.label(f"files in {self.folder}").classes("text-xs opacity-80 truncate max-w-xs")
         with ui.row().classes("w-full no-wrap items-start gap-0"):
@@ -103,10 +115,9 @@ class Page:
                 with ui.row().classes("w-full items-center"):
                     ui.button("Copy", icon="content_copy", on_click=self._copy).props("dense flat")
                     ui.label("edits apply as you type").classes("text-xs text-gray-600")
-                self._text = ui.textarea(value=self.draft.text).props(
-                    "outlined debounce=300 input-class=font-mono autogrow"
-                )
-                self._text.classes("w-full text-xs").on_value_change(self._text_edited)
+                self._text = ui.textarea(value=self.draft.text).classes("w-full text-xs")
+                self._text.props("outlined debounce=300 input-class=font-mono autogrow")
+                self._text.on_value_change(self._text_edited)
                 self._text_error = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
             with ui.tab_panel(drawing).classes("p-0"):
                 self._drawing = ui.html("", sanitize=False).classes("w-full")
@@ -146,14 +157,7 @@ class Page:
         self._particles.set_visibility(False)
         self._charts = Charts().classes("w-full")
         with ui.expansion("Impacts", value=False).classes("w-full") as self._impacts:
-            columns = {
-                "number": "number",
-                "time": "time (s)",
-                "speed": "approach speed (m/s)",
-                "force": "peak force (N)",
-            }
-            columns["loss"] = "energy lost (mJ)"
-            listed = [{"name": name, "field": name, "label": label} for name, label in columns.items()]
+            listed = [{"name": name, "field": name, "label": label} for name, label in IMPACT_COLUMNS.items()]
             self._impact_list = ui.table(columns=listed, rows=[], row_key="number", pagination=10).props("dense")
         with ui.expansion("Summary", value=False).classes("w-full"):
             self._summary = ui.label("").classes("font-mono text-xs whitespace-pre")
@@ -194,46 +198,35 @@ class Page:
                 label.set_text(f"{name.removeprefix('damper.')}: {written(text(place))}")
                 self.draft.set_value(path, text(place))
                 self.form.show_value(path)
-                self._text_is_stale()
-                self._changed()
+                self._edited()
 
             slider = ui.slider(min=low, max=1.0, step=0.01, value=number if share else 0.0)
-            slider.props(f'dense aria-label="{name}"').on(
-                "update:model-value", move, throttle=0.03, leading_events=True
-            )
+            slider.props(f'dense aria-label="{name}"')
+            slider.on("update:model-value", move, throttle=0.03, leading_events=True)
 
     # ---- changes of the case
 
     def _edited(self) -> None:
-        """React to an edit in the form."""
-        self._text_is_stale()
-        self._changed()
-
-    def _text_is_stale(self) -> None:
-        self._silent = True
+        """React to an edit in the form or by a slider."""
         self._text.set_value(self.draft.text)
-        self._silent = False
-
-    _silent = False
+        self._changed()
 
     def _text_edited(self, event: Any) -> None:
-        if self._silent or event.value == self.draft.text:
-            return
-        self.draft.set_text(event.value or "")
-        self.form.refresh()
-        self._show_sliders()
-        self._changed()
+        if event.value != self.draft.text:
+            self.draft.set_text(event.value or "")
+            self.form.refresh()
+            self._show_sliders()
+            self._changed()
 
     def use_text(self, text: str, pinned: tuple[str, ...] = ()) -> None:
         """Replace the case by the text of a case file."""
         self.stop_run()
         self._pinned = list(pinned) or self._pinned
         self.draft.set_text(text)
-        self._text_is_stale()
         self.form.refresh()
         self._show_sliders()
         self.map_tab.case_changed()
-        self._changed()
+        self._edited()
 
     def _use_template(self, event: Any) -> None:
         self.use_text(template(event.value), PINNED.get(event.value, ("damper.friction",)))
@@ -261,22 +254,17 @@ class Page:
         asyncio.get_running_loop().create_task(self._live.request(*request))
 
     def _draw_case(self) -> None:
-        if self.draft.case is None:
-            return
-        import io
-
-        picture = io.StringIO()
-        rb.plot_case(self.draft.case).savefig(picture, format="svg")
-        self._drawing.set_content(picture.getvalue().partition("<svg")[1] + picture.getvalue().partition("<svg")[2])
+        if self.draft.case is not None:
+            picture = io.StringIO()
+            rb.plot_case(self.draft.case).savefig(picture, format="svg")
+            self._drawing.set_content("<svg" + picture.getvalue().partition("<svg")[2])
 
     # ---- runs
 
     def _show_view(self, body: bytes) -> None:
         """Draw a run."""
-        from .binary import decode
-
         _, about = decode(body)
-        url = self.publish("view", lambda: body)
+        url = self.publish("view", lambda _: body)
         self._charts.show(url)
         self._impacts.set_visibility("impacts" in about)
         if "impacts" in about:
@@ -293,9 +281,6 @@ class Page:
         """Show the tab with the run."""
         self._right.set_value("watch")
 
-    def _show_failure(self, text: str) -> None:
-        self._failure.set_text(text)
-
     def _show_running(self, running: bool) -> None:
         self._run_button.set_visibility(not running)
         self._cancel_button.set_visibility(running)
@@ -303,7 +288,7 @@ class Page:
         case = self.draft.case
         self._pause_button.set_visibility(running and case is not None and bool(case.particle_dampers))
 
-    async def run(self, resume: str = "") -> None:
+    async def run(self) -> None:
         """Run the case in the background and keep the result in the folder."""
         draft = self.draft
         if draft.case is None or self._worker is not None:
@@ -311,7 +296,7 @@ class Page:
         try:
             name = self._paused if self._paused and self._paused_text == draft.text else new_name(self.folder, "run")
         except OSError as error:
-            self._show_failure(f"the folder {self.folder} cannot be used: {error.strerror}")
+            self._failure.set_text(f"the folder {self.folder} cannot be used: {error.strerror}")
             return
         self._paused = ""
         self._running, self._running_text = name, draft.text
@@ -320,22 +305,15 @@ class Page:
         self._failure.set_text("")
         particles = bool(draft.case.particle_dampers)
         if particles:
-            from .views import view_of_snapshots
-
-            file = self.folder / f"{name}.vtkhdf"
-            self._particles.show(
-                self.publish("particles", lambda first=0: view_of_snapshots(file, first)), growing=True
-            )
+            snapshots = partial(view_of_snapshots, self.folder / f"{name}.vtkhdf")
+            self._particles.show(self.publish("particles", snapshots), growing=True)
+        task = "run", draft.text, str(self.folder), name, bool(self._compare.value)
         try:
-            self._show_view(
-                await worker.do(
-                    "run", draft.text, str(self.folder), name, bool(self._compare.value), progress=self._report
-                )
-            )
+            self._show_view(await worker.do(*task, progress=self._report))
             self._status.set_text(f"kept as {name} in {self.folder}")
         except TaskFailed as error:
             if self._worker is worker:
-                self._show_failure(str(error))
+                self._failure.set_text(str(error))
         finally:
             worker.stop()
             if self._worker is worker:
@@ -394,9 +372,8 @@ class Page:
         with ui.dialog() as dialog, ui.card():
             ui.label("Open a case file").classes("font-semibold")
             for name in names[:30]:
-                ui.button(name, on_click=lambda name=name: (dialog.close(), self._open(name))).props(
-                    "flat dense no-caps"
-                )
+                button = ui.button(name, on_click=lambda name=name: self._open(name)).on_click(dialog.close)
+                button.props("flat dense no-caps")
 
             async def read(event: Any) -> None:
                 dialog.close()
@@ -410,4 +387,4 @@ class Page:
         try:
             self.use_text((self.folder / name).read_text(encoding="utf-8-sig"))
         except (OSError, UnicodeDecodeError) as error:
-            self._show_failure(f"{name} cannot be read: {error}")
+            self._failure.set_text(f"{name} cannot be read: {error}")

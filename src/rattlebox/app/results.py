@@ -66,22 +66,7 @@ def inside(folder: Path, name: str, suffix: str) -> Path:
 
 
 def download(folder: Path, name: str, suffix: str) -> bytes:
-    """Return the content of a file for a run.
-
-    Parameters
-    ----------
-    folder
-        Folder of the page.
-    name
-        Name of the run.
-    suffix
-        One of `FORMATS`.
-
-    Raises
-    ------
-    RattleboxError
-        If the run cannot be read.
-    """
+    """Return the content of a file for a run; `suffix` is one of `FORMATS`."""
     stored = inside(folder, name, ".nc")
     if suffix in ("nc", "vtkhdf"):
         return inside(folder, name, f".{suffix}").read_bytes()
@@ -111,22 +96,7 @@ def download(folder: Path, name: str, suffix: str) -> bytes:
 
 
 def download_map(folder: Path, name: str, suffix: str, script: str) -> bytes:
-    """Return the content of a file for a map.
-
-    Parameters
-    ----------
-    folder, name
-        Folder of the page and name of the map.
-    suffix
-        One of `MAP_FORMATS`.
-    script
-        Python script that computes the map.
-
-    Raises
-    ------
-    RattleboxError
-        If the map cannot be read.
-    """
+    """Return the content of a file for a map; `suffix` is one of `MAP_FORMATS`, `script` computes the map."""
     if suffix == "py":
         return script.encode()
     study = rb.open_study(inside(folder, name, ".zarr")).load()

@@ -44,7 +44,7 @@ def build(folder: Path, port: int, token: str) -> None:
         if body is None or not 0 <= first < 10**9:
             raise HTTPException(404)
         try:
-            content = body(first) if first or body.__defaults__ else body()
+            content = body(first)
         except rb.RattleboxError as error:
             raise HTTPException(409, str(error)) from None
         return Response(content, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})

@@ -25,19 +25,9 @@ MOST_BYTES = 200_000_000
 
 
 def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
-    """Return the curves, the animation and the summary of a run.
+    """Return the curves, the animation and the summary of a run, and the motion of a bare one beside it.
 
-    Parameters
-    ----------
-    run
-        The run.
-    bare
-        Run of the same case without dampers, drawn beside it.
-
-    Returns
-    -------
-    bytes
-        Body in the format of `rattlebox.app.binary`. Lengths are in mm, energies in mJ.
+    The body has the format of `rattlebox.app.binary`; lengths are in mm, energies in mJ.
     """
     motion, energy = run.motion, run.energy
     time = motion.time.values
@@ -143,8 +133,8 @@ def _along(run: rb.Run) -> np.ndarray[Any, Any] | None:
         return None
     directions = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
     given = run.case.particle_dampers[0].direction
-    vector: np.ndarray[Any, Any] = np.asarray(directions[given] if isinstance(given, str) else given, float)
-    return vector / np.linalg.norm(vector)
+    vector = np.asarray(directions[given] if isinstance(given, str) else given, float)
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def _component(values: Any, along: Any) -> Any:
@@ -185,14 +175,7 @@ def _balls(run: rb.Run, rows: slice) -> dict[str, Any]:
 
 
 def view_of_snapshots(path: Path, first: int = 0) -> bytes:
-    """Return the particles of the snapshots of a run, also while it runs.
-
-    Parameters
-    ----------
-    path
-        Snapshot file.
-    first
-        Number of the first snapshot.
+    """Return the particles of the snapshots of a run from a number on, also while it runs.
 
     Returns
     -------
@@ -201,9 +184,10 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
         `spin` [rad/s] (frames, particles), `radius` [m], `species` and `cavity`, and `time` [s]. Long runs have every n-th
         snapshot from 0 on.
     """
-    if not path.exists():  # the bed settles before the first snapshot
+    try:
+        snapshots = rb.Snapshots(path)
+    except rb.DataError:  # the bed still settles, or the file is being created
         return encode({}, next=0, planned=0)
-    snapshots = rb.Snapshots(path)
     frames = range(len(snapshots))
     if len(snapshots):
         size = 20 * snapshots[0].radius.size

@@ -39,7 +39,7 @@ def main(connection: Connection) -> None:
         try:
             result = TASKS[name](lambda *what: connection.send(("progress", *what)), *arguments)
             answer: tuple[Any, ...] = ("done", result)
-        except (rb.RattleboxError, ValueError, MemoryError, RecursionError) as error:
+        except (rb.RattleboxError, OSError, ValueError, MemoryError, RecursionError) as error:
             answer = ("failed", str(error) or "the memory is exhausted\n  try: a shorter or smaller case")
         try:
             connection.send(answer)
