@@ -184,7 +184,7 @@ class Form:
             with ui.row().classes("w-full items-center no-wrap"):
                 ui.label(name.replace("_", " ")).classes("font-semibold")
                 if text:
-                    ui.icon("help_outline").classes("text-gray-500").tooltip(text)
+                    ui.icon("help_outline").classes("text-gray-500").props["title"] = text
                 ui.space()
                 if several or value is None:
                     self._add_button(choices, path, value, several)
@@ -268,4 +268,4 @@ class Form:
             text = text or about
         element.classes("w-full")
         if text:
-            element.tooltip(text)
+            element.props["title"] = text
