@@ -24,7 +24,7 @@ FORMATS = {
 }
 """Titles of the downloads of a run by suffix."""
 
-MAP_FORMATS = {"csv": "CSV table", "nc": "netCDF", "png": "figure", "py": "Python script"}
+MAP_FORMATS = {"csv": "CSV table", "nc": "netCDF", "png": "figure", "html": "report", "py": "Python script"}
 """Titles of the downloads of a map by suffix."""
 
 
@@ -109,6 +109,8 @@ def download_map(folder: Path, name: str, suffix: str, script: str) -> bytes:
         elif suffix == "png":
             measure = next(str(each) for each in study.data_vars if each not in ("status", "warnings"))
             rb.plot_map(study, measure).savefig(target, dpi=200)
+        elif suffix == "html":
+            rb.write_report(study, target)
         else:
             raise rb.DataError(f"{suffix!r} is not a kind of file", ", ".join(MAP_FORMATS))
         return target.read_bytes()

@@ -92,7 +92,7 @@ def test_results_are_listed(folder):
     assert new_name(folder, "run") == "run-003"
 
 
-@pytest.mark.parametrize("suffix", ["nc", "csv", "mat", "toml", "py", "png"])
+@pytest.mark.parametrize("suffix", ["nc", "csv", "mat", "toml", "py", "png", "html"])
 def test_downloads_of_a_run(folder, suffix):
     """Each format has the expected content."""
     content = download(folder, "run-001", suffix)
@@ -105,14 +105,15 @@ def test_downloads_of_a_run(folder, suffix):
         exec(content.decode().partition("run = ")[0], names)
         assert names["case"] == rb.load(folder / "run-001.nc").case
     else:
-        assert content[:4] in (b"\x89HDF", b"MATL", b"\x89PNG")
+        assert content[:4] in (b"\x89HDF", b"MATL", b"\x89PNG") or content.startswith(b"<!DOCTYPE html>")
 
 
-@pytest.mark.parametrize("suffix", ["nc", "csv", "png"])
+@pytest.mark.parametrize("suffix", ["nc", "csv", "png", "html"])
 def test_downloads_of_a_map(folder, suffix):
     """Tables and figures of a map have its values."""
     content = download_map(folder, "map-001", suffix, "")
-    assert content[:4] in (b"\x89HDF", b"\x89PNG") or b"damper.gap" in content.splitlines()[0]
+    known = (b"\x89HDF", b"\x89PNG", b"damper.gap", b"<!DOCTYPE html>")
+    assert content.startswith(known)
 
 
 @pytest.mark.parametrize("name", ["../x", "", "a/b", "x" * 100, "run-001.nc/..", "run-999", "\x00"])
