@@ -12,8 +12,8 @@ def test_best_gap_of_a_row():
     case = rb.Case.from_toml(template("row"))
     rms = 1e3 * rb.sweep(case, {"damper.gap": rb.geomspace("0.3 mm", "100 mm", 40)}, "rms", progress=False).rms
     gap = 1e3 * rms["damper.gap"].values
-    assert rms.min() == pytest.approx(1.3, abs=0.05)
-    assert 4 < gap[int(rms.argmin())] < 8
+    assert rms.values.min() == pytest.approx(1.3, abs=0.05)
+    assert 4 < gap[int(rms.values.argmin())] < 8
     assert np.allclose(rms.values[gap > 14], 3.0, atol=0.01)
 
 
