@@ -8,6 +8,8 @@ import subprocess
 import sys
 import time
 from http.client import HTTPConnection
+from io import BytesIO
+from pathlib import Path
 
 import pytest
 
@@ -159,6 +161,28 @@ def test_narrow_window_and_wrong_input(page):
     text = toml(page).replace("gap =", "gapp =")
     page.locator("textarea").first.fill(text)
     page.get_by_text("there is no such field here").first.wait_for()
+
+
+def test_pictures_for_the_documentation(page, tmp_path):
+    """The pictures and the film of the documentation can be taken; with PICTURES=FOLDER they are written there."""
+    from PIL import Image
+
+    folder = Path(os.environ.get("PICTURES") or tmp_path)
+    page.set_viewport_size({"width": 1440, "height": 820})
+    page.get_by_text("finished at t = 5 s").wait_for()
+    page.wait_for_timeout(700)
+    page.screenshot(path=folder / "app_watch.png")
+    choose(page, "Shaken box of balls")
+    page.get_by_role("button", name="Run and keep").click()
+    page.wait_for_function("window.rbParticles && window.rbParticles.frames > 40")
+    frames = []
+    for _ in range(24 if os.environ.get("PICTURES") else 2):
+        shot = Image.open(BytesIO(page.screenshot(clip={"x": 460, "y": 50, "width": 980, "height": 620})))
+        frames.append(shot.resize((588, 372)).convert("P", palette=Image.Palette.ADAPTIVE, colors=64))
+        page.wait_for_timeout(60)
+    page.screenshot(path=folder / "app_particles.png")
+    frames[0].save(folder / "app_film.gif", save_all=True, append_images=frames[1:], duration=120, loop=0)
+    assert (folder / "app_film.gif").stat().st_size < 1_500_000
 
 
 def test_server_refuses_others(server):

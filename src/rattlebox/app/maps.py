@@ -125,7 +125,7 @@ class MapTab:
                 bool(self._compare.value),
             )
             await worker.do("sweep", *arguments, progress=self._report)
-            self._status.set_text(f"kept as {self._name} in {page.folder}; click a point to watch it")
+            self._status.set_text(f"kept as {self._name} in {page.folder.name}; click a point to watch it")
         except TaskFailed as error:
             if self._worker is worker:
                 self._failure.set_text(str(error))
@@ -149,7 +149,7 @@ class MapTab:
         """Stop the computation; finished blocks remain."""
         self.close()
         self._start.set_visibility(True), self._stop.set_visibility(False)
-        self._status.set_text(f"stopped; the finished part is {self._name} in {self._page.folder}")
+        self._status.set_text(f"stopped; the finished part is {self._name} in {self._page.folder.name}")
 
     def close(self) -> None:
         """End the process of the map."""

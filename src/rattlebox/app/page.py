@@ -98,7 +98,7 @@ class Page:
             for title, icon, action in (("Open", "upload", self._open_dialog), *downloads):
                 ui.button(title, icon=icon, on_click=action).props("flat dense color=white")
             ui.space()
-            ui.label(f"files in {self.folder}").classes("text-xs opacity-80 truncate max-w-xs")
+            ui.label(f"files in {self.folder.name}").classes("text-xs opacity-80").props["title"] = str(self.folder)
         with ui.row().classes("w-full no-wrap items-start gap-0"):
             with ui.column().classes("rb-left gap-1 p-2 border-r").style("width:33%;min-width:320px;max-width:460px"):
                 self._build_case()
@@ -310,7 +310,7 @@ class Page:
         task = "run", draft.text, str(self.folder), name, bool(self._compare.value)
         try:
             self._show_view(await worker.do(*task, progress=self._report))
-            self._status.set_text(f"kept as {name} in {self.folder}")
+            self._status.set_text(f"kept as {name} in {self.folder.name}")
         except TaskFailed as error:
             if self._worker is worker:
                 self._failure.set_text(str(error))
