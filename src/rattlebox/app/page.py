@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from nicegui import run as threads
 from nicegui import ui
 
 import rattlebox as rb
@@ -237,7 +238,7 @@ class Page:
         draft = self.draft
         self._text_error.set_text("\n".join(f"{name}: {text}" if name else text for name, text in draft.errors.items()))
         if self._tabs.value == "drawing":
-            self._draw_case()
+            asyncio.get_running_loop().create_task(self._draw_case())
         if draft.case is None:
             self._failure.set_text("The case is not valid; see the red lines in the form.")
             return
@@ -253,11 +254,10 @@ class Page:
         request = ("live", draft.text, str(self.folder), bool(self._compare.value))
         asyncio.get_running_loop().create_task(self._live.request(*request))
 
-    def _draw_case(self) -> None:
+    async def _draw_case(self) -> None:
+        """Draw structure and cavities to scale, in a thread."""
         if self.draft.case is not None:
-            picture = io.StringIO()
-            rb.plot_case(self.draft.case).savefig(picture, format="svg")
-            self._drawing.set_content("<svg" + picture.getvalue().partition("<svg")[2])
+            self._drawing.set_content(await threads.io_bound(_svg, self.draft.case) or "")
 
     # ---- runs
 
@@ -388,3 +388,9 @@ class Page:
             self.use_text((self.folder / name).read_text(encoding="utf-8-sig"))
         except (OSError, UnicodeDecodeError) as error:
             self._failure.set_text(f"{name} cannot be read: {error}")
+
+
+def _svg(case: rb.Case) -> str:
+    picture = io.StringIO()
+    rb.plot_case(case).savefig(picture, format="svg")
+    return "<svg" + picture.getvalue().partition("<svg")[2]

@@ -46,6 +46,8 @@ def test_case_is_computed_run_and_mapped(tmp_path):
         async with opened(tmp_path) as (page, user, bodies):
             await until(lambda: "view" in page._keys)
             first = page._keys["view"]
+            await page._draw_case()
+            assert "<svg" in page._drawing.content
             page.draft.set_value(("damper", "gap"), "0.7 mm")
             page.use_text(page.draft.text.replace('"5 s"', '"0.3 s"'))
             await until(lambda: page._keys["view"] != first)
