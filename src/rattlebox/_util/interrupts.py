@@ -1,14 +1,40 @@
-"""Ctrl-C that is not lost."""
+"""Ctrl-C that is not lost, and deadlines."""
 
 from __future__ import annotations
 
+import math
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
 _pressed = threading.Event()
+
+
+class _Deadline(threading.local):
+    time = math.inf
+
+
+_deadline = _Deadline()
+
+
+@contextmanager
+def deadline(end: float) -> Iterator[None]:
+    """Let `raise_if_pressed` raise in this block and this thread from a time on.
+
+    Parameters
+    ----------
+    end
+        Time by `time.monotonic` [s].
+    """
+    before = _deadline.time
+    _deadline.time = min(before, end)
+    try:
+        yield
+    finally:
+        _deadline.time = before
 
 
 @contextmanager
@@ -37,6 +63,8 @@ def remember_ctrl_c() -> Iterator[None]:
 
 
 def raise_if_pressed() -> None:
-    """Raise KeyboardInterrupt if Ctrl-C was pressed in a block of `remember_ctrl_c`."""
+    """Raise KeyboardInterrupt if Ctrl-C was pressed in a block of `remember_ctrl_c`, or at a deadline."""
+    if time.monotonic() >= _deadline.time:
+        raise KeyboardInterrupt
     if _pressed.is_set() and threading.current_thread() is threading.main_thread():
         raise KeyboardInterrupt

@@ -97,6 +97,20 @@ def progress_bar(progress: Progress, what: str, *, delay: float = _DELAY) -> Ite
         report.close()
 
 
+def announce(progress: Progress, line: str) -> None:
+    """Print a line on the standard error if progress is shown.
+
+    Parameters
+    ----------
+    progress
+        The argument of the call; nothing is printed for False and for functions.
+    line
+        The line.
+    """
+    if progress is True:
+        print(line, file=sys.stderr, flush=True)
+
+
 def _may_draw() -> bool:
     return threading.current_thread() is threading.main_thread() and (sys.stderr.isatty() or _in_notebook())
 

@@ -14,6 +14,7 @@ from rich.text import Text
 from rattlebox.cli.terminal import terminal
 from rattlebox.results.quantities import MISSING, PREFIXED_UNITS, quantity
 from rattlebox.results.schema import OUTCOMES
+from rattlebox.studies.measures import INTERVAL
 from rattlebox.studies.outcomes import chunks, computed, status_lines
 from rattlebox.studies.stored import Progress, has_map, open_study, progress_of, report_damage
 from rattlebox.studies.trial_store import count_trials
@@ -93,10 +94,17 @@ def _trial_table(study: xr.Dataset) -> Table:
     table = Table(Column("best trial", **right), *(Column(name, **right) for name in names), box=SIMPLE_HEAD)
     for trial in study.front.values[:_MAX_TRIALS]:
         row = study.sel(trial=trial)
-        table.add_row(f"{trial}", *(_format(row[name].values[()], study[name]) for name in names))
+        table.add_row(f"{trial}", *(_with_interval(row, name) for name in names))
     if study.front.size > _MAX_TRIALS:
         table.caption = f"and {study.front.size - _MAX_TRIALS} more"
     return table
+
+
+def _with_interval(row: xr.Dataset, name: str) -> str:
+    """Return a parameter or an objective of a trial as text, with its interval if there is one."""
+    half = row.get(name + INTERVAL)
+    text = _format(row[name].values[()], row[name])
+    return text if half is None or not np.isfinite(half) else f"{text} ± {_format(half.values[()], half)}"
 
 
 def _result_table(study: xr.Dataset) -> Table:

@@ -9,15 +9,28 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from rattlebox.studies.measures import INTERVAL
 
 from .labels import LabelledValues
-from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above
+from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen
 
 if TYPE_CHECKING:
     import xarray as xr
 
+Vector = NDArray[np.float64]
+
 _MAX_PARAMETERS = 3
 _DOTS: dict[str, Any] = {"linestyle": "", "marker": "o", "color": SERIES_COLOURS[0], "alpha": 0.5, "markeredgewidth": 0}
+_RINGS: dict[str, Any] = {
+    "linestyle": "",
+    "marker": "o",
+    "markerfacecolor": "none",
+    "color": INK,
+    "markersize": 5,
+    "markeredgewidth": 0.6,
+}
 _BEST: dict[str, Any] = {"linestyle": "", "marker": "D", "color": SERIES_COLOURS[1]}
 
 
@@ -25,7 +38,8 @@ def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
     """Draw the trials of a design.
 
     For one objective: its value in each trial, the best value so far, and its value over each parameter. For several: the
-    second objective over the first with the Pareto front, and each parameter along the front.
+    second objective over the first with the Pareto front, and each parameter along the front. Bars are 95 % intervals, and
+    rings are trials that exceed validity limits.
 
     Parameters
     ----------
@@ -59,11 +73,29 @@ def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
     return figure
 
 
+def _half_width(study: xr.Dataset, name: str, values: LabelledValues) -> Vector | None:
+    """Return half of the widths of the intervals of an objective in the unit of the figure; None if it has none."""
+    half = study.get(name + INTERVAL)
+    return None if half is None else np.nan_to_num(half.values / values.divisor)
+
+
+def _draw_trials(
+    axes: Axes, study: xr.Dataset, x: Any, y: Any, x_bar: Vector | None = None, y_bar: Vector | None = None
+) -> None:
+    """Draw trials with their intervals, and rings around those that exceed validity limits."""
+    axes.errorbar(x, y, y_bar, x_bar, fmt="none", ecolor=SERIES_COLOURS[0], elinewidth=pen(0.8), alpha=0.7)
+    axes.plot(x, y, label="trial", **_DOTS)
+    flagged = (study.warnings.values != 0) & np.isfinite(y)
+    if flagged.any():
+        label = f"limits exceeded ({np.count_nonzero(flagged)})"
+        axes.plot(x[flagged], y[flagged], label=label, **_RINGS)
+
+
 def _draw_progress(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
     """Draw the objective of each trial, and the best value so far."""
     goal = LabelledValues.of(study[goals[0]])
     best = (np.fmax if study[goals[0]].attrs["goal"] == "max" else np.fmin).accumulate(goal.numbers)
-    axes.plot(study.trial, goal.numbers, label="trial", **_DOTS)
+    _draw_trials(axes, study, study.trial.values, goal.numbers, y_bar=_half_width(study, goals[0], goal))
     axes.step(study.trial, best, where="post", color=SERIES_COLOURS[1], label="best so far")
     limit = json.loads(study.attrs["max_added_mass"])
     heavy = study.added_mass.values > (np.inf if limit is None else limit)
@@ -81,7 +113,8 @@ def _draw_progress(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
 def _draw_front(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
     """Draw the second objective over the first, and the Pareto front."""
     x, y = LabelledValues.of(study[goals[0]]), LabelledValues.of(study[goals[1]])
-    axes.plot(x.numbers, y.numbers, label="trial", **_DOTS)
+    bars = (_half_width(study, name, values) for name, values in zip(goals[:2], (x, y), strict=True))
+    _draw_trials(axes, study, x.numbers, y.numbers, *bars)
     best = study.front.values
     axes.plot(x.numbers[best], y.numbers[best], label="Pareto front", **_BEST)
     axes.margins(0.04)
@@ -91,9 +124,9 @@ def _draw_front(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
 
 def _draw_objective(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None:
     """Draw the objective over a parameter."""
-    x, y = LabelledValues.of(study[path]), LabelledValues.of(study[goal])
+    x, y = _parameter(study, path), LabelledValues.of(study[goal])
     best = study.front.values
-    axes.plot(x.numbers, y.numbers, **_DOTS)
+    _draw_trials(axes, study, x.numbers, y.numbers, y_bar=_half_width(study, goal, y))
     axes.plot(x.numbers[best], y.numbers[best], **_BEST)
     axes.margins(0.04)
     x.label(axes, "x", log=_is_log(study, path))
@@ -102,12 +135,19 @@ def _draw_objective(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None
 
 def _draw_parameter(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None:
     """Draw a parameter along the Pareto front."""
-    x, y = LabelledValues.of(study[goal]), LabelledValues.of(study[path])
+    x, y = LabelledValues.of(study[goal]), _parameter(study, path)
     best = study.front.values
     axes.plot(x.numbers[best], y.numbers[best], **_BEST)
     axes.margins(0.04)
     x.label(axes, "x")
     y.label(axes, "y", log=_is_log(study, path))
+
+
+def _parameter(study: xr.Dataset, path: str) -> LabelledValues:
+    """Return a parameter with a text that is short enough for its axis."""
+    values = LabelledValues.of(study[path])
+    text = values.text.removeprefix("Damper ")
+    return values._replace(text=text[:1].upper() + text[1:])
 
 
 def _is_log(study: xr.Dataset, path: str) -> bool:

@@ -85,14 +85,30 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
         If the time step of the case is too long, or particles do not settle.
     """
     case, notes = resolve_softening(case)
+    tables, step = _step(case)
+    return Prepared(case, notes, step, tables, tuple(_positions(case, _shapes(case), positions)))
+
+
+def count_steps(case: Case) -> int:
+    """Return the number of time steps of a run, without its preparation.
+
+    Raises
+    ------
+    CaseError
+        If the time step of the case is too long.
+    """
+    return _step(resolve_softening(case)[0])[1].count
+
+
+def _step(case: Case) -> tuple[tuple[ContactTable, ...], Step]:
+    """Return the contact laws of the pairs in each damper, and the time step."""
     shapes = _shapes(case)
     tables = tuple(damper.contact_table for damper in case.particle_dampers)
     state = _without_particles(case)
     speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
     with at("method", "dt"):
         step = choose_step(case, list(tables), speeds)
-    step = replace(step, motions=tuple(cavity_motion(case, shape, state) for shape in shapes))
-    return Prepared(case, notes, step, tables, tuple(_positions(case, shapes, positions)))
+    return tables, replace(step, motions=tuple(cavity_motion(case, shape, state) for shape in shapes))
 
 
 def pack_particles(prepared: Prepared) -> _core.DemProblem:

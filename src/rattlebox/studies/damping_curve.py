@@ -20,9 +20,11 @@ from rattlebox.model.methods import Output
 from rattlebox.model.packing import Lattice, Settled
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
+from rattlebox.prepare.time_step import exceeded_limits
 from rattlebox.results.quantities import quantity
 from rattlebox.studies.evaluate_cases import evaluate_cases
 from rattlebox.studies.robust import no_random_packing
+from rattlebox.studies.sampling import Spaced
 
 if TYPE_CHECKING:
     import xarray
@@ -37,7 +39,9 @@ WAYS: tuple[Way, ...] = ("decay", "energy", "shaking")
 
 _SAMPLES = 40
 """Number of samples per cycle."""
-_OTHER_MOTION = 0.1
+OTHER_MOTION = "other_motion"
+"""Name of the limit that a decay exceeds if its frequency is not that of the mode."""
+_OTHER_FREQUENCY = 0.1
 """Relative change of the frequency of a decay above which a warning is issued."""
 _MARGIN = 1.6
 """Initial amplitude of a decay over the highest edge of the bands, at the first trial."""
@@ -81,7 +85,7 @@ class _Mode:
 
 def damping_curve(
     case: Case,
-    amplitudes: Sequence[Any],
+    amplitudes: Sequence[Any] | Spaced,
     *,
     way: Way = "decay",
     mode: int = 1,
@@ -102,7 +106,7 @@ def damping_curve(
     case
         Structure, dampers and tuned masses; `case.duration` is the length of a decay.
     amplitudes
-        Two or more rising displacement amplitudes: numbers [m], or text with a unit.
+        Two or more rising displacement amplitudes: numbers [m], text with a unit, or `rb.geomspace`.
     way
         "decay": decay of the envelope in free vibration, which starts with the velocity of the mode. "energy": energy lost
         in the same decay over the energy of the mode. "shaking": energy lost per cycle in steady motion, where each
@@ -128,8 +132,8 @@ def damping_curve(
         Over `amplitude` [m]: `damping_ratio`, `lower` and `upper` limit of its 95 % interval (NaN with fewer than two
         packings that reach the amplitude), `quasi_steady_error` (see Notes), `bare` (of the structure alone), and over
         `packing`, too, `damping_ratios` of each. NaN where no decay passes the band of amplitudes, halfway to the nearer
-        one, within the duration. Attributes: way, mode, point, frequency [Hz], the text of the case, and `warnings`, such as
-        that softening changes the loss.
+        one, within the duration. Attributes: way, mode, point, frequency [Hz], the text of the case, `warnings`, such as
+        that softening changes the loss, and `exceeded`, the names of the validity limits that runs exceeded.
 
     Raises
     ------
@@ -166,28 +170,93 @@ def damping_curve(
     >>> bool((result.damping_ratio > result.bare).any())
     True
     """
-    if way not in WAYS:
-        raise Hint(f"way = {way!r} is not a method of this function", nearest(str(way), WAYS))
-    levels = _levels(amplitudes)
-    count = whole_number(packings, "packings", 1)
-    about = _mode(case, mode, point)
-    cases = _starts(case, count)
-    warnings: dict[str, None] = {}
+    levels, about, cases = _prepared(case, amplitudes, way, mode, point, packings)
+    remarks = _Remarks()
     run = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
     if way == "shaking":
-        ratios = _from_shaking(cases, about, levels, cycles, run, warnings)
+        ratios = _from_shaking(cases, about, levels, cycles, run, remarks)
     else:
-        ratios = _from_decay(cases, about, levels, way, run, warnings)
+        ratios = _from_decay(cases, about, levels, way, run, remarks)
     result = _dataset(ratios, levels, about, way)
     if way != "shaking":
-        warnings |= dict.fromkeys(_fast_decay(result))
-    found: dict[str, Any] = {"study": "damping_curve", "case": case.to_toml(), "warnings": _merged(warnings)}
+        remarks.warnings += _fast_decay(result)
+    found: dict[str, Any] = {"study": "damping_curve", "case": case.to_toml()}
+    found |= {"warnings": _merged(remarks.warnings), "exceeded": list(dict.fromkeys(remarks.exceeded))}
     if way == "shaking":
         found["cycles"] = list(cycles)
     return result.assign_attrs(found)
 
 
-def _levels(amplitudes: Sequence[Any]) -> FloatArray:
+def damping_curve_cases(
+    case: Case,
+    amplitudes: Sequence[Any] | Spaced,
+    *,
+    way: Way = "decay",
+    mode: int = 1,
+    point: str | None = None,
+    packings: int = 4,
+    cycles: tuple[int, int] = (20, 40),
+) -> list[Case]:
+    """Return the cases that `damping_curve` runs; decays that begin too low are repeated with a larger amplitude.
+
+    Parameters
+    ----------
+    case, amplitudes, way, mode, point, packings, cycles
+        See `damping_curve`.
+
+    Raises
+    ------
+    CaseError
+        If an argument is not valid for the case.
+    """
+    levels, about, cases = _prepared(case, amplitudes, way, mode, point, packings)
+    if way == "shaking":
+        return _shaken_variants(cases, about, levels, cycles)[0]
+    begin = _MARGIN * float(band_edges(levels)[1][-1])
+    return [_initial_velocity(each, about, begin) for each in cases]
+
+
+def _prepared(
+    case: Case, amplitudes: Sequence[Any] | Spaced, way: Way, mode: int, point: str | None, packings: int
+) -> tuple[FloatArray, _Mode, list[Case]]:
+    """Return the amplitudes, the mode and the case with each random start."""
+    if way not in WAYS:
+        raise Hint(f"way = {way!r} is not a method of this function", nearest(str(way), WAYS))
+    count = whole_number(packings, "packings", 1)
+    return read_amplitudes(amplitudes), _mode(case, mode, point), _starts(case, count)
+
+
+@dataclass
+class _Remarks:
+    """Warnings of runs, and names of the validity limits that they exceeded."""
+
+    warnings: tuple[str, ...] = ()
+    exceeded: tuple[str, ...] = ()
+
+    def add(self, row: _Row, number: int) -> None:
+        """Add those of a run; raise if it failed."""
+        self.warnings += row.warnings
+        self.exceeded += row.exceeded
+        if row.failure:
+            raise Hint(f"the run of start {number + 1} failed: {row.failure}", "rb.simulate(case), to see where")
+
+
+def read_amplitudes(amplitudes: Sequence[Any] | Spaced) -> FloatArray:
+    """Return the amplitudes of a damping curve [m].
+
+    Parameters
+    ----------
+    amplitudes
+        See `damping_curve`.
+
+    Raises
+    ------
+    CaseError
+        If there are fewer than two, or they do not rise.
+    """
+    if isinstance(amplitudes, Spaced):
+        first, last = (parse(end, ("m",))[0] for end in (amplitudes.start, amplitudes.stop))
+        return read_amplitudes(amplitudes.values(first, last).tolist())
     if isinstance(amplitudes, str) or not np.ndim(np.asarray(amplitudes, dtype=object)):
         raise Hint("at least two amplitudes are required", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]')
     levels = np.array([parse(amplitude, ("m",))[0] for amplitude in amplitudes])
@@ -256,7 +325,7 @@ def _from_decay(
     levels: FloatArray,
     way: Way,
     evaluate: Evaluate,
-    warnings: dict[str, None],
+    remarks: _Remarks,
 ) -> FloatArray:
     highest = float(band_edges(levels)[1][-1])
     begin = _MARGIN * highest
@@ -268,20 +337,29 @@ def _from_decay(
             break
         begin *= 1.1 * highest / reached
     for number, row in enumerate(rows):
-        _check(row, number, warnings)
+        remarks.add(row, number)
     values = np.array([row.values for row in rows])
     missing = [quantity(level, "m") for level in levels[~np.isfinite(values).any(axis=0)]]
     if missing:
         text = f"warning: no decay of {cases[0].duration:.4g} s passes the whole band about {', '.join(missing)}"
-        warnings[f"{text}; try: a longer duration, or other amplitudes"] = None
+        remarks.warnings += (f"{text}; try: a longer duration, or other amplitudes",)
     return values
 
 
 class _Row(NamedTuple):
-    """Result of a run: why it failed, if it did, its warnings, damping ratios or lost energy, and its largest amplitude."""
+    """Result of a run: why it failed, if it did, its warnings and exceeded limits, and what is needed of it.
+
+    Attributes
+    ----------
+    values
+        Damping ratios, or the energy that was lost [J].
+    largest
+        Largest amplitude of a decay [m].
+    """
 
     failure: str
     warnings: tuple[str, ...]
+    exceeded: tuple[str, ...]
     values: FloatArray
     largest: float = math.inf
 
@@ -292,17 +370,23 @@ def _decay(run: Run, mode: _Mode, levels: FloatArray, way: Way) -> _Row:
     if row.failure:
         return row
     time, motion = run.motion.time.values, _modal_part(run, mode)
-    bands = damping_over_amplitude(time, motion, levels)
+    try:
+        bands = damping_over_amplitude(time, motion, levels)
+    except ValueError as error:  # too few cycles
+        return row._replace(failure=str(error))
+    other = _other_motion(bands.frequency.values, mode)
     return row._replace(
         values=bands.damping_ratio.values if way == "decay" else _energy_ratios(run, time, motion, bands, mode),
-        warnings=row.warnings + _other_motion(bands.frequency.values, mode),
+        warnings=row.warnings + other,
+        exceeded=(*row.exceeded, OTHER_MOTION) if other else row.exceeded,
         largest=float(np.exp(smooth_decay(time, motion).log_amplitude[0])),
     )
 
 
 def _row(run: Run) -> _Row:
     notes = tuple(note for note in run.notes if note.startswith("warning: "))
-    return _Row("" if run.ok else run.message, notes, np.zeros(0))
+    exceeded = exceeded_limits(run.diagnostics) if run.diagnostics else ()
+    return _Row("" if run.ok else run.message, notes, tuple(exceeded), np.zeros(0))
 
 
 def _initial_velocity(case: Case, mode: _Mode, amplitude: float) -> Case:
@@ -330,11 +414,11 @@ def _modal_part(run: Run, mode: _Mode) -> FloatArray:
 def _other_motion(found: FloatArray, mode: _Mode) -> tuple[str, ...]:
     """Return a warning if the frequency of the decay is not that of the mode."""
     change = np.abs(found / mode.frequency - 1)
-    if not np.nanmax(change, initial=0.0) > _OTHER_MOTION:
+    if not np.nanmax(change, initial=0.0) > _OTHER_FREQUENCY:
         return ()
     other = found[np.nanargmax(change)]
     return (
-        f"warning: the decay has {other:.4g} Hz, the mode {mode.frequency:.4g} Hz; within {100 * _OTHER_MOTION:g} % the "
+        f"warning: the decay has {other:.4g} Hz, the mode {mode.frequency:.4g} Hz; within {100 * _OTHER_FREQUENCY:g} % the "
         "damping ratio is that of the mode; try: a lighter damper, or way='shaking'",
     )
 
@@ -368,8 +452,22 @@ def _from_shaking(
     levels: FloatArray,
     cycles: tuple[int, int],
     evaluate: Evaluate,
-    warnings: dict[str, None],
+    remarks: _Remarks,
 ) -> FloatArray:
+    variants, owners = _shaken_variants(cases, mode, levels, cycles)
+    skip, kept = cycles
+    ratios = np.full((len(cases), levels.size), mode.ratio + _tuned(cases[0], mode))
+    rows = evaluate(variants, partial(_lost_since, begin=skip / mode.frequency))
+    for (number, k), row in zip(owners, rows, strict=True):
+        remarks.add(row, number)
+        ratios[number, k] += float(row.values[0]) / kept / (2 * math.pi * (mode.omega * levels[k] / mode.shape) ** 2)
+    return ratios
+
+
+def _shaken_variants(
+    cases: list[Case], mode: _Mode, levels: FloatArray, cycles: tuple[int, int]
+) -> tuple[list[Case], list[tuple[int, int]]]:
+    """Return a case for each damper at each amplitude, and the numbers of its start and amplitude."""
     skip, kept = whole_number(cycles[0], "cycles[0]", 1), whole_number(cycles[1], "cycles[1]", 1)
     variants, owners = [], []
     for number, case in enumerate(cases):
@@ -382,12 +480,7 @@ def _from_shaking(
                     continue
                 variants.append(_on_shaker(case, damper, mode, moved, (skip + kept) / mode.frequency))
                 owners.append((number, k))
-    ratios = np.full((len(cases), levels.size), mode.ratio + _tuned(cases[0], mode))
-    rows = evaluate(variants, partial(_lost_since, begin=skip / mode.frequency))
-    for (number, k), row in zip(owners, rows, strict=True):
-        _check(row, number, warnings)
-        ratios[number, k] += float(row.values[0]) / kept / (2 * math.pi * (mode.omega * levels[k] / mode.shape) ** 2)
-    return ratios
+    return variants, owners
 
 
 def _lost_since(run: Run, begin: float) -> _Row:
@@ -432,19 +525,13 @@ def _tuned(case: Case, mode: _Mode) -> float:
 def _merged(warnings: Iterable[str]) -> list[str]:
     """Return warnings that differ in their numbers only once, with their count; the one with the largest numbers stays."""
     groups: dict[str, list[str]] = {}
-    for warning in warnings:
+    for warning in dict.fromkeys(warnings):
         groups.setdefault(re.sub(r"[0-9.]+", "#", warning), []).append(warning)
     return [
         max(group, key=lambda text: [float(number) for number in re.findall(r"\d+(?:\.\d+)?", text)])
         + (f" (the largest of {len(group)} values)" if len(group) > 1 else "")
         for group in groups.values()
     ]
-
-
-def _check(row: _Row, number: int, warnings: dict[str, None]) -> None:
-    warnings |= dict.fromkeys(row.warnings)
-    if row.failure:
-        raise Hint(f"the run of start {number + 1} failed: {row.failure}", "rb.simulate(case), to see where")
 
 
 def _fast_decay(curve: xarray.Dataset) -> tuple[str, ...]:

@@ -20,12 +20,17 @@ if TYPE_CHECKING:
     from rattlebox.results import Run
 
 ADDED_MASS = "added_mass"
-"""Objective that needs no run: the mass of all balls."""
+"""Objective that needs no run: the mass of all balls or particles."""
+
+DAMPING_RATIO = "damping_ratio"
+"""Objective from damping curves: the damping ratio of a mode with its dampers."""
 
 
 @dataclass(frozen=True)
 class DesignVariable:
     """A parameter of a design search: numbers between two bounds, or one of several choices.
+
+    Values are those that Optuna handles: numbers, and labels of choices.
 
     Attributes
     ----------
@@ -37,6 +42,8 @@ class DesignVariable:
         Values by label; empty for bounds.
     log
         Whether the search is uniform in the logarithm.
+    whole
+        Whether values between the bounds are whole numbers.
     attrs
         Attributes of the coordinate in the result.
     """
@@ -45,6 +52,7 @@ class DesignVariable:
     bounds: tuple[float, float] | None
     choices: dict[Any, Any]
     log: bool
+    whole: bool
     attrs: dict[str, str]
 
     @classmethod
@@ -84,22 +92,38 @@ class DesignVariable:
             attrs["units"] = column.unit
         if not is_range:
             names = labels(column.array) if column.unit is None else column.array
-            return cls(
-                parameter.path, None, dict(zip(names.tolist(), column.array.tolist(), strict=True)), False, attrs
-            )
+            choices = dict(zip(names.tolist(), column.array.tolist(), strict=True))
+            return cls(parameter.path, None, choices, False, False, attrs)
         if column.unit is None:
             raise parameter.wrong("its values are not numbers and have no bounds", "a list to choose from")
         low, high = column.array.tolist()
         if not low < high or (log and low <= 0):
             least = " and greater than zero" if log else ""
             raise parameter.wrong(f"the first bound must be smaller than the second{least}", "", None, values)
-        return cls(parameter.path, (low, high), {}, log, attrs)
+        return cls(parameter.path, (low, high), {}, log, parameter.is_whole, attrs)
 
-    def suggest(self, trial: Any) -> Any:
-        """Return the value that Optuna suggests for a trial."""
-        if self.bounds:
-            return trial.suggest_float(self.path, *self.bounds, log=self.log)
-        return self.choices[trial.suggest_categorical(self.path, list(self.choices))]
+    def suggest(self, trial: Any) -> None:
+        """Let Optuna suggest a value for a trial."""
+        if not self.bounds:
+            trial.suggest_categorical(self.path, list(self.choices))
+        elif self.whole:
+            trial.suggest_int(self.path, *map(int, self.bounds), log=self.log)
+        else:
+            trial.suggest_float(self.path, *self.bounds, log=self.log)
+
+    def sample(self, generator: np.random.Generator) -> Any:
+        """Return a random value."""
+        if not self.bounds:
+            return list(self.choices)[generator.integers(len(self.choices))]
+        low, high = self.bounds
+        if self.whole:
+            return int(generator.integers(int(low), int(high), endpoint=True))
+        share = generator.random()
+        return low * (high / low) ** share if self.log else low + (high - low) * share
+
+    def in_case(self, value: Any) -> Any:
+        """Return a value as a case takes it."""
+        return value if self.bounds else self.choices[value]
 
     def describe(self) -> dict[str, Any]:
         """Return a description in JSON types."""
@@ -138,7 +162,8 @@ def read_objectives(objective: Any) -> list[Objective]:
     Parameters
     ----------
     objective
-        A measure, a list of measures, or a mapping of measures to "min" or "max".
+        A measure, a list of measures, or a mapping of measures to "min" or "max". Without a direction all are minimised but
+        the damping ratio.
 
     Raises
     ------
@@ -147,7 +172,9 @@ def read_objectives(objective: Any) -> list[Objective]:
     """
     if isinstance(objective, str) or not hasattr(objective, "__iter__"):
         objective = [objective]
-    directions = dict(objective) if isinstance(objective, Mapping) else dict.fromkeys(objective, "min")
+    if not isinstance(objective, Mapping):
+        objective = {each: "max" if each == DAMPING_RATIO else "min" for each in objective}
+    directions = dict(objective)
     if not directions:
         raise Hint("objective is empty; at least one is required", '"settling_time"')
     for name, direction in directions.items():
@@ -155,7 +182,7 @@ def read_objectives(objective: Any) -> list[Objective]:
             raise Hint(f"objective: {name} = {direction!r} is not a direction", '"min" or "max"')
     objectives = [Objective(measure, direction == "max") for measure, direction in directions.items()]
     if [each.name for each in objectives] == [ADDED_MASS]:
-        raise Hint("added_mass alone is smallest for the smallest ball", '["added_mass", "settling_time"]')
+        raise Hint("added_mass alone is smallest for the smallest damper", '["added_mass", "settling_time"]')
     return objectives
 
 

@@ -66,10 +66,13 @@ class _Cases:
     evaluate: Callable[[Run], Any]
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
+        def proceed(*_: int) -> bool:
+            return not (cancelled and cancelled())
+
         found = np.empty(stop - start, object)
         for number in range(start, stop):
-            if cancelled is not None and cancelled():
+            (run,) = simulate_many([self.cases[number]], threads=threads, progress=proceed)
+            if not proceed():
                 return None
-            (run,) = simulate_many([self.cases[number]], threads=threads, progress=False)
             found[number - start] = self.evaluate(run)
         return {"found": found}

@@ -162,7 +162,7 @@ def interval_warning(found: xr.Dataset) -> dict[str, str]:
 
 _VARIANT_NAMES = {*OUTCOMES, "state", "displacement", "velocity", "relative_position", "relative_velocity"}
 _IMPACT_NAMES = {"last_time", "last_approach_speed", "last_contact"}
-_DESIGN_NAMES = {"trial", "front", "case", "missing", "feasible", "added_mass"}
+_DESIGN_NAMES = {"trial", "front", "case", "missing", "feasible", "added_mass", "damping_ratio", "reason", "warnings"}
 RESERVED_NAMES = _VARIANT_NAMES | _IMPACT_NAMES | _DESIGN_NAMES
 """Names of variables of studies that a function of a Run must not have."""
 

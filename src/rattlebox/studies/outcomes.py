@@ -34,6 +34,9 @@ def status_lines(study: xr.Dataset) -> list[str]:
         lines.append(f"{sum(counts.values()):,} variants: {statuses}")
     if "refused" in study.attrs:
         lines.append(f"refused, for example with {study.attrs['refused']}")
+    if "reason" in study and (refused := [str(reason) for reason in study.reason.values if reason]):
+        first = refused[0].replace("\n", "\n  ")
+        lines.append(f"{len(refused):,} of {study.sizes['trial']:,} trials are not feasible, for example: {first}")
     return [*lines, *warning_lines(study)]
 
 
@@ -61,7 +64,7 @@ def status_counts(study: xr.Dataset) -> dict[str, int]:
 
 
 def warning_lines(study: xr.Dataset) -> list[str]:
-    """Return the warnings of a study: measures without an interval, and runs that exceeded validity limits.
+    """Return the warnings of a study: a stop by the budget, measures without an interval, exceeded validity limits.
 
     Parameters
     ----------
@@ -73,7 +76,11 @@ def warning_lines(study: xr.Dataset) -> list[str]:
     list of str
         One line for each validity limit that at least one run exceeded, after a line about short runs.
     """
-    lines = [f"warning: {study.attrs['too_short']}"] if "too_short" in study.attrs else []
+    lines = [f"warning: {study.attrs['stopped']}"] if "stopped" in study.attrs else []
+    if "too_short" in study.attrs:
+        lines.append(f"warning: {study.attrs['too_short']}")
+    if "flagged" in study.attrs:
+        lines.append(f"warning: the best designs exceed validity limits: {study.attrs['flagged']}")
     if "warnings" not in study or "flag_masks" not in study.warnings.attrs:
         return lines
     attrs = study.warnings.attrs

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cache
 from numbers import Real
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +69,11 @@ class Parameter:
         self.now = node
         self.is_start = isinstance(self.part, ImpactDamper) and self.name == "start"
         self.unit = "1" if self.is_start else unit_of(case, path)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the values are whole numbers."""
+        return not self.inner and _numbers(type(self.part).model_fields[self.name].annotation) == {int}
 
     def check_independent(self, others: Iterable[Parameter]) -> None:
         """Raise if other parameters are the same as this one, or exclude it.
@@ -239,6 +244,13 @@ class Parameter:
         """Return an error about a single value in place of a list."""
         suggestion = f"[{given!r}]" if isinstance(given, (str, int, float)) else ""
         return self.wrong("a list of values is needed", suggestion, None, given)
+
+
+def _numbers(annotation: Any) -> set[type]:
+    """Return the types of numbers in an annotation."""
+    if annotation in (int, float):
+        return {annotation}
+    return {number for each in get_args(annotation) for number in _numbers(each)}
 
 
 @cache

@@ -33,7 +33,7 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.analysis import equivalent_damping
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest, translate
-from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, Whole
+from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, PositiveTime, Whole
 
 from .measures import MEASURES, check_names
 from .runner import run_work
@@ -173,7 +173,9 @@ _SIMPLE = {
     "Samples": "int",
     "Seconds": "float | str",
     "Seed": "int",
+    "TimeLimit": "float | str",
     "Values": "Sequence[float | str]",
+    "Way": "Literal['decay', 'energy', 'shaking']",
     "Whole": "int",
 }
 
@@ -321,6 +323,7 @@ if TYPE_CHECKING:  # types of arguments; the validated values are plain
     Measure = str | Callable[[Run], float]
     Measures = Measure | Sequence[Measure]
     Seconds = float | str
+    TimeLimit = float | str
     Kilograms = float | str
     Axes = Any
     Values = Any
@@ -343,6 +346,7 @@ else:
     ]
     Measures = Annotated[Any, BeforeValidator(_as_measures), AfterValidator(known_measures)]
     Seconds = NotNegativeTime
+    TimeLimit = Annotated[PositiveTime, Field(examples=["10 min"])]
     Kilograms = PositiveMass
 
 Cycles = Annotated[tuple[int, int], BeforeValidator(partial(_whole_cycles, least=1))]

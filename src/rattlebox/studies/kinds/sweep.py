@@ -6,17 +6,13 @@ from dataclasses import KW_ONLY
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rattlebox.core._core import Status
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
 from rattlebox.studies.axes import read_axes
-from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import MEASURES, interval_warning
-from rattlebox.studies.particle_work import ParticleWork
 from rattlebox.studies.store import add_attributes
 from rattlebox.studies.study import (
     CONFIG,
@@ -28,9 +24,13 @@ from rattlebox.studies.study import (
     Study,
     study_function,
 )
+from rattlebox.studies.work_of_case import first_refused, work_of_case
 
 if TYPE_CHECKING:
     import xarray
+
+    from rattlebox.studies.impact_work import ImpactWork
+    from rattlebox.studies.particle_work import ParticleWork
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -114,9 +114,9 @@ class Sweep(Study):
             "intervals": True,
         }
         grid = read_axes(self.case, self.axes)
-        if self.case.particle_dampers:
-            return ParticleWork(self.case, grid, **options)
-        return ImpactWork(self.case, grid, **options, motion=self.motion, last=self.last)
+        if not self.case.particle_dampers:
+            options |= {"motion": self.motion, "last": self.last}
+        return work_of_case(self.case, grid, **options)
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
@@ -149,14 +149,5 @@ def result_notes(work: ImpactWork | ParticleWork, result: xarray.Dataset) -> dic
     result
         Its result.
     """
-    refused = _first_refused(work, result) if isinstance(work, ParticleWork) else {}
-    return interval_warning(result) | refused
-
-
-def _first_refused(work: ParticleWork, result: xarray.Dataset) -> dict[str, str]:
-    """Return the first refused variant and the reason as an attribute."""
-    refused = np.flatnonzero(result.status.values == Status.refused)
-    if not refused.size or not (why := work.refusal_reason(int(refused[0]))):
-        return {}
-    reason = why.replace("\n", "\n  ")
-    return {"refused": f"{work.grid.describe_variant(work.case, int(refused[0]))}\n  {reason}"}
+    refused = first_refused(work, result)
+    return interval_warning(result) | ({"refused": refused} if refused else {})

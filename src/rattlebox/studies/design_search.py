@@ -1,0 +1,531 @@
+"""Trials of a design search: their cases, runs and objectives."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtrit
+
+from rattlebox._util.exceptions import CaseError, RattleboxError
+from rattlebox._util.narrow import instance
+from rattlebox.engines.simulate import simulate_many
+from rattlebox.model.case import Case
+from rattlebox.model.errors import Hint, nearest
+from rattlebox.model.paths import replaced
+from rattlebox.prepare.time_step import WARNINGS
+
+from .axes import materials_in, read_axes
+from .budget import TRIAL, Budget, RunGroup, time_of_particle_runs, workers_of
+from .case_digest import describe_case
+from .damping_curve import OTHER_MOTION, Way, damping_curve, damping_curve_cases
+from .design_space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
+from .fingerprint import fingerprint
+from .grid import Grid
+from .impact_work import ImpactWork
+from .measures import INTERVAL, MEASURES, check_names
+from .parameter import Parameter
+from .particle_work import ParticleWork
+from .runner import run_work
+from .study import known_measures
+from .work_of_case import first_refused, work_of_case
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Robust = Literal["worst", "mean", "median"]
+Vector = NDArray[np.float64]
+Values = dict[str, Any]
+"""Values of the parameters by path, as Optuna has them: numbers, and labels of choices."""
+
+PACKING = "packing"
+"""Dimension of the random packings."""
+
+FLAGS = {**WARNINGS, OTHER_MOTION: "decays with another frequency than that of the mode"}
+"""Validity limits that a run of a trial can exceed: name and description."""
+
+MOST_COMBINATIONS = 100
+"""Largest number of combinations of choices that are all tried by default, and the default number of trials."""
+
+_SAMPLED = 16
+"""Number of designs from which the cost of all trials is predicted."""
+_PROBED = 64
+"""Number of designs of which at least one must be valid."""
+_REDUCTIONS: dict[str, Any] = {"worst": np.max, "mean": np.mean, "median": np.median}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Settings of the damping curves of a search; see `rattlebox.studies.damping_curve.damping_curve`."""
+
+    amplitudes: Sequence[Any]
+    way: Way
+    mode: int
+    cycles: tuple[int, int]
+
+
+@dataclass
+class Evaluation:
+    """Result of the runs of a trial.
+
+    Attributes
+    ----------
+    values, intervals : (objectives,) float
+        Objectives that need runs, and half of the widths of their 95 % intervals.
+    packings : (objectives, P) float
+        Their values for each packing.
+    missing
+        Share of runs without a value.
+    warnings
+        Exceeded limits, as bits in the order of `FLAGS`.
+    reason
+        Why the trial is not feasible, or "".
+    """
+
+    values: Vector
+    intervals: Vector
+    packings: Vector
+    missing: float = 0.0
+    warnings: int = 0
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class DesignSearch:
+    """A design search: variables, objectives and the runs of a trial.
+
+    Attributes
+    ----------
+    case
+        Base case.
+    variables, objectives
+        Parameters and objectives.
+    levels
+        Axes of load levels, directions and start positions.
+    packings
+        Axis of the random packings, with the dimension `PACKING`; None for a single one.
+    count
+        Number of packings.
+    robust
+        Reduction over levels, start positions and amplitudes.
+    limit
+        Largest mass of the dampers [kg].
+    curve
+        Settings of damping curves, if an objective needs them.
+    options
+        Window of the measures, as for `rb.sweep`.
+    where
+        Backend, workers and progress of the runs, as arguments of `run_work`.
+    """
+
+    case: Case
+    variables: list[DesignVariable]
+    objectives: list[Objective]
+    levels: list[Any]
+    packings: dict[str, Any] | None
+    count: int
+    robust: Robust
+    limit: float | None
+    curve: Curve | None
+    options: dict[str, Any]
+    where: dict[str, Any] = field(default_factory=dict)
+
+    # ---- description and checks
+
+    @property
+    def measured(self) -> list[Objective]:
+        """Objectives that are measures of runs."""
+        return [each for each in self.objectives if each.name not in (ADDED_MASS, DAMPING_RATIO)]
+
+    @property
+    def computed(self) -> list[Objective]:
+        """Objectives that need runs, in the order of `Evaluation.values`."""
+        return [each for each in self.objectives if each.name != ADDED_MASS]
+
+    @property
+    def directions(self) -> list[str]:
+        """Direction of each objective as Optuna names it."""
+        return ["maximize" if each.maximise else "minimize" for each in self.objectives]
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Grid of the runs of a trial."""
+        return read_axes(self.case, self.axes_of(self.case), source="levels")
+
+    def axes_of(self, case: Case) -> list[Any]:
+        """Return the axes of the runs of a trial; one run of the case if nothing varies."""
+        axes = [*self.levels, *([self.packings] if self.packings else [])]
+        return axes or [{"duration": [case.duration]}]
+
+    def work_of(self, case: Case) -> ImpactWork | ParticleWork:
+        """Return the work that measures the runs of a trial."""
+        grid = read_axes(case, self.axes_of(case), source="levels")
+        measures = [each.measure for each in self.measured]
+        return work_of_case(case, grid, measures=measures, intervals=True, **self.options)
+
+    def curve_cases(self, case: Case) -> list[Case]:
+        """Return the cases of a trial whose damping curves are computed, one for each level."""
+        if self.curve is None or not self.levels:
+            return [] if self.curve is None else [case]
+        grid = read_axes(case, self.levels, source="levels")
+        return [grid.case_at(case, index) for index in range(grid.size)]
+
+    @property
+    def curve_options(self) -> dict[str, Any]:
+        """Arguments of `damping_curve`."""
+        return {**vars(instance(self.curve, Curve)), "point": self.options["point"], "packings": self.count}
+
+    def curve_runs(self, case: Case) -> list[Case]:
+        """Return the runs of the damping curves of a trial."""
+        return [run for each in self.curve_cases(case) for run in damping_curve_cases(each, **self.curve_options)]
+
+    def validate(self, log: Sequence[str]) -> None:
+        """Raise if the arguments are not valid for the case."""
+        paths = [variable.path for variable in self.variables]
+        for path in log:
+            if path not in paths:
+                raise Hint(f"log = {path!r} is not one of the parameters", nearest(path, paths))
+        varied: list[Parameter] = []
+        for path in [*(self.grid.columns if self.levels or self.packings else ()), *paths]:
+            new = Parameter(self.case, path, "parameters", materials_in(self.case))
+            new.check_independent(varied)
+            varied.append(new)
+        check_names(each.measure for each in self.objectives)
+        known_measures([each.measure for each in self.measured])
+        if self.measured:
+            self.work_of(self.case).validate()
+        _ = self.curve_runs(self.case)
+        self._check_designs("no design", {})
+        for variable in self.variables:
+            for label in variable.choices:
+                self._check_designs(f"no design with {variable.path} = {label}", {variable.path: label})
+
+    def _check_designs(self, none: str, chosen: Values) -> None:
+        """Raise if none of some designs with some chosen values is valid; `none` names them in the message."""
+        first: CaseError | None = None
+        for values in self.sample(_PROBED):
+            try:
+                self.case_of({**values, **chosen})
+                return
+            except CaseError as error:
+                first = first or error
+        reason = str(first).removeprefix("case: ").replace("\n", "\n  ")
+        raise CaseError(f"parameters: {none} is valid, for example because of\n  {reason}") from None
+
+    def describe(self) -> dict[str, Any]:
+        """Return a description of the search in JSON types."""
+        functions = {
+            each.name: fingerprint(each.measure) for each in self.objectives if not isinstance(each.measure, str)
+        }
+        curve = {} if self.curve is None else {"curve": vars(self.curve)}
+        return {
+            **describe_case(self.case, self.grid.columns),
+            "parameters": {variable.path: variable.describe() for variable in self.variables},
+            "objective": {each.name: "max" if each.maximise else "min" for each in self.objectives},
+            **({"functions": functions} if functions else {}),
+            "trial": self.grid.describe(),
+            **curve,
+            "packings": self.count,
+            "robust": self.robust,
+            "max_added_mass": self.limit,
+            "options": self.options,
+        }
+
+    # ---- designs
+
+    @cached_property
+    def combinations(self) -> list[Values] | None:
+        """All combinations of choices; None if a parameter has bounds, or there are more than `MOST_COMBINATIONS`."""
+        if any(each.bounds for each in self.variables):
+            return None
+        if math.prod(len(each.choices) for each in self.variables) > MOST_COMBINATIONS:
+            return None
+        paths = [each.path for each in self.variables]
+        return [dict(zip(paths, labels, strict=True)) for labels in product(*(v.choices for v in self.variables))]
+
+    def sample(self, count: int) -> list[Values]:
+        """Return random designs, or some or all of the combinations."""
+        if self.combinations is not None:
+            step = max(1, math.ceil(len(self.combinations) / count))
+            return self.combinations[::step]
+        generator = np.random.default_rng(0)
+        return [{each.path: each.sample(generator) for each in self.variables} for _ in range(count)]
+
+    def case_of(self, values: Values) -> Case:
+        """Return the case of a design.
+
+        Raises
+        ------
+        CaseError
+            If the values are not valid together, or with the levels.
+        """
+        case = replaced(self.case, {each.path: each.in_case(values[each.path]) for each in self.variables})
+        read_axes(case, self.axes_of(case), source="levels")
+        return case
+
+    def is_too_heavy(self, case: Case) -> bool:
+        """Return whether the dampers of a case are heavier than the limit."""
+        return self.limit is not None and added_mass(case) > self.limit
+
+    def case_file(self, values: Values) -> str:
+        """Return the case file of a design."""
+        return self.case_of(values).to_toml()
+
+    # ---- cost
+
+    def predict(self, trials: int) -> Budget:
+        """Return the predicted cost of a number of trials.
+
+        Parameters
+        ----------
+        trials
+            Number of trials.
+        """
+        designs = self.sample(_SAMPLED)
+        runs = 0
+        groups: list[RunGroup] = []
+        others = 0.0
+        for case in self._valid(designs):
+            curves = self.curve_runs(case)
+            sweep = self.grid.size if self.measured else 0
+            runs = sweep + len(curves)
+            if case.particle_dampers:
+                groups += self._groups(case, sweep, curves)
+            elif not others:  # 1-D designs cost about the same
+                others = len(designs) * self._time_of_impact_runs(case, curves)
+        times, share = time_of_particle_runs(groups) if groups else ([others], 1.0)
+        cpu_time = trials * (TRIAL + sum(times) / max(1, len(designs)))
+        workers = workers_of(self.where.get("backend", "threads"), self.where.get("workers"))
+        wall_time = cpu_time / share / max(1, min(workers, runs))
+        return Budget(trials, trials * runs, cpu_time, wall_time, workers)
+
+    def _valid(self, designs: Sequence[Values]) -> Iterator[Case]:
+        """Yield the cases of the designs that a trial would run."""
+        for values in designs:
+            try:
+                case = self.case_of(values)
+            except CaseError:
+                continue
+            if not self.is_too_heavy(case):
+                yield case
+
+    def _groups(self, case: Case, sweep: int, curves: Sequence[Case]) -> list[RunGroup]:
+        """Return the first and the last run of the sweep and of the curves of a trial for their halves."""
+        ends = [(curves[index], len(curves) / 2) for index in ((0, -1) if curves else ())]
+        if sweep:
+            work = instance(self.work_of(case), ParticleWork)
+            ends += [(work.variant(index), sweep / 2) for index in (0, sweep - 1)]
+        return [group for each, runs in ends if (group := RunGroup.of(each, runs))]
+
+    def _time_of_impact_runs(self, case: Case, curves: Sequence[Case]) -> float:
+        """Return the time of all runs of a trial with impact dampers, from a few of them [s]."""
+        total = 0.0
+        if self.measured:
+            work = instance(self.work_of(case), ImpactWork)
+            some = min(work.size, 4)
+            before = time.process_time()
+            work.run(0, some)
+            total += (time.process_time() - before) * work.size / some
+        if curves:
+            before = time.process_time()
+            simulate_many(curves[:1], progress=False)
+            total += (time.process_time() - before) * len(curves)
+        return total
+
+    # ---- trials
+
+    def evaluate(self, values: Values) -> tuple[float, Evaluation]:
+        """Return the mass of a design [kg], NaN if it is not valid, and the result of its runs."""
+        try:
+            case = self.case_of(values)
+        except CaseError as error:
+            return math.nan, self._nothing(str(error))
+        mass = added_mass(case)
+        if self.is_too_heavy(case):
+            return mass, self._nothing(f"heavier than {self.limit:g} kg")
+        try:
+            return mass, self._run(case)
+        except RattleboxError as error:
+            return mass, self._nothing(str(error))
+
+    def _nothing(self, reason: str, missing: float = 1.0, warnings: int = 0) -> Evaluation:
+        none = np.full(len(self.computed), np.nan)
+        return Evaluation(none, none, np.full((none.size, self.count), np.nan), missing, warnings, reason)
+
+    def _run(self, case: Case) -> Evaluation:
+        """Run a design."""
+        tables: dict[str, tuple[Vector, Vector | None]] = {}
+        missing, warnings, reason = [], 0, ""
+        if self.measured:
+            work = self.work_of(case)
+            runs = run_work(work, **self.where)
+            reason = first_refused(work, runs)
+            failed = runs["status"].values != 0
+            if "warnings" in runs:
+                warnings |= int(np.bitwise_or.reduce(runs["warnings"].values, axis=None))
+            for each in self.measured:
+                failed |= ~np.isfinite(runs[each.name].values)
+                half = runs.get(each.name + INTERVAL)
+                tables[each.name] = self._table(runs[each.name]), None if half is None else self._table(half)
+            missing.append(failed.mean())
+        if self.curve is not None:
+            ratios, names = self._ratios(case)
+            warnings |= sum(2**bit for bit, name in enumerate(FLAGS) if name in names)
+            tables[DAMPING_RATIO] = ratios, None
+            missing.append(1 - np.isfinite(ratios).mean())
+        if max(missing, default=0.0):
+            return self._nothing(reason or _reason(tables), float(max(missing)), warnings)
+        parts = [self._reduced(each, *tables[each.name]) for each in self.computed]
+        values, halves, packings = (np.array(part) for part in zip(*parts, strict=True)) if parts else 3 * [np.zeros(0)]
+        return Evaluation(values, halves, packings.reshape(len(parts), self.count), 0.0, warnings)
+
+    def _table(self, values: xr.DataArray) -> Vector:
+        """Return a result of a sweep as a table, (levels, packings)."""
+        if PACKING not in values.dims:
+            return np.asarray(values.values.reshape(-1, 1))
+        return np.asarray(values.transpose(..., PACKING).values.reshape(-1, self.count))
+
+    def _ratios(self, case: Case) -> tuple[Vector, set[str]]:
+        """Return the damping ratios of all levels and amplitudes, (levels, packings), and the names of exceeded limits."""
+        tables, names = [], set()
+        for each in self.curve_cases(case):
+            found = damping_curve(each, **self.curve_options, **self.where)
+            tables.append(found.damping_ratios.transpose("amplitude", "packing").values)
+            names |= set(found.attrs["exceeded"])
+        return np.concatenate(tables), names
+
+    def _reduced(self, objective: Objective, values: Vector, half: Vector | None) -> tuple[float, float, Vector]:
+        """Return an objective, half of the width of its interval, and its value for each packing.
+
+        Parameters
+        ----------
+        objective
+            The objective.
+        values : (levels, P) float
+            Its values.
+        half : (levels, P) float or None
+            Half of the widths of the intervals of its values.
+        """
+        sign = objective.sign
+        each = sign * _REDUCTIONS[self.robust](sign * values, axis=0)
+        if each.size > 1:
+            width = float(stdtrit(each.size - 1, 0.975)) * each.std(ddof=1) / math.sqrt(each.size)
+        elif half is None:
+            width = math.nan
+        else:
+            width = self._width(sign * values[:, 0], half[:, 0])
+        return float(each.mean()), float(width), each
+
+    def _width(self, values: Vector, half: Vector) -> float:
+        """Return half of the width of the interval of a reduction from those of its independent values."""
+        order = np.argsort(values, kind="stable")
+        middle = order[(order.size - 1) // 2 : order.size // 2 + 1]
+        used = {"worst": order[-1:], "mean": order, "median": middle}[self.robust]
+        return float(np.linalg.norm(half[used]) / used.size)
+
+    # ---- result
+
+    def result(self, trials: Sequence[Any]) -> xr.Dataset:
+        """Return the dataset of all trials and of the Pareto front.
+
+        Parameters
+        ----------
+        trials
+            Finished trials of Optuna with the user attributes that `rattlebox.studies.kinds.design` sets.
+        """
+        import xarray as xr
+
+        about = {
+            name: value if isinstance(value, str) else json.dumps(value) for name, value in self.describe().items()
+        }
+        found = xr.Dataset(attrs={"title": "Rattlebox design", **about})
+        for variable in self.variables:
+            column = [trial.params[variable.path] for trial in trials]
+            found = found.assign_coords({variable.path: ("trial", column, variable.attrs)})
+        values = _rows([trial.values for trial in trials], len(self.objectives))
+        halves = _rows([trial.user_attrs["intervals"] for trial in trials], len(self.computed))
+        packings = _rows([trial.user_attrs["packings"] for trial in trials], len(self.computed), self.count)
+        for number, each in enumerate(self.objectives):
+            attrs = _attributes(each)
+            found[each.name] = ("trial", values[:, number], attrs | {"goal": "max" if each.maximise else "min"})
+            if each.name == ADDED_MASS:
+                continue
+            own = self.computed.index(each)
+            text = attrs["long_name"]
+            width = attrs | {"long_name": f"half of the 95 % interval, {text}"}
+            found[each.name + INTERVAL] = ("trial", halves[:, own], width)
+            if self.count > 1:
+                single = attrs | {"long_name": f"{text}, each packing"}
+                found[f"{each.name}_packings"] = (("trial", PACKING), packings[:, own], single)
+        if self.count > 1:
+            found = found.assign_coords({PACKING: np.arange(self.count)})
+        mass = np.array([trial.user_attrs[ADDED_MASS] for trial in trials], dtype=float)
+        attrs = {"units": "kg", "long_name": "added mass"}
+        found[ADDED_MASS] = ("trial", mass, found[ADDED_MASS].attrs | attrs if ADDED_MASS in found else attrs)
+        missing = np.array([trial.constraints["missing"] for trial in trials])
+        found["missing"] = ("trial", missing, {"units": "1", "long_name": "share of the runs without a value"})
+        feasible = np.array([trial.values is not None for trial in trials], bool)
+        found["feasible"] = ("trial", feasible, {"long_name": "within the limits, with a value of each run"})
+        flags = {
+            "long_name": "exceeded validity limits",
+            "flag_masks": [2**bit for bit in range(len(FLAGS))],
+            "flag_meanings": " ".join(FLAGS),
+        }
+        exceeded = np.array([trial.user_attrs["warnings"] for trial in trials], np.int8)
+        found["warnings"] = ("trial", exceeded, flags)
+        reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)
+        found["reason"] = ("trial", reasons, {"long_name": "why a trial is not feasible"})
+        front = pareto_front(values * np.array([each.sign for each in self.objectives]), feasible)
+        if notes := [_exceeded(number, exceeded[number]) for number in front if exceeded[number]]:
+            found.attrs["flagged"] = "; ".join(notes)
+        cases = np.array([self.case_file(trials[number].params) for number in front], dtype=object)
+        return found.assign_coords(trial=np.arange(len(trials))).assign(
+            front=("front", front, {"long_name": "number of the trial"}),
+            case=("front", cases, {"long_name": "case file"}),
+        )
+
+    def on(self, where: Mapping[str, Any]) -> DesignSearch:
+        """Return the search with the backend and the workers of a study (see `Study.where`)."""
+        return replace(self, where={"backend": where["backend"], "workers": where["workers"], "progress": False})
+
+
+def added_mass(case: Case) -> float:
+    """Return the mass of all balls and particles of a case [kg]."""
+    balls = sum(ball.weight for damper in case.impact_dampers for ball in damper.balls)
+    return balls + sum(float(damper.contents.mass.sum()) for damper in case.particle_dampers)
+
+
+def _reason(tables: dict[str, tuple[Vector, Vector | None]]) -> str:
+    """Return which objectives lack a value."""
+    names = [name for name, (values, _) in tables.items() if not np.isfinite(values).all()]
+    if DAMPING_RATIO in names:
+        return "some decays do not pass all amplitudes within the duration"
+    return f"no {' and no '.join(names)} in some runs" if names else "some runs did not finish"
+
+
+def _exceeded(trial: int, warnings: int) -> str:
+    """Return the validity limits that a trial exceeds."""
+    return f"trial {trial}: {', '.join(text for bit, text in enumerate(FLAGS.values()) if warnings & 2**bit)}"
+
+
+def _rows(rows: Sequence[Any], *shape: int) -> Vector:
+    """Return lists of numbers as an array; NaN for None."""
+    nothing = np.full(shape, np.nan)
+    return np.array([nothing if row is None else np.asarray(row, float).reshape(shape) for row in rows]).reshape(
+        len(rows), *shape
+    )
+
+
+def _attributes(objective: Objective) -> dict[str, str]:
+    if objective.name in MEASURES:
+        return {"units": MEASURES[objective.name].units, "long_name": MEASURES[objective.name].long_name}
+    units = "1" if objective.name == DAMPING_RATIO else ""
+    return {"units": units, "long_name": objective.name.replace("_", " ")}
