@@ -1,0 +1,55 @@
+"""For those who doubt simulated particle dampers: apparent mass and loss of an open vertical box over the acceleration.
+
+Masmoudi et al. measured on a shaker, and Ferreyra et al. simulated, that the loss falls with the inverse of the
+acceleration amplitude, and that the apparent mass falls steeply, about with the inverse of its square at moderate
+accelerations, before it becomes negative. Sizes, restitution and friction of theirs are not in the abstracts and are
+swept.
+
+References: M. Masmoudi, S. Job, M. S. Abbes, I. Tawfiq, M. Haddar (2016), Experimental and numerical investigations
+of dissipation mechanisms in particle dampers, Granular Matter 18, 71. M. V. Ferreyra, M. Baldini, L. A. Pugnaloni, S.
+Job (2021), Effect of lateral confinement on the apparent mass of particle dampers, arXiv:2007.07961.
+"""
+
+import numpy as np
+
+import rattlebox as rb
+
+GRAVITY, FREQUENCY = 9.81, "60 Hz"
+
+
+def masses(accelerations, restitution=0.7, friction=0.3, cycles=(30, 40)):
+    """Return effective mass and damping mass over the mass of the beads, at acceleration amplitudes in units of gravity."""
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="3 mm", count=120),
+        cavity=rb.Box(size=("15 mm", "15 mm", "400 mm")),  # so high that no bead reaches the lid
+        contact=rb.Tsuji(restitution=restitution),
+        friction=friction,
+        direction="z",
+        packing=rb.Settled(seed=1),
+        softening=300,
+    )
+    motion = rb.Harmonic(amplitude="20 m/s^2", frequency=FREQUENCY, unit="m/s^2")
+    case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s")
+    levels = [GRAVITY * float(level) for level in accelerations]
+    result = rb.loss_map(case, levels, [FREQUENCY], cycles=cycles, progress=False)
+    parts = (result.effective_mass.values[:, 0], result.damping_mass.values[:, 0])
+    return [part / float(result.particle_mass) for part in parts]
+
+
+def exponent(levels, values):
+    """Return the exponent of a power law through values."""
+    return float(np.polyfit(np.log(levels), np.log(values), 1)[0])
+
+
+if __name__ == "__main__":
+    moderate, high = np.geomspace(1.5, 4.0, 5), np.geomspace(8.0, 40.0, 5)
+    for restitution, friction in ((0.7, 0.3), (0.5, 0.3), (0.7, 0.1)):
+        stored, lost = masses([*moderate, *high], restitution, friction)
+        falls, decays = exponent(moderate, np.maximum(stored[:5], 1e-3)), exponent(high, lost[5:])
+        print(
+            f"restitution {restitution}, friction {friction}: effective mass {stored.round(3)}, damping mass {lost.round(3)}"
+        )
+        print(f"exponents {falls:.2f} of the effective mass up to 4 g, {decays:.2f} of the damping mass from 8 g on")
+        assert -1.2 < decays < -0.8
+        assert -3.5 < falls < -1.2
+        assert (stored[7:] < 0).all()

@@ -1,0 +1,60 @@
+"""For those who doubt simulated particle dampers: the best amplitude of a shaken box of beads in weightlessness.
+
+While the bed is collected at a wall and thrown once per half-cycle, it acts as one inelastic mass: the loss per cycle
+is at most 4 m A^2 w^2, at an amplitude A of the free clearance over pi, and the measured loss of Sack et al. in
+parabolic flights follows this for different numbers and sizes of beads. At smaller amplitudes the bed does not reach
+the other wall in phase and becomes a gas. Restitution and friction, which are not printed in the abstract, are swept.
+
+References: A. Sack, M. Heckel, J. E. Kollmer, F. Zimber, T. Poeschel (2013), Energy dissipation in driven granular
+matter in the absence of gravity, Physical Review Letters 111, 018001, doi:10.1103/PhysRevLett.111.018001.
+"""
+
+import numpy as np
+from scipy.optimize import brentq
+
+import rattlebox as rb
+
+DIAMETER, COUNT, FREQUENCY = 10e-3, 120, 2.0  # of the beads [m], of the shaker [Hz]
+SIDE, LENGTH = 5.2 * DIAMETER, 100e-3  # of the cavity [m]
+
+
+def clearance(density=0.6):
+    """Return the length that the bed leaves free if it is packed with a volume fraction [m]."""
+    return LENGTH - COUNT * np.pi / 6 * DIAMETER**3 / (density * SIDE**2)
+
+
+def losses(amplitudes, restitution=0.75, friction=0.1, cycles=(6, 10)):
+    """Return the loss per cycle over m A^2 w^2 at amplitudes [m]."""
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter=DIAMETER, count=COUNT),
+        cavity=rb.Box(size=(LENGTH, SIDE, SIDE)),
+        contact=rb.Tsuji(restitution=restitution),
+        friction=friction,
+        gravity=(0, 0, 0),
+        direction="x",
+        packing=rb.Lattice(noise=1.0, seed=1),
+        softening=1000,
+    )
+    motion = rb.Harmonic(amplitude="10 mm", frequency=f"{FREQUENCY} Hz")
+    case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s")
+    result = rb.loss_map(case, list(amplitudes), [f"{FREQUENCY} Hz"], cycles=cycles, progress=False)
+    return result.reduced_loss.values[:, 0]
+
+
+def one_mass(ratio):
+    """Return the loss of one inelastic mass over m A^2 w^2, at amplitudes over the best one, at least 1."""
+    tau = [brentq(lambda t, a=a: t - np.sin(t) - np.pi / a, 0.0, np.pi * (1 + 1e-12)) for a in ratio]
+    return (1 - np.cos(tau)) ** 2
+
+
+if __name__ == "__main__":
+    best = clearance() / np.pi
+    ratio = np.array([0.5, 0.75, 1.0, 1.15, 1.4, 2.0])
+    expected = one_mass(ratio[2:])
+    print("one mass:", expected.round(2))
+    for restitution, friction in ((0.75, 0.1), (0.75, 0.3), (0.5, 0.1), (0.9, 0.1)):
+        loss = losses(best * ratio, restitution, friction)
+        print(f"restitution {restitution}, friction {friction}:", loss.round(2))
+        assert loss.argmax() == 2  # the best amplitude is the free clearance over pi
+        assert loss[1] < 0.5 * loss[2]  # below, the bed is a gas
+        assert np.allclose(loss[2:], expected, rtol=0.16)  # 13 % for restitution up to 0.75
