@@ -68,8 +68,7 @@ if __name__ == "__main__":
     print("friction, decrement per cycle (mm), deviation from a line")
     print(np.round(table * [1, 1e3, 1], 4))
     slopes, deviations = table[:, 1] / DIAMETER, table[:, 2]
-    print(
-        f"decrement {slopes.mean():.2f} +- {2 * slopes.std():.2f} diameters per cycle; off the line by {deviations.max():.1%}"
-    )
+    interval = f"{slopes.mean():.2f} +- {2 * slopes.std():.2f}"
+    print(f"decrement {interval} diameters per cycle; off the line by {deviations.max():.1%}")
     assert deviations.max() < 0.03  # linear
     assert 0.7 < slopes.min() <= slopes.max() < 1.0
