@@ -87,6 +87,14 @@ inline void add_stepper(nb::module_& module) {
         .def_prop_ro("work", [](const S& s) { return s.result().work; })
         .def_prop_ro("loss", [](const S& s) { return s.result().loss; })
         .def_prop_ro("stored", [](const S& s) { return s.result().stored; })
+        .def_prop_ro(
+            "largest_overlap", [](const S& s) { return owned<Doubles<1>>(s.extremes().overlap); },
+            nb::rv_policy::automatic,
+            "Largest overlap by contact of impact dampers [m], or by particle damper over the radius.")
+        .def_prop_ro(
+            "largest_approach_speed", [](const S& s) { return owned<Doubles<1>>(s.extremes().speed); },
+            nb::rv_policy::automatic,
+            "Largest speed of approach by contact of impact dampers, or by particle damper [m/s].")
         .def_prop_ro("status", &S::status)
         .def_prop_ro("restitution", [](const S& s) { return s.options().restitution; })
         .def_prop_ro("friction", [](const S& s) { return s.options().friction; })

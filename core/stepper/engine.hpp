@@ -29,6 +29,12 @@ struct StepEnd {
     real kinetic = 0, elastic = 0, potential = 0, work = 0, loss = 0;
 };
 
+// The extremes since the start, by which validity limits are checked: of each contact, the overlap [m] (1-D),
+// or of each damper, the overlap over the radius (3-D); and the speed of approach [m/s].
+struct Extremes {
+    std::vector<real> overlap, speed;
+};
+
 class StepEngine {
 public:
     virtual ~StepEngine() = default;
@@ -42,6 +48,7 @@ public:
     // Advances by `length` with constant inputs.
     virtual Status advance(real length, const real* inputs) = 0;
     virtual StepEnd end() const = 0;
+    virtual Extremes extremes() const = 0;
     virtual void save(Writer& writer) = 0;
     virtual void restore(Reader& reader) = 0;
 };

@@ -8,8 +8,15 @@ namespace rattlebox {
 
 // The problem is a base so that it exists before the trajectory, which refers to it.
 class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
+    Extremes extremes_;
+
     // Keeps the impacts in the log that are not complete.
     void forget_impacts() {
+        for (const Impact& impact : result_.impacts) {
+            const auto c = static_cast<std::size_t>(impact.contact);
+            extremes_.overlap[c] = std::fmax(extremes_.overlap[c], impact.peak_overlap);
+            extremes_.speed[c] = std::fmax(extremes_.speed[c], impact.approach_speed);
+        }
         std::vector<Impact> kept;
         const auto keep = [&](int& index) {
             if (index < 0) return;
@@ -30,6 +37,7 @@ class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
 public:
     explicit ImpactEngine(PackedCase<Problem>&& packed)
         : PackedCase<Problem>(std::move(packed)), Trajectory(problem) {
+        extremes_.overlap.assign(problem.contacts.size(), 0), extremes_.speed = extremes_.overlap;
         until_ = 0;
         sample(0);
         find_touching();
@@ -60,6 +68,8 @@ public:
         if (running() && result_.samples.time.empty()) fail(Status::not_finite);
         return result_.status;
     }
+
+    Extremes extremes() const override { return extremes_; }
 
     StepEnd end() const override {
         StepEnd e;
@@ -93,6 +103,7 @@ public:
         archive(s.time, s.given, s.state, s.load_work, s.base_work, s.viscous, s.normal, s.plastic, s.stored,
                 s.force);
         for (Damper& damper : problem.dampers) archive(damper.gravity);
+        archive(extremes_.overlap, extremes_.speed);
     }
     void save(Writer& writer) override { serialize(writer); }
     void restore(Reader& reader) override { serialize(reader); }

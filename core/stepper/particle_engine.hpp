@@ -111,6 +111,19 @@ public:
 
     StepEnd end() const override { return end_; }
 
+    Extremes extremes() const override {
+        Extremes result;
+        for (const dem::Bed& bed : simulation_.beds()) {
+            real overlap = 0, speed = 0;
+            for (const dem::Chunk& chunk : bed.chunks) {
+                overlap = std::fmax(overlap, chunk.diagnostics.largest_overlap.ratio());
+                speed = std::fmax(speed, chunk.diagnostics.largest_approach_speed);
+            }
+            result.overlap.push_back(overlap), result.speed.push_back(speed);
+        }
+        return result;
+    }
+
     template <class Archive> void serialize(Archive& archive) {
         archive(longest_step_, gravity_, work_.load, work_.base, work_.viscous, end_.dampers,
                 end_.displacement, end_.velocity, end_.kinetic, end_.elastic, end_.potential, end_.work,

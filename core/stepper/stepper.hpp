@@ -133,6 +133,7 @@ public:
     Components displacement() const { return displacement_; } // of the attachment
     Status status() const { return status_; }
     const StepResult& result() const { return result_; }
+    Extremes extremes() const { return engine_->extremes(); }
 
     real stored_energy() const { return end_.kinetic + end_.elastic + end_.potential + carried_energy(end_); }
 

@@ -246,6 +246,26 @@ def test_steps_are_only_pauses_while_the_inputs_stay() -> None:
     assert sum(part.work for part in parts) == pytest.approx(sum(part.work for part in whole), rel=1e-6)
 
 
+def test_contacts_beyond_the_limits_have_warnings() -> None:
+    """A motion that is larger than the expected one warns of few steps and deep overlaps; the expected one does not."""
+    expected = rb.Harmonic(amplitude="1 mm", frequency="20 Hz")
+    stepper = rb.Stepper(box(30, softening="auto"), motion=expected)
+    for speed, warned in ((0.1, False), (30.0, True)):
+        for k in range(40):
+            stepper.advance(stepper.time + 1e-3, velocity=(speed * (-1) ** (k // 10), 0, 0))
+        warnings = [note for note in stepper.notes if note.startswith("warning")]
+        assert any("steps in the shortest contact" in note for note in warnings) == warned
+        assert any("overlaps reach" in note for note in warnings) == warned
+    state = stepper.save()
+    again = rb.Stepper(box(30, softening="auto"), motion=expected)
+    again.restore(state)
+    assert again.notes == stepper.notes
+    hit = rb.Stepper(ball(velocity="40 m/s", contact=rb.Tsuji(restitution=0.6)))
+    assert hit.notes == ()
+    hit.advance(1e-3, acceleration=0.0)
+    assert any("overlaps in damper reach" in note for note in hit.notes)
+
+
 # ---- both
 
 

@@ -1202,6 +1202,18 @@ class Stepper:
     def stored(self) -> float: ...
 
     @property
+    def largest_overlap(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]:
+        """
+        Largest overlap by contact of impact dampers [m], or by particle damper over the radius.
+        """
+
+    @property
+    def largest_approach_speed(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]:
+        """
+        Largest speed of approach by contact of impact dampers, or by particle damper [m/s].
+        """
+
+    @property
     def status(self) -> Status: ...
 
     @property

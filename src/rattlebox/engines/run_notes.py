@@ -61,6 +61,28 @@ def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tu
     return tuple(notes)
 
 
+def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[np.float64]) -> Iterator[str]:
+    """Yield the warnings about the contacts of impact dampers that are advanced step by step.
+
+    Parameters
+    ----------
+    case
+        Case of the stepper.
+    overlaps, speeds
+        Largest overlap [m] and approach speed [m/s] of each contact, those of one damper after the other; 0 without contact.
+    """
+    first = 0
+    for index, damper in enumerate(case.impact_dampers):
+        name = " ".join(damper.label(index).split())
+        count = len(damper.balls) + 1
+        own = slice(first, first + count)
+        touched = np.flatnonzero(speeds[own])
+        if touched.size:
+            yield from _deep_overlaps(damper, name, touched, overlaps[own][touched])
+            yield from _fast_impacts(damper, name, touched, speeds[own][touched])
+        first += count
+
+
 def _deep_overlaps(
     damper: ImpactDamper, name: str, contacts: NDArray[np.int_], overlaps: NDArray[np.float64]
 ) -> Iterator[str]:

@@ -18,7 +18,9 @@ from rattlebox.model.signals import Signal
 from rattlebox.model.structures import Fixed, Shaker
 from rattlebox.model.units import in_si
 from rattlebox.prepare.component import damper_case, pack_component
+from rattlebox.prepare.time_step import step_diagnostics
 
+from .run_notes import component_notes, table_notes
 from .status import describe
 
 
@@ -155,8 +157,19 @@ class Stepper:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was chosen for the case, such as its softening, and warnings about the exchange with a light structure."""
-        return self._packed.notes
+        """What was chosen for the case, and warnings, like `Run.notes`.
+
+        Warnings are about a structure that is light against the damper, and about contacts since the start: overlaps beyond
+        the range of the contact laws, speeds beyond a table of restitution, and a time step that is too long for contacts
+        of particles, because they move faster than with `motion`.
+        """
+        overlaps, speeds = self._core.largest_overlap, self._core.largest_approach_speed
+        prepared = self._packed.prepared
+        if prepared is None:
+            return (*self._packed.notes, *component_notes(self._case, overlaps, speeds))
+        case, tables, step = prepared.case, prepared.tables, prepared.step
+        notes = step_diagnostics(case, tables, step, overlaps.tolist(), speeds.tolist())[1]
+        return (*notes, *self._packed.notes, *table_notes(case, speeds.tolist()))
 
     def advance(self, to: Any, *, velocity: Any = None, acceleration: Any = None, loads: Any = None) -> StepResult:
         """Advance to a time.

@@ -20,7 +20,7 @@ from rattlebox.model.structures import SDOF, Fixed, Shaker
 
 from ..results.quantities import quantity
 from .pack import pack
-from .particles import pack_particles, prepare
+from .particles import Prepared, pack_particles, prepare
 
 IDLE = _core.Harmonic(amplitude=0.0, frequency=0.0, phase=0.0, start=0.0, stop=0.0)
 """Signal of an input, whose values come with the steps."""
@@ -51,6 +51,8 @@ class PackedComponent:
         1 for impact dampers, 3 for particle dampers.
     notes
         What was chosen for the case.
+    prepared
+        Preparation of a case with particle dampers.
     """
 
     data: bytes
@@ -60,6 +62,7 @@ class PackedComponent:
     dampers: tuple[str, ...]
     axes: int
     notes: tuple[str, ...]
+    prepared: Prepared | None = None
 
 
 def damper_case(
@@ -195,6 +198,7 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
         _names(case),
         3,
         (*prepared.notes, *(_exchange_notes(case) if alone else ())),
+        prepared,
     )
 
 
