@@ -8,8 +8,8 @@ CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*
 
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: setup demo reproduction test app-test verify sanitize sanitize-memory sanitize-threads coverage mutate lint stub docs bench bench-guard \
-    format clean
+.PHONY: setup demo reproduction test app-test verify sanitize sanitize-memory sanitize-threads coverage mutate lint stub docs wheel bench \
+    bench-guard format clean
 
 setup: $(VENV)/.installed
 
@@ -84,6 +84,10 @@ coverage: setup
 
 mutate: coverage
 	$(BIN)/python tools/mutate.py --minutes 10
+
+# Wheels for Linux x86-64 in dist/, by zig, each tried in a fresh environment. PYTHONS=... chooses the interpreters.
+wheel: | $(BIN)/python
+	$(BIN)/python tools/wheel.py $(PYTHONS)
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py

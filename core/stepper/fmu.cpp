@@ -79,6 +79,7 @@ std::string path_of(const char* uri) {
             path += text[i];
         }
     }
+    if (path.size() > 2 && path[0] == '/' && path[2] == ':') path.erase(0, 1); // "/C:/a"
     return path;
 }
 

@@ -13,7 +13,6 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.cli.component import write_packed
-from rattlebox.engines.fmu import component_library
 
 ROOT = Path(__file__).parents[2]
 
@@ -27,7 +26,7 @@ def ball() -> rb.ImpactDamper:
 
 def library() -> ctypes.CDLL:
     """The shared library, with the types of its functions."""
-    found = ctypes.CDLL(str(component_library()))
+    found = ctypes.CDLL(str(rb.component_library()))
     found.rattlebox_create.restype = ctypes.c_void_p
     found.rattlebox_error.restype = ctypes.c_char_p
     found.rattlebox_save.restype = ctypes.c_void_p
@@ -43,9 +42,9 @@ def test_the_c_example_approaches_the_whole_run(tmp_path: Path) -> None:
     assert f"rattlebox pack {case.name} --alone" in (ROOT / "examples" / "component.c").read_text()
     write_packed(case, tmp_path / "ball.bin", alone=True)
     subprocess.run(
-        [*compiler, "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{ROOT / 'core'}",
-         ROOT / "examples" / "component.c", component_library(), "-lm", "-o", "component",
-         f"-Wl,-rpath,{component_library().parent}"],
+        [*compiler, "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{rb.include_dir()}",
+         ROOT / "examples" / "component.c", rb.component_library(), "-lm", "-o", "component",
+         f"-Wl,-rpath,{rb.component_library().parent}"],
         cwd=tmp_path, check=True,
     )  # fmt: skip
     done = subprocess.run(["./component", "ball.bin"], cwd=tmp_path, capture_output=True, text=True, check=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import shutil
 import subprocess
+import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -136,7 +137,14 @@ def test_the_binary_needs_libc_and_libm_only(tmp_path: Path) -> None:
     (library,) = (tmp_path / "x").rglob("*.so")
     listed = subprocess.run(["ldd", library], capture_output=True, text=True, check=True).stdout.split("\n")
     names = {line.split()[0].split("/")[-1].split(".")[0] for line in listed if line.strip()}
-    assert names <= {"linux-vdso", "libm", "libc", "ld-linux-x86-64"}
+    assert names <= {
+        "linux-vdso",
+        "libm",
+        "libc",
+        "ld-linux-x86-64",
+        "libpthread",
+        "libdl",
+    }  # glibc below 2.34 has five parts
 
 
 @pytest.mark.parametrize("fmi", VERSIONS)
@@ -335,6 +343,27 @@ def test_a_missing_resource_is_an_error(tmp_path: Path) -> None:
         with pytest.raises(Exception, match="nstantiate"):
             own.instantiate()
     shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_libraries_for_other_systems_are_added_on_request(
+    fmi: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are where importers look for them, and the page of the FMU says that they were never run."""
+    files = {system: tmp_path / f"other.{end}" for system, end in (("aarch64-linux", "so"), ("x86_64-windows", "dll"))}
+    for file in files.values():
+        file.write_bytes(b"library")
+    monkeypatch.setattr("rattlebox.engines.fmu.other_libraries", lambda: files)
+    file = rb.to_fmu(ball(), tmp_path / "damper.fmu", fmi=fmi, other_systems=True)
+    assert validate_fmu(str(file)) == []
+    with zipfile.ZipFile(file) as content:
+        binaries = {name for name in content.namelist() if name.startswith("binaries")}
+        page = content.read("documentation/index.html").decode()
+    folders = ("linux64/damper.so", "win64/damper.dll") if fmi == 2 else (
+        "x86_64-linux/damper.so", "aarch64-linux/damper.so", "x86_64-windows/damper.dll"
+    )  # fmt: skip
+    assert binaries == {f"binaries/{name}" for name in folders}
+    assert "compiled, never run: " in page
 
 
 @pytest.mark.parametrize(

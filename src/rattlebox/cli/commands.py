@@ -129,12 +129,16 @@ def fmu(
         str, typer.Option(help="Input of a damper alone: velocity or acceleration of its attachment.")
     ] = "velocity",
     alone: Annotated[bool, _ALONE] = False,
+    other_systems: Annotated[
+        bool,
+        typer.Option("--other-systems", help="Add libraries for Windows, macOS and arm64, compiled but never run."),
+    ] = False,
 ) -> None:
     """Write a case as an FMU for co-simulation: a structure with dampers, or a damper alone."""
     _check_single(ctx, case)
     from rattlebox.cli.component import write_fmu
 
-    write_fmu(case, out, fmi, input, alone)
+    write_fmu(case, out, fmi, input, alone, other_systems)
 
 
 @app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import platform
 import re
 import uuid
 import zipfile
@@ -15,8 +14,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 import rattlebox
-from rattlebox._util.exceptions import ResourceError
 from rattlebox.core import _core
+from rattlebox.core.component import component_library, other_libraries
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
@@ -41,6 +40,9 @@ BASE_UNITS = {
 # First value references, as in core/stepper/fmu.hpp.
 INPUT_TIME, GRAVITY, RESTITUTION, FRICTION, WORK, LOSS, STORED, INPUT = 1, 2, 5, 6, 7, 8, 9, 10
 FORCE, MOMENT, DISPLACEMENT, VELOCITY = 100, 400, 1000, 2000
+FMI_2_FOLDERS = {"x86_64-linux": "linux64", "x86_64-windows": "win64", "x86_64-darwin": "darwin64"}
+"""Folders of the systems that FMI 2 names."""
+
 MOST_INPUTS, MOST_DAMPERS, MOST_OUTPUTS = 90, 100, 1000
 
 
@@ -77,6 +79,7 @@ def to_fmu(
     method: Any = None,
     motion: Signal | None = None,
     structure_mass: Any = None,
+    other_systems: bool = False,
 ) -> Path:
     """Write a damper, or a structure with dampers, as an FMU for co-simulation on Linux x86-64.
 
@@ -91,6 +94,9 @@ def to_fmu(
         Version of FMI: 2 or 3.
     input
         Input of a damper alone: velocity or acceleration of the attachment.
+    other_systems
+        Whether the FMU also contains libraries for Windows x86-64 and macOS x86-64, and with FMI 3 for Linux arm64 and macOS
+        arm64. These are compiled, but were never run.
 
     Returns
     -------
@@ -102,7 +108,7 @@ def to_fmu(
     CaseError
         If the case is not valid, its method has no stepper, or it has too many variables.
     ResourceError
-        If this system has no binary of the core for FMUs.
+        If this system has no binary of the core for FMUs, or the installation none for other systems.
 
     Notes
     -----
@@ -119,7 +125,7 @@ def to_fmu(
     'damper.fmu'
     """
     options = {"alone": alone, "method": method, "motion": motion, "structure_mass": structure_mass}
-    return fmu_and_notes(system, path, fmi=fmi, input=input, **options)[0]
+    return fmu_and_notes(system, path, fmi=fmi, input=input, other_systems=other_systems, **options)[0]
 
 
 def fmu_and_notes(
@@ -128,6 +134,7 @@ def fmu_and_notes(
     *,
     fmi: int = 3,
     input: str = "velocity",
+    other_systems: bool = False,
     **options: Any,
 ) -> tuple[Path, tuple[str, ...]]:
     """Write an FMU and return its file and the notes of its stepper; see `to_fmu`."""
@@ -138,19 +145,20 @@ def fmu_and_notes(
     path = Path(path)
     if path.suffix != ".fmu":
         raise Hint(f"{path}: the name of an FMU must end with .fmu", f'"{path.with_suffix(".fmu")}"')
-    library = component_library()
+    libraries = {"x86_64-linux": component_library(), **(other_libraries() if other_systems else {})}
+    if fmi == 2:
+        libraries = {FMI_2_FOLDERS[system]: file for system, file in libraries.items() if system in FMI_2_FOLDERS}
     case, alone = component_case(system, **options)
     packed = pack_component(case, alone=alone)
     name = re.sub(r"\W", "_", path.stem)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
     variables = list(_variables(packed, input))
-    folder = "linux64" if fmi == 2 else "x86_64-linux"
     content = {
         "modelDescription.xml": (_description_2 if fmi == 2 else _description_3)(name, token, variables).encode(),
-        f"binaries/{folder}/{name}.so": library.read_bytes(),
+        **{f"binaries/{folder}/{name}{file.suffix}": file.read_bytes() for folder, file in libraries.items()},
         "resources/case.bin": packed.data,
         "resources/input": input.encode(),
-        "documentation/index.html": _page(name, variables, packed.notes).encode(),
+        "documentation/index.html": _page(name, variables, packed.notes, list(libraries)).encode(),
     }
     path.parent.mkdir(parents=True, exist_ok=True)
     whole = path.with_name(f".{path.name}.{os.getpid()}")
@@ -162,19 +170,6 @@ def fmu_and_notes(
     finally:
         whole.unlink(missing_ok=True)
     return path, packed.notes
-
-
-def component_library() -> Path:
-    """Return the shared library of the core without Python."""
-    from importlib.resources import files
-
-    for folder in (Path(_core.__file__).parent, Path(str(files("rattlebox.core")))):
-        file = folder / "rattlebox_component.so"
-        if file.is_file() and platform.system() == "Linux" and platform.machine() == "x86_64":
-            return file
-    raise ResourceError(
-        "FMUs can be written on Linux x86-64 only", "this command on such a machine; the FMU is one file"
-    )
 
 
 def _variables(packed: PackedComponent, by: str) -> Iterator[Variable]:
@@ -309,7 +304,7 @@ def _description_3(name: str, token: str, variables: list[Variable]) -> str:
     )
 
 
-def _page(name: str, variables: list[Variable], notes: tuple[str, ...]) -> str:
+def _page(name: str, variables: list[Variable], notes: tuple[str, ...], systems: list[str]) -> str:
     rows = "".join(
         f"<tr><td>{escape(v.name)}</td><td>{v.causality}</td><td>{v.unit}</td><td>{escape(v.description)}</td></tr>"
         for v in variables
@@ -319,5 +314,6 @@ def _page(name: str, variables: list[Variable], notes: tuple[str, ...]) -> str:
         "<p>A damper, written by Rattlebox. Forces are means over the last communication step. The parameter input_time "
         "says to which end of a step the inputs belong: 1 start, 2 end.</p>"
         f"<table><tr><th>Variable</th><th>Causality</th><th>Unit</th><th>Description</th></tr>{rows}</table>"
-        f"{''.join(f'<p>{escape(note)}</p>' for note in notes)}</html>\n"
+        f"{''.join(f'<p>{escape(note)}</p>' for note in notes)}"
+        f"<p>Tested on {systems[0]}{'; compiled, never run: ' if systems[1:] else ''}{', '.join(systems[1:])}.</p></html>\n"
     )
