@@ -9,8 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
-from verification import maps, measures  # noqa: E402
-from verification.dem import measures as dem_measures  # noqa: E402
+from support import dem_lines, impact_lines, study_lines  # noqa: E402
 
 TITLES = {
     "1": "A ball against a fixed wall",
@@ -29,13 +28,13 @@ HEAD = """# Verification table
 
 Exact values, values computed by Rattlebox and their relative difference. Each line is also a test;
 `python benchmarks/verification_table.py` writes this page. The exact values come from closed formulas in
-`tests/verification/exact`.
+`tests/support/exact`.
 """
 
 
 def table() -> str:
     """Return the page."""
-    lines = [line for function in (*measures.ALL, *dem_measures.ALL, *maps.ALL) for line in function()]
+    lines = [line for function in (*impact_lines.ALL, *dem_lines.ALL, *study_lines.ALL) for line in function()]
     parts = [HEAD]
     for item, title in TITLES.items():
         parts.append(f"\n## {title}\n\n| case | exact | computed | difference |\n|---|---:|---:|---:|\n")
@@ -64,7 +63,7 @@ def table() -> str:
                 " responses by 0.0002 (lower limits) or 0.0005. The maximum of the loss over the clearance is flat.\n"
             )
         if item == "4":
-            orders = ", ".join(f"{measures.soft_order(law):.3f} ({law})" for law in measures.SOFT_DAMPERS)
+            orders = ", ".join(f"{impact_lines.soft_order(law):.3f} ({law})" for law in impact_lines.SOFT_DAMPERS)
             parts.append(
                 "\nSoft contacts tend to hard impacts as the contact time goes to zero; measured order of the error"
                 f" in the approach speed: {orders}.\n"

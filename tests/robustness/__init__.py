@@ -1,1 +1,1 @@
-"""What goes wrong, and what is said then."""
+"""Robustness: bad input, damaged files, interruptions, full disks and random cases."""

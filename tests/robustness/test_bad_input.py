@@ -1,4 +1,4 @@
-"""Bad input: each wrong description is refused with one short message: where, what, what to try."""
+"""Bad input in case files and in Python: one short message with the place, what is wrong and what to try."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ SCREEN = 24
 """Lines of a small terminal."""
 
 
-def refused(text: str) -> str:
-    """Return what is said of a case file, and check that it is short."""
+def error_of(text: str) -> str:
+    """Return the error message of a case file, which must be short."""
     with pytest.raises(rb.CaseError) as caught:
         rb.Case.from_toml(text, source="case.toml")
     message = str(caught.value)
@@ -49,13 +49,13 @@ def refused(text: str) -> str:
 
 
 def changed(old: str, new: str) -> str:
-    """Return the good case with one thing changed."""
+    """Return the valid case with one change."""
     assert GOOD.count(old) == 1
     return GOOD.replace(old, new)
 
 
-def test_the_good_case_is_accepted() -> None:
-    """What the other tests spoil is right before they spoil it."""
+def test_valid_case_is_accepted() -> None:
+    """The case that the other tests change is valid."""
     assert rb.Case.from_toml(GOOD).structure.mass == 20.0
 
 
@@ -115,9 +115,9 @@ def test_the_good_case_is_accepted() -> None:
         ('contact = { kind = "tsuji", restitution = 0.9 }', "", ["contact", 'try: contact = { kind = "tsuji", ... }']),
     ],
 )
-def test_one_wrong_thing_is_named(old: str, new: str, pattern: list[str]) -> None:
-    """The message of one mistake names its place and what is allowed."""
-    message = refused(changed(old, new))
+def test_one_mistake(old: str, new: str, pattern: list[str]) -> None:
+    """The message of one mistake has its place and what is allowed."""
+    message = error_of(changed(old, new))
     for words in pattern:
         assert words in message
 
@@ -135,23 +135,23 @@ def test_one_wrong_thing_is_named(old: str, new: str, pattern: list[str]) -> Non
         ('duration = "5 s"', 't_end = "5 s"', "duration"),
     ],
 )
-def test_names_that_others_use_are_understood(old: str, new: str, meant: str) -> None:
-    """A field by the name it has elsewhere is told by ours, once, without a word on what is missing then."""
-    message = refused(changed(old, new))
+def test_names_of_other_programs(old: str, new: str, meant: str) -> None:
+    """A field under its name in other programs is reported once, with our name and without a message on missing fields."""
+    message = error_of(changed(old, new))
     expected = " or ".join(repr(name) for name in meant.split())
     assert message.endswith(f"there is no such field here\n  try: did you mean {expected}?")
     assert message.count("try:") == 1
 
 
-def test_names_that_others_use_are_ours() -> None:
-    """Each suggestion for a name that others use is a field or a kind of ours."""
+def test_suggested_names_exist() -> None:
+    """Each suggestion for a name of other programs is a field or a kind."""
     places = [names for kinds in vocabulary().values() for names in (set(kinds), *kinds.values())]
     for name, ours in MEANT.items():
         assert all(any(part in names for names in places) for word in ours for part in word.split(".")), name
 
 
 def test_overlapping_balls() -> None:
-    """Balls that start inside each other are refused with their numbers and the size of the overlap."""
+    """Balls that overlap at the start are refused with their numbers and the size of the overlap."""
     with pytest.raises(rb.CaseError, match=r"balls 2 and 3 overlap by 0\.2 mm"):
         rb.ImpactDamper(
             balls=[rb.Sphere(radius="5 mm", material="steel")] * 3,
@@ -161,7 +161,7 @@ def test_overlapping_balls() -> None:
         )
 
 
-def test_positions_and_balls_must_be_as_many() -> None:
+def test_number_of_positions() -> None:
     """Two positions for three balls are refused."""
     with pytest.raises(rb.CaseError, match="2 positions, but there are 3 balls"):
         rb.ImpactDamper(
@@ -173,28 +173,28 @@ def test_positions_and_balls_must_be_as_many() -> None:
 
 
 @pytest.mark.parametrize("poisson", [0.6, -1.0, math.nan])
-def test_poisson_ratio_of_no_solid(poisson: float) -> None:
+def test_poisson_ratio(poisson: float) -> None:
     """A Poisson ratio outside (-1, 0.5] is refused."""
     with pytest.raises(rb.CaseError, match="poisson"):
         rb.Material(name="odd", density=1000.0, young=1e9, poisson=poisson)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_record_with_a_number_that_is_none(value: float) -> None:
-    """A record that holds NaN or an infinity is refused with the number's place."""
+def test_record_with_nan_or_infinity(value: float) -> None:
+    """NaN or an infinity in a record is refused with its index."""
     with pytest.raises(rb.CaseError, match="number 2 of 3"):
         rb.Record(times=[0.0, 1.0, 2.0], values=[0.0, value, 0.0])
 
 
 @pytest.mark.parametrize("times", [[0.0, 1.0, 1.0], [0.0, 2.0, 1.0]])
 def test_record_with_times_that_do_not_increase(times: list[float]) -> None:
-    """A record whose times stand still or go back is refused with the point."""
+    """A record whose times do not increase is refused with the point."""
     with pytest.raises(rb.CaseError, match="point 3"):
         rb.Record(times=times, values=[0.0, 1.0, 2.0])
 
 
 def test_record_that_ends_before_the_run() -> None:
-    """A record shorter than the run is refused with both times."""
+    """A record shorter than the run is error_of with both times."""
     with pytest.raises(rb.CaseError, match=r"0 s to 1 s, the run 0 to 2 s"):
         rb.Case(
             structure=rb.SDOF(mass=1.0, stiffness=1.0),
@@ -212,8 +212,8 @@ def test_record_that_ends_before_the_run() -> None:
         ("# recorded\n0;0\n1;1\n2;-\n", 4),
     ],
 )
-def test_csv_with_something_else_than_numbers(tmp_path: Path, rows: str, line: int) -> None:
-    """Text, NaN or a third column in a CSV is refused with file and line."""
+def test_csv_without_numbers(tmp_path: Path, rows: str, line: int) -> None:
+    """Text, NaN or a third column in a CSV file is refused with file and line."""
     file = tmp_path / "push.csv"
     file.write_text(rows, encoding="utf-8")
     with pytest.raises(rb.DataError, match=rf"push\.csv, line {line}:"):
@@ -221,7 +221,7 @@ def test_csv_with_something_else_than_numbers(tmp_path: Path, rows: str, line: i
 
 
 def test_csv_named_in_a_case_file(tmp_path: Path) -> None:
-    """A bad CSV that a case file names is told with both files."""
+    """The message on a bad CSV file of a case file has both names."""
     (tmp_path / "push.csv").write_text("0,0\n6,high\n", encoding="utf-8")
     load = 'kind = "record"\nunit = "N"\nfile = "push.csv"\n'
     case = tmp_path / "case.toml"
@@ -231,22 +231,22 @@ def test_csv_named_in_a_case_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["none.csv", "none.npy", "none.mat"])
-def test_record_file_that_is_not_there(tmp_path: Path, name: str) -> None:
-    """A record file that does not exist is refused by its name."""
+def test_missing_record_file(tmp_path: Path, name: str) -> None:
+    """A missing record file is refused with its name."""
     with pytest.raises(rb.DataError, match=name):
         rb.Record.from_file(tmp_path / name, unit="N")
 
 
 @pytest.mark.parametrize("name", ["noise.npy", "noise.mat"])
-def test_record_file_of_rubbish(tmp_path: Path, name: str) -> None:
-    """Bytes that are no NPY or MAT file are refused by name."""
+def test_invalid_record_file(tmp_path: Path, name: str) -> None:
+    """Bytes that are no NPY or MAT file are refused with the name of the file."""
     (tmp_path / name).write_bytes(bytes(range(256)))
     with pytest.raises(rb.DataError, match=name):
         rb.Record.from_file(tmp_path / name, unit="N")
 
 
-def test_case_file_that_cannot_be_read(tmp_path: Path) -> None:
-    """A case file that is missing, or is not text, is refused by name."""
+def test_unreadable_case_file(tmp_path: Path) -> None:
+    """A case file that is missing or not text is refused with its name."""
     with pytest.raises(rb.CaseError, match=r"none\.toml"):
         rb.Case.from_file(tmp_path / "none.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
@@ -255,7 +255,7 @@ def test_case_file_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("law", [rb.JacksonGreen(), rb.ThorntonRestitution(), rb.Johnson()])
-def test_elasto_plastic_law_of_what_does_not_yield(law: Any) -> None:
+def test_law_that_needs_a_yield_stress(law: Any) -> None:
     """A law that needs a yield stress is refused for glass against glass."""
     with pytest.raises(rb.CaseError, match="yield stress"):
         rb.Case(
@@ -278,28 +278,28 @@ def test_elasto_plastic_law_of_what_does_not_yield(law: Any) -> None:
         ({"C": [[0.0]]}, "C has shape"),
     ],
 )
-def test_matrices_of_no_structure(change: dict[str, Any], message: str) -> None:
-    """Matrices that describe no stable structure are refused with the matrix."""
+def test_invalid_matrices(change: dict[str, Any], message: str) -> None:
+    """Matrices of no stable structure are refused with the name of the matrix."""
     zero = [[0.0, 0.0], [0.0, 0.0]]
     good = {"M": np.eye(2), "C": zero, "K": [[2.0, -1.0], [-1.0, 2.0]], "points": {"end": 1}}
     with pytest.raises(rb.CaseError, match=message):
         rb.Matrices(**(good | change))
 
 
-def test_motion_that_jumps() -> None:
+def test_pulse_as_displacement() -> None:
     """A pulse as the displacement of a shaker is refused."""
     with pytest.raises(rb.CaseError, match="acceleration"):
         rb.Shaker(motion=rb.HalfSine(amplitude="1 mm", duration="1 ms"))
 
 
-def test_load_on_what_cannot_move() -> None:
+def test_load_on_a_fixed_structure() -> None:
     """A force on a fixed cavity is refused."""
     with pytest.raises(rb.CaseError, match="cannot move a fixed structure"):
         rb.Case(structure=rb.Fixed(), load=rb.HalfSine(amplitude="1 N", duration="1 ms"), duration=1.0)
 
 
-def held(gap: str, method: object) -> rb.Case:
-    """Return a ball in a cavity with this gap on a structure that vibrates."""
+def without_play(gap: str, method: object) -> rb.Case:
+    """Return a ball in a cavity with a small or zero gap on a structure that vibrates."""
     return rb.Case(
         structure=rb.SDOF(mass=1.0, stiffness=4e3, velocity=0.1),
         damper=rb.ImpactDamper(
@@ -311,22 +311,22 @@ def held(gap: str, method: object) -> rb.Case:
 
 
 def test_ball_without_play() -> None:
-    """Hard impacts without any play are refused; soft contacts carry such a ball, and the ledger closes."""
+    """Hard impacts with a gap of zero are refused; soft contacts hold such a ball, and the ledger closes."""
     with pytest.raises(rb.CaseError, match=r"damper\.gap = 0\.0"):
-        held("0 mm", rb.Newton())
-    assert rb.simulate(held("1 nm", rb.Newton())).energy_residual <= 1e-11
-    run = rb.simulate(held("0 mm", rb.EventDriven()))
+        without_play("0 mm", rb.Newton())
+    assert rb.simulate(without_play("1 nm", rb.Newton())).energy_residual <= 1e-11
+    run = rb.simulate(without_play("0 mm", rb.EventDriven()))
     assert run.ok and run.energy_residual <= 1e-11
 
 
-def test_a_function_is_no_load() -> None:
-    """A function that is given as a load is refused with how to make a record of it."""
+def test_function_as_load() -> None:
+    """A function as a load is refused with how to make a record of it."""
     with pytest.raises(rb.CaseError, match=r"load = <function .*\n  a function .*\n  try: rb\.Record\("):
         rb.Case(structure=rb.SDOF(mass=1, stiffness=1), load=lambda t: t, duration=1)
 
 
-def test_numbers_beyond_all_use() -> None:
-    """Finite numbers whose powers leave double precision are refused where they stand, also where laws combine them."""
+def test_numbers_that_overflow() -> None:
+    """Numbers whose powers overflow are refused with their place, also if laws combine them."""
     with pytest.raises(rb.CaseError, match=r"radius = 1e\+150\n  no more than 1e\+30"):
         rb.Sphere(radius=1e150, material="steel")
     with pytest.raises(rb.CaseError, match=r"radius = 1e-150\n  no less than 1e-30"):
@@ -340,8 +340,8 @@ def test_numbers_beyond_all_use() -> None:
         rb.Case(structure=rb.SDOF(mass=1.0, stiffness=1.0), damper=damper, duration=1.0)
 
 
-def sweep(**changed: Any) -> rb.SineSweep:
-    """Make a sweep from 5 Hz to 100 Hz, or what is given."""
+def sine_sweep(**changed: Any) -> rb.SineSweep:
+    """Return a sine_sweep from 5 Hz to 100 Hz with other arguments."""
     return rb.SineSweep(**{"amplitude": "1 m/s^2", "first_frequency": 5.0, "last_frequency": 100.0} | changed)
 
 
@@ -365,14 +365,14 @@ def sweep(**changed: Any) -> rb.SineSweep:
         (lambda: rb.Random([(1.0, 2.0), (3.0, 1.0)], 2.0, 10.0, seed="a"), "seed = 'a'\n  an integer is needed"),
         (lambda: rb.Random("gevs", 2.0), "unknown name of a density\n  try: known: gevs_acceptance"),
         (lambda: rb.Random("gevs_acceptance", 2.0, unit="N"), "is an acceleration"),
-        (lambda: sweep(first_frequency=-1.0, sweep_rate="2 oct/min"), "must be greater than zero"),
-        (lambda: sweep(first_frequency="1 m", sweep_rate="2 oct/min"), "a frequency .* is needed"),
-        (lambda: sweep(last_frequency=5.0, sweep_rate="2 oct/min"), "two different frequencies"),
-        (lambda: sweep(sweep_rate="2 octaves"), "oct/min, oct/s, dec/min, Hz/s or Hz/min"),
-        (lambda: sweep(sweep_rate="-2 oct/min"), "must be greater than zero"),
-        (lambda: sweep(sweep_rate="1e-9 Hz/s"), "cycles; at most"),
-        (lambda: sweep(sweep_rate="1 Hz/s", duration=1.0), "a rate or a duration"),
-        (lambda: sweep(), "a rate or a duration"),
+        (lambda: sine_sweep(first_frequency=-1.0, sweep_rate="2 oct/min"), "must be greater than zero"),
+        (lambda: sine_sweep(first_frequency="1 m", sweep_rate="2 oct/min"), "a frequency .* is needed"),
+        (lambda: sine_sweep(last_frequency=5.0, sweep_rate="2 oct/min"), "two different frequencies"),
+        (lambda: sine_sweep(sweep_rate="2 octaves"), "oct/min, oct/s, dec/min, Hz/s or Hz/min"),
+        (lambda: sine_sweep(sweep_rate="-2 oct/min"), "must be greater than zero"),
+        (lambda: sine_sweep(sweep_rate="1e-9 Hz/s"), "cycles; at most"),
+        (lambda: sine_sweep(sweep_rate="1 Hz/s", duration=1.0), "a rate or a duration"),
+        (lambda: sine_sweep(), "a rate or a duration"),
         (lambda: rb.Trapezoid(amplitude="1 N", duration=1.0, rise=0.6), "rise and fall last 1.2 s"),
         (lambda: rb.Sawtooth(amplitude="1 N", duration=0.0), "must be greater than zero"),
         (lambda: rb.Sawtooth(amplitude="1 N", duration=1.0, peak="late"), "'terminal' or 'initial'"),
@@ -383,7 +383,7 @@ def sweep(**changed: Any) -> rb.SineSweep:
     ],
 )
 def test_mistakes_in_python(make: Callable[[], object], message: str) -> None:
-    """What is written in Python is refused like what is written in a file, also by the helpers that make records."""
+    """Bad arguments in Python are refused like those of a case file, also by functions that make records."""
     with pytest.raises(rb.CaseError, match=message):
         make()
 

@@ -1,4 +1,4 @@
-"""A session of mistakes: bad case files given to the command, and what it answers."""
+"""Bad case files given to the command: each message has file, field, value, what is allowed and what to try."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ LAW = "restitution = 0.9"
 MODES = 'duration = 1\n[structure]\nkind = "modal"\nfrequencies = [1, 2]\n'
 
 
-Answer = Callable[..., tuple[int | str | None, str]]
+Run = Callable[..., tuple[int | str | None, str]]
 
 
 def changed(*changes: str) -> str:
-    """Return the good case with things changed: old, new, old, new, ..."""
+    """Return the valid case with changes: old, new, old, new, ..."""
     text = GOOD
     for old, new in zip(changes[::2], changes[1::2], strict=True):
         assert text.count(old) == 1
@@ -48,8 +48,8 @@ def changed(*changes: str) -> str:
 
 
 @pytest.fixture
-def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Answer:
-    """Run the command in an empty folder; return its exit code and what it says."""
+def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Return a function that runs the command in an empty folder and returns its exit code and standard error."""
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: str) -> tuple[int | str | None, str]:
@@ -61,12 +61,12 @@ def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
     return run
 
 
-ANSWERS = {
+MESSAGES = {
     "misspelt field": (
         changed("stiffness", "stifness"),
         "structure.stifness = '80 kN/m'\n  there is no such field here\n  try: did you mean 'stiffness'?",
     ),
-    "misspelt field that would be one of two": (
+    "misspelt field of which one of two is needed": (
         changed("gap", "gaap"),
         "damper.gaap = '0.4 mm'\n  there is no such field here\n  try: did you mean 'gap'?",
     ),
@@ -114,11 +114,11 @@ ANSWERS = {
         changed("tsuji", "tsui"),
         "damper.contact.kind = 'tsui'\n  there is no such kind here\n  try: did you mean 'tsuji'? known: linear,",
     ),
-    "kind by another name": (
+    "kind under a name of other programs": (
         changed('"half_sine"', '"pulse"'),
         "load.kind = 'pulse'\n  there is no such kind here\n  try: did you mean 'half_sine'? known: half_sine, ",
     ),
-    "field by another name": (
+    "field under a name of other programs": (
         changed("stiffness", "k"),
         "structure.k = '80 kN/m'\n  there is no such field here\n  try: did you mean 'stiffness'?",
     ),
@@ -134,16 +134,16 @@ ANSWERS = {
         changed('"steel"', '"stel"'),
         "damper.ball.material = 'stel'\n  no material of that name\n  try: did you mean 'steel'?",
     ),
-    "unknown material of one's own": (
+    "unknown material of the case": (
         changed('"steel"', '"rubbr"') + "[materials.rubber]\ndensity = 1100\nyoung = 1e7\npoisson = 0.49\n",
         "damper.ball.material = 'rubbr'\n  no material of that name\n  try: did you mean 'rubber'?",
     ),
-    "material of one's own": (
+    "invalid material of the case": (
         GOOD + '[materials.rubber]\ndensity = "1 g"\nyoung = 1e7\npoisson = 0.6\n',
         "materials.rubber.density = '1 g'\n  a density (kg/m^3) is needed, not a mass\n  try: \"7850 kg/m^3\"\n"
         "case.toml: materials.rubber.poisson = 0.6\n",
     ),
-    "material of the library": (
+    "material with a name of the library": (
         GOOD + "[materials.steel]\ndensity = 1\nyoung = 1\npoisson = 0\n",
         "materials.steel\n  a material of this name is in the library\n  try: another name",
     ),
@@ -235,7 +235,7 @@ ANSWERS = {
         GOOD + '[method]\nkind = "event_driven"\ntolerance = 1\n',
         "method.tolerance = 1\n  must be at most 0.001",
     ),
-    "output that no memory holds": (
+    "output that exceeds the memory": (
         GOOD + '[output]\nrate = "1 THz"\n',
         "output.rate = '1 THz'\n  2e+11 samples would take",
     ),
@@ -243,7 +243,7 @@ ANSWERS = {
         GOOD + '[output]\ntimes = ["0.1 s", "x"]\n',
         "output.times[1] = 'x'\n  a time (s) is needed\n  try: \"1 ms\"",
     ),
-    "record that is not there": (
+    "missing record": (
         changed(LOAD, 'kind = "record"\nfile = "push.csv"\n'),
         "load.file = 'push.csv'\n  there is no file ",
     ),
@@ -259,7 +259,7 @@ ANSWERS = {
         changed(LOAD, 'kind = "record"\ntimes = [0, 1]\nvalues = [0, "x"]\n'),
         "load.values[1] = 'x'\n  a finite number is needed",
     ),
-    "matrices that are not there": (
+    "missing file of matrices": (
         'duration = 1\n[structure]\nkind = "matrices"\nfile = "beam.npz"\n',
         "structure.file = 'beam.npz'\n  there is no file ",
     ),
@@ -286,7 +286,7 @@ ANSWERS = {
         'load = { kind = "record", times = ["0 s", "1 s"], values = [0, 1] }\n',
         "load.times[0] = '0 s'\n  a finite number is needed\n  try: numbers without units: times in s",
     ),
-    "file that is cut off": (
+    "truncated file": (
         GOOD[: GOOD.index("steel") + 3],
         "not TOML: Unterminated string (at end of document)\n"
         '  ball = { radius = "33.17 mm", material = "ste\n'
@@ -306,17 +306,17 @@ ANSWERS = {
     ),
     "open bracket": (changed("[load]", "[load"), "at line 9, column 6)\n  [load"),
     "the same field twice": (changed('"20 kg"', '"20 kg"\nmass = 3'), "not TOML: Cannot overwrite a value (at line 6"),
-    "another language": ('{"duration": 1}', "not TOML: Invalid statement (at line 1, column 1)"),
-    "nothing": ("", "the file is empty\n  try: rattlebox demo"),
-    "a comment alone": ("# todo\n", "the file is empty\n  try: rattlebox demo"),
+    "JSON": ('{"duration": 1}', "not TOML: Invalid statement (at line 1, column 1)"),
+    "empty file": ("", "the file is empty\n  try: rattlebox demo"),
+    "only a comment": ("# todo\n", "the file is empty\n  try: rattlebox demo"),
     "no structure": (LOAD, "structure\n  this field is needed"),
 }
 
 
-@pytest.mark.parametrize("mistake", ANSWERS)
-def test_the_answer_to_a_mistake(mistake: str, answer: Answer) -> None:
-    """Each mistake is answered with file, field and value as they were written, what is allowed, and what to try."""
-    text, pattern = ANSWERS[mistake]
+@pytest.mark.parametrize("mistake", MESSAGES)
+def test_message_of_a_mistake(mistake: str, answer: Run) -> None:
+    """A message has file, field and value as written, what is allowed, and what to try."""
+    text, pattern = MESSAGES[mistake]
     Path("case.toml").write_text(text, encoding="utf-8")
     code, message = answer("run", "case.toml")
     assert code == 2
@@ -327,8 +327,8 @@ def test_the_answer_to_a_mistake(mistake: str, answer: Answer) -> None:
     assert not Path("out").exists()
 
 
-def test_several_mistakes_fit_one_screen(answer: Answer) -> None:
-    """Of many mistakes the first are told and the others counted."""
+def test_several_mistakes_fit_one_screen(answer: Run) -> None:
+    """Of many mistakes the first are listed and the others counted."""
     spoilt = changed(
         "20 kg", "-1 kg", "80 kN/m", "8 kg", "0.4 mm", "-1 mm", "33.17 mm", "0 mm", "steel", "x", "0.9", "9"
     )
@@ -349,8 +349,8 @@ def test_several_mistakes_fit_one_screen(answer: Answer) -> None:
     ],
     ids=["bytes", "utf-16", "picture", "control characters"],
 )
-def test_a_case_file_that_is_not_text(content: bytes, pattern: str, answer: Answer) -> None:
-    """A file of another kind is refused by name, without showing its bytes."""
+def test_a_case_file_that_is_not_text(content: bytes, pattern: str, answer: Run) -> None:
+    """A file that is not text is refused with its name, without printing its bytes."""
     Path("case.toml").write_bytes(content)
     code, message = answer("run", "case.toml")
     assert code == 2
@@ -358,14 +358,14 @@ def test_a_case_file_that_is_not_text(content: bytes, pattern: str, answer: Answ
     assert message.replace("\n", "").isprintable()
 
 
-def test_a_byte_order_mark_is_no_mistake(tmp_path: Path) -> None:
-    """A case file that an editor began with a byte order mark is read."""
+def test_byte_order_mark(tmp_path: Path) -> None:
+    """A case file that begins with a byte order mark is read."""
     (tmp_path / "case.toml").write_text(GOOD, encoding="utf-8-sig")
     assert rb.Case.from_file(tmp_path / "case.toml") == rb.Case.from_toml(GOOD)
 
 
-def test_a_case_file_that_is_not_there(answer: Answer) -> None:
-    """A missing case file is answered with files of similar name; a folder is told to be one."""
+def test_missing_case_file(answer: Run) -> None:
+    """For a missing case file, files with similar names are suggested; a folder is reported as a folder."""
     Path("steel_ball.toml").write_text(GOOD, encoding="utf-8")
     Path("cases").mkdir()
     assert answer("run", "steel_bal.toml") == (2, "error: there is no file steel_bal.toml\n  try: steel_ball.toml\n")
@@ -373,8 +373,8 @@ def test_a_case_file_that_is_not_there(answer: Answer) -> None:
     assert answer("run", "none/x.toml") == (2, "error: there is no file none/x.toml: there is no folder none\n")
 
 
-def test_results_into_a_file(answer: Answer) -> None:
-    """A result folder that is a file is refused before anything is computed."""
+def test_file_in_place_of_the_results_folder(answer: Run) -> None:
+    """A file in place of the folder for results is refused before anything is computed."""
     Path("case.toml").write_text(GOOD, encoding="utf-8")
     Path("taken").write_text("mine", encoding="utf-8")
     for arguments in (("run", "case.toml"), ("demo",)):

@@ -1,4 +1,4 @@
-"""A bit that changes in a file of results is detected on reading, or the content that is read is the same."""
+"""A flipped bit in a file of results is detected on reading, or does not change the content."""
 
 import json
 from collections.abc import Callable, Iterator, Mapping
@@ -33,7 +33,7 @@ def case() -> rb.Case:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the files of a run."""
+    """Return a folder with the files of a run."""
     folder = tmp_path_factory.mktemp("run")
     run = rb.simulate(case(), checkpoint=folder / "run.checkpoint", snapshots=folder / "run.vtkhdf")
     run.save(folder / "run.nc")
@@ -57,7 +57,7 @@ def bits(value: Any) -> Any:
 
 
 def content(path: Path) -> Any:
-    """Everything that a reader returns of a file, as bytes."""
+    """Return everything that a reader returns for a file, as bytes."""
     if path.suffix == ".nc":
         return bits(vars(rb.load(path)))
     if path.suffix == ".vtkhdf":
@@ -79,7 +79,7 @@ def content(path: Path) -> Any:
 
 
 def detected(path: Path, changed: bytes, exact: Any) -> bool:
-    """Return whether a changed file is refused with its name; else it must be read as it was."""
+    """Return whether a changed file is refused with its name; if not, its content must be unchanged."""
     path.write_bytes(changed)
     try:
         result = content(path)
@@ -93,25 +93,25 @@ def detected(path: Path, changed: bytes, exact: Any) -> bool:
 
 
 def flipped(whole: bytes, place: int, bit: int) -> bytes:
-    """Return a content with one bit changed."""
+    """Return bytes with one bit flipped."""
     return whole[:place] + bytes([whole[place] ^ 1 << bit]) + whole[place + 1 :]
 
 
 @pytest.mark.parametrize("flips", [50, pytest.param(400, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", FILES)
 def test_a_flipped_bit_is_detected_or_harmless(name: str, flips: int, folder: Path, tmp_path: Path) -> None:
-    """Bits all over a file: structure of the file, attributes, short arrays, numbers."""
+    """Bits are flipped anywhere in a file: in its structure, attributes, short arrays and numbers."""
     whole, path = (folder / name).read_bytes(), tmp_path / name
     exact = content(folder / name)
     generator = np.random.default_rng(11)
-    used = np.flatnonzero(np.frombuffer(whole, "u1"))  # most zeros of a file of HDF5 belong to nothing
+    used = np.flatnonzero(np.frombuffer(whole, "u1"))  # most zeros of an HDF5 file are unused
     places = [*generator.integers(0, len(whole), flips // 2), *generator.choice(used, flips)]
     refused = sum(detected(path, flipped(whole, place, int(generator.integers(8))), exact) for place in places)
     assert refused > flips // 2
 
 
-def numbers_of(path: Path) -> Iterator[tuple[str, int, int]]:
-    """Name, place in the file and size of the values of each dataset."""
+def locate_values(path: Path) -> Iterator[tuple[str, int, int]]:
+    """Yield name, place in the file and size of the values of each dataset."""
     result: list[tuple[str, int, int]] = []
     with h5py.File(path) as file:
 
@@ -124,11 +124,11 @@ def numbers_of(path: Path) -> Iterator[tuple[str, int, int]]:
 
 
 def test_a_flipped_bit_of_any_dataset_of_snapshots_is_detected(folder: Path, tmp_path: Path) -> None:
-    """The values of every dataset are protected, those of short ones and of those that ParaView alone reads, too."""
+    """The values of every dataset are protected, also of short ones and of those that only ParaView reads."""
     whole, path = (folder / "run.vtkhdf").read_bytes(), tmp_path / "run.vtkhdf"
     exact, generator = content(folder / "run.vtkhdf"), np.random.default_rng(5)
     names = set()
-    for name, start, size in numbers_of(folder / "run.vtkhdf"):
+    for name, start, size in locate_values(folder / "run.vtkhdf"):
         for place in start + generator.integers(0, size, 3):
             assert detected(path, flipped(whole, int(place), int(generator.integers(8))), exact), name
         names.add(name)
@@ -136,7 +136,7 @@ def test_a_flipped_bit_of_any_dataset_of_snapshots_is_detected(folder: Path, tmp
 
 
 def test_a_flipped_bit_of_any_array_or_attribute_of_a_run_is_detected(folder: Path, tmp_path: Path) -> None:
-    """Each variable and attribute of a run is protected, short ones, too."""
+    """Every variable and attribute of a run is protected, also short ones."""
     path = tmp_path / "run.nc"
     names: list[str] = []
     with h5py.File(folder / "run.nc") as file:
@@ -160,7 +160,7 @@ def test_a_flipped_bit_of_any_array_or_attribute_of_a_run_is_detected(folder: Pa
 
 
 def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
-    """The message names the snapshot or the array that is damaged; other snapshots can still be read."""
+    """The message names the damaged snapshot or array; other snapshots can be read."""
     path = tmp_path / "run.vtkhdf"
     path.write_bytes((folder / "run.vtkhdf").read_bytes())
     with h5py.File(path, "r+") as file:
@@ -216,7 +216,7 @@ def _format_of_checkpoint(path: Path, number: int) -> None:
 def test_another_format_is_refused_with_both_numbers(
     name: str, change: Callable[[Path, int], None], number: int, folder: Path, tmp_path: Path
 ) -> None:
-    """Files of an older and of a newer format are refused; the message has the number of the file and ours."""
+    """Files of an older and of a later format are refused with the format of the file and that of this version."""
     path = tmp_path / name
     path.write_bytes((folder / name).read_bytes())
     change(path, number)

@@ -1,4 +1,4 @@
-"""Damaged and crafted files: an error with an advice, never a traceback, a crash or other numbers."""
+"""Damaged and crafted files raise an error with advice, never a traceback, a crash or other numbers."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ contact = { kind = "tsuji", restitution = 0.8 }
 """
 
 
-def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int | str | None:
-    """Give the command in this process, and return its exit code."""
+def exit_code(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int | str | None:
+    """Run the exit_code in this process and return its exit code."""
     monkeypatch.setattr(sys, "argv", ["rattlebox", *arguments])
     with pytest.raises(SystemExit) as stop:
         run_command()
@@ -48,9 +48,9 @@ def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int | str | Non
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with one file of each kind."""
-    folder = tmp_path_factory.mktemp("whole")
+def intact(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with one file of each kind."""
+    folder = tmp_path_factory.mktemp("intact")
     case = rb.Case.from_toml(BEADS)
     case.to_file(folder / "case.toml")
     stopped = rb.simulate(
@@ -63,8 +63,8 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def read(path: Path, folder: Path) -> Any:
-    """Read a file as a user does; return all numbers in it."""
+def read_file(path: Path, folder: Path) -> Any:
+    """Read a file as a user does; return its numbers."""
     if path.suffix == ".nc":
         run = rb.load(path)
         return run.arrays.displacement.tobytes(), run.arrays.particles.position.tobytes(), run.notes
@@ -80,20 +80,20 @@ def read(path: Path, folder: Path) -> Any:
 
 
 @pytest.mark.parametrize("name", ["run.nc", "run.vtkhdf", "run.mat", "case.toml", "a.checkpoint"])
-def test_no_cut_file_is_accepted(name: str, whole: Path, tmp_path: Path) -> None:
-    """A file of any kind that was cut off anywhere is refused, or reads as the whole one."""
+def test_truncated_files(name: str, intact: Path, tmp_path: Path) -> None:
+    """A truncated file of any kind is refused, or has the content of the intact one."""
     folder = tmp_path / "cut"
     folder.mkdir()
-    (tmp_path / "a.vtkhdf").write_bytes((whole / "a.vtkhdf").read_bytes())
-    content, path = (whole / name).read_bytes(), folder / name
+    (tmp_path / "a.vtkhdf").write_bytes((intact / "a.vtkhdf").read_bytes())
+    content, path = (intact / name).read_bytes(), folder / name
     path.write_bytes(content)
-    exact = read(path, tmp_path)
+    exact = read_file(path, tmp_path)
     refused = 0
     for length in np.linspace(0, len(content) - 1, 25 if name != "a.checkpoint" else 12).astype(int):
         path.write_bytes(content[:length])
         try:
-            result = read(path, tmp_path)
-        except (ValueError, OSError):  # CaseError is one
+            result = read_file(path, tmp_path)
+        except (ValueError, OSError):  # CaseError is a ValueError
             refused += 1
         else:
             assert name == "case.toml" or result == exact
@@ -101,14 +101,14 @@ def test_no_cut_file_is_accepted(name: str, whole: Path, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("name", ["a.checkpoint", "run.mat"])
-def test_no_changed_file_is_accepted(name: str, whole: Path, tmp_path: Path) -> None:
-    """Bits and blocks that changed anywhere are refused, or do not matter; nothing else than our error is raised."""
+def test_changed_files(name: str, intact: Path, tmp_path: Path) -> None:
+    """Files with changed bits and blocks are refused or have the same content; no other error is raised."""
     folder = tmp_path / "changed"
     folder.mkdir()
-    (tmp_path / "a.vtkhdf").write_bytes((whole / "a.vtkhdf").read_bytes())
-    content, path = (whole / name).read_bytes(), folder / name
+    (tmp_path / "a.vtkhdf").write_bytes((intact / "a.vtkhdf").read_bytes())
+    content, path = (intact / name).read_bytes(), folder / name
     path.write_bytes(content)
-    exact = read(path, tmp_path)
+    exact = read_file(path, tmp_path)
     generator = np.random.default_rng(3)
     places = [*generator.integers(0, len(content), 20), *generator.integers(len(content) - 2500, len(content), 30)]
     for number, place in enumerate(places):
@@ -119,16 +119,16 @@ def test_no_changed_file_is_accepted(name: str, whole: Path, tmp_path: Path) -> 
             changed[place : place + 40] = bytes(len(changed[place : place + 40]))
         path.write_bytes(changed)
         try:
-            result = read(path, tmp_path)
+            result = read_file(path, tmp_path)
         except (ValueError, OSError):
             continue
         assert name == "run.mat" or result == exact  # version 5 of MAT files has no checksums
 
 
-def test_a_checkpoint_with_changed_numbers_is_refused(whole: Path, tmp_path: Path) -> None:
-    """Arrays that were changed under a right checksum of the archive do not fit the digest of all of them."""
+def test_a_checkpoint_with_changed_numbers_is_refused(intact: Path, tmp_path: Path) -> None:
+    """Changed arrays with a valid checksum of the archive are detected by the digest."""
     file = tmp_path / "a.checkpoint"
-    with np.load(whole / "a.checkpoint") as there:
+    with np.load(intact / "a.checkpoint") as there:
         arrays = dict(there)
     for name in ("state", "position.0", "records.q"):
         changed = {**arrays, name: arrays[name].copy()}
@@ -140,18 +140,18 @@ def test_a_checkpoint_with_changed_numbers_is_refused(whole: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("kind", ['["sweep"]', "{ a = 1 }", "3", "true"])
-def test_kinds_of_studies_that_are_no_texts(
+def test_kinds_of_studies_that_are_not_text(
     kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A kind that is a list, a table or a number is refused as any other that is not known."""
+    """A list, a table or a number as kind of a study is refused like an unknown kind."""
     (tmp_path / "study.toml").write_text(f'kind = {kind}\n[case]\nfile = "case.toml"\n')
-    assert command(monkeypatch, "sweep", str(tmp_path / "study.toml")) == 2
+    assert exit_code(monkeypatch, "sweep", str(tmp_path / "study.toml")) == 2
     assert "is not a kind of study" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("mark", ["\0", "\n", "\x1b]0;title\x07", "\x1b[31m", "\x9b31m", "\u2028", "\x7f", "\t"])
-def test_names_hold_no_control_characters(mark: str) -> None:
-    """A name that would end a text, break a line or change a terminal is refused, wherever a case has names."""
+def test_names_with_control_characters(mark: str) -> None:
+    """Control characters are refused in all names of a case."""
     name, ball = f"a{mark}b", {"diameter": "10 mm", "material": "steel"}
     contact = rb.Tsuji(restitution=0.8)
     sdof = {"kind": "sdof", "mass": 1, "stiffness": 1e4, "velocity": 1}
@@ -167,21 +167,21 @@ def test_names_hold_no_control_characters(mark: str) -> None:
             make()
 
 
-def test_results_of_others_do_not_reach_the_terminal(
+def test_control_characters_in_results(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Control characters in a run that somebody else has written are not printed."""
+    """Control characters in the file of a run are not printed."""
     monkeypatch.setattr("rattlebox.model.base.has_controls", lambda text: False)
     case = rb.Case.from_toml(BEADS.replace('name = "beads"', 'name = "\\u001b]0;PWNED\\u0007\\u001b[31mred"'))
     rb.simulate(case, snapshots=tmp_path / "run.vtkhdf").save(tmp_path / "run.nc")
     monkeypatch.undo()
-    command(monkeypatch, "show", str(tmp_path / "run.nc"))
+    exit_code(monkeypatch, "show", str(tmp_path / "run.nc"))
     shown = "".join(capsys.readouterr())
     assert "\x1b" not in shown and "\x07" not in shown
 
 
-def test_a_mat_file_of_junk_does_not_end_the_process(tmp_path: Path) -> None:
-    """MAT files with random bytes are refused; a crash of the reader is an error, not the end of the process."""
+def test_random_mat_files(tmp_path: Path) -> None:
+    """MAT files with random bytes are refused; a crash of the reader is an error and does not end the process."""
     code = f"""
 import numpy as np
 from pathlib import Path
@@ -209,7 +209,7 @@ print(refused)
 
 @pytest.mark.parametrize("options", [{}, {"do_compression": True}, {"format": "4"}], ids=["5", "compressed", "4"])
 def test_mat_files_of_all_kinds_are_read(options: dict[str, Any], tmp_path: Path) -> None:
-    """Arrays of all types, sparse ones, texts, cells and structs in each other pass the check."""
+    """Arrays of all types, sparse ones, texts, cells and nested structs are read."""
     content: dict[str, Any] = {
         "t": np.linspace(0, 1, 50),
         "z": np.array([1 + 2j]),
@@ -226,7 +226,7 @@ def test_mat_files_of_all_kinds_are_read(options: dict[str, Any], tmp_path: Path
 
 
 def test_sparse_matrices_with_indices_out_of_bounds_are_refused(tmp_path: Path) -> None:
-    """Indices that lead out of a sparse matrix would be read and written out of bounds."""
+    """Sparse matrices with indices out of bounds, which would write out of bounds, are refused."""
     file = tmp_path / "a.mat"
     savemat(file, {"M": csc_array(np.diag(np.arange(1.0, 6.0)))})
     content = file.read_bytes()
@@ -241,23 +241,23 @@ def test_sparse_matrices_with_indices_out_of_bounds_are_refused(tmp_path: Path) 
 def test_commands_on_a_study_with_a_damaged_block(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Show reports the block as missing, plot draws what is there, and sweep computes it again."""
+    """Show reports a damaged block as missing, plot draws the others, and sweep computes it again."""
     monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(IMPACT)
     Path("study.toml").write_text(
         'measure = ["impact_share"]\ncase = "case.toml"\n[axes]\n"damper.gap" = ["0.3 mm", "0.4 mm", "0.5 mm"]\n'
     )
-    assert command(monkeypatch, "sweep", "study.toml") == 0
+    assert exit_code(monkeypatch, "sweep", "study.toml") == 0
     exact = rb.open_study("study.zarr").load()
     for change in (lambda chunk: chunk.unlink(), lambda chunk: chunk.write_bytes(chunk.read_bytes()[:-7])):
         for name in ("impact_share", "status"):
             change(next(Path("study.zarr", name, "c").iterdir()))
             capsys.readouterr()
-            assert command(monkeypatch, "show", "study.zarr") == 0
+            assert exit_code(monkeypatch, "show", "study.zarr") == 0
             shown = capsys.readouterr().out
             assert "complete" not in shown and "not finished" in shown
-            assert command(monkeypatch, "plot", "study.zarr") in (0, 2)
+            assert exit_code(monkeypatch, "plot", "study.zarr") in (0, 2)
             result = rb.open_study("study.zarr")
             assert not (np.isnan(result.impact_share.values) & (result.status.values == 0)).any()
-            assert command(monkeypatch, "sweep", "study.toml") == 0
+            assert exit_code(monkeypatch, "sweep", "study.toml") == 0
             assert rb.open_study("study.zarr").load().equals(exact)

@@ -63,7 +63,7 @@ VALUES = 0.3 * np.sin(7 * TIMES)
 
 
 def saved(write: Callable[..., None], *arguments: Any, **options: Any) -> bytes:
-    """Return what a function writes to a stream."""
+    """Return the bytes that a function writes to a stream."""
     stream = io.BytesIO()
     write(stream, *arguments, **options)
     return stream.getvalue()
@@ -75,8 +75,8 @@ def table(head: str, *columns: Any) -> bytes:
     return f"{head}\n{rows}".encode()
 
 
-class Good(NamedTuple):
-    """A good file, the case that reads it ("" for a function), and its properties."""
+class Sample(NamedTuple):
+    """A valid file, the case that reads it ("" for a function), and its properties."""
 
     name: str
     content: bytes
@@ -87,7 +87,7 @@ class Good(NamedTuple):
 
 
 def record(options: str = "") -> str:
-    """Return a case of which the file is the motion of the base."""
+    """Return a case with the file as the motion of the base."""
     return SDOF + f'[base]\nkind = "record"\nfile = "FILE"\n{options}'
 
 
@@ -100,62 +100,62 @@ AT2 = (
 COLUMNS = np.column_stack([TIMES, VALUES])
 PLACES = "x,y,z\n0.001,0.002,0.003\n-0.004,0.001,0.002\n"
 
-GOOD: dict[str, Good] = {
-    "AT2": Good("a.at2", AT2, record()),
-    "one column": Good("a.txt", table("acceleration (g)", VALUES), record('dt = "0.01 s"\n'), counted=False),
-    "two columns": Good("a.csv", table("time (s),acceleration (g)", TIMES, VALUES), record(), counted=False),
-    "NPY": Good("a.npy", saved(np.save, COLUMNS), record(), swapped=(b"'<f8'", b"'>f8'")),
-    "NPZ record": Good("a.npz", saved(np.savez, time=TIMES, value=VALUES), record()),
-    "MAT record": Good("a.mat", saved(scipy.io.savemat, {"time": TIMES, "value": VALUES}), record(),
+GOOD: dict[str, Sample] = {
+    "AT2": Sample("a.at2", AT2, record()),
+    "one column": Sample("a.txt", table("acceleration (g)", VALUES), record('dt = "0.01 s"\n'), counted=False),
+    "two columns": Sample("a.csv", table("time (s),acceleration (g)", TIMES, VALUES), record(), counted=False),
+    "NPY": Sample("a.npy", saved(np.save, COLUMNS), record(), swapped=(b"'<f8'", b"'>f8'")),
+    "NPZ record": Sample("a.npz", saved(np.savez, time=TIMES, value=VALUES), record()),
+    "MAT record": Sample("a.mat", saved(scipy.io.savemat, {"time": TIMES, "value": VALUES}), record(),
                        swapped=(b"IM", b"MI")),
-    "UFF record": Good("a.uff", (UFF / "time_history_58b.uff").read_bytes(), record(),
+    "UFF record": Sample("a.uff", (UFF / "time_history_58b.uff").read_bytes(), record(),
                        swapped=(b"58b     1", b"58b     2")),
-    "UFF text record": Good("a.uff", (UFF / "time_history_58.uff").read_bytes(), record()),
-    "modal table": Good("a.csv", table("frequency (Hz),modal mass (kg),tip", [10, 25], [4, 1], [2, -1]),
+    "UFF text record": Sample("a.uff", (UFF / "time_history_58.uff").read_bytes(), record()),
+    "modal table": Sample("a.csv", table("frequency (Hz),modal mass (kg),tip", [10, 25], [4, 1], [2, -1]),
                         MODAL + 'file = "FILE"\n', counted=False),
-    "modal TOML": Good("a.toml", b'modal_masses = [4, 1]\nfrequencies = ["10 Hz", 25]\n[shapes]\ntip = [2, -1]\n',
+    "modal TOML": Sample("a.toml", b'modal_masses = [4, 1]\nfrequencies = ["10 Hz", 25]\n[shapes]\ntip = [2, -1]\n',
                        MODAL + 'file = "FILE"\n'),
-    "UFF modes": Good("a.unv", (UFF / "modes_mm_mN_2414.uff").read_bytes(),
+    "UFF modes": Sample("a.unv", (UFF / "modes_mm_mN_2414.uff").read_bytes(),
                       MODAL + 'file = "FILE"\npoints = { a = 9581 }\n'),
-    "Ansys result": Good("a.rst", Path(examples.rstfile).read_bytes(), MODAL + 'file = "FILE"\npoints = { a = 100 }\n',
+    "Ansys result": Sample("a.rst", Path(examples.rstfile).read_bytes(), MODAL + 'file = "FILE"\npoints = { a = 100 }\n',
                          swapped=(b"\x64\x00\x00\x00", b"\x00\x00\x00\x64")),
-    "Ansys matrices": Good("a.full", Path(examples.fullfile).read_bytes(),
+    "Ansys matrices": Sample("a.full", Path(examples.fullfile).read_bytes(),
                            MODAL + 'file = "FILE"\nmode_count = 2\npoints = { a = 100 }\n',
                            swapped=(b"\x64\x00\x00\x00", b"\x00\x00\x00\x64")),
-    "Matrix Market": Good("a.mtx", MTX[0], MATRICES + 'file = { K = "FILE", M = "M.mtx" }\n', {"M.mtx": MTX[1]}),
-    "NPZ matrices": Good("a.npz", saved(np.savez, K=K, M=M), MATRICES + 'file = "FILE"\n'),
-    "MAT matrices": Good("a.mat", saved(scipy.io.savemat, {"K": K, "M": M}), MATRICES + 'file = "FILE"\n',
+    "Matrix Market": Sample("a.mtx", MTX[0], MATRICES + 'file = { K = "FILE", M = "M.mtx" }\n', {"M.mtx": MTX[1]}),
+    "NPZ matrices": Sample("a.npz", saved(np.savez, K=K, M=M), MATRICES + 'file = "FILE"\n'),
+    "MAT matrices": Sample("a.mat", saved(scipy.io.savemat, {"K": K, "M": M}), MATRICES + 'file = "FILE"\n',
                          swapped=(b"IM", b"MI")),
-    "positions": Good("a.csv", PLACES.encode(), BEADS, counted=False),
-    "UFF response function": Good("a.uff", (UFF / "frf_58.uff").read_bytes()),
-    "response function": Good(
+    "positions": Sample("a.csv", PLACES.encode(), BEADS, counted=False),
+    "UFF response function": Sample("a.uff", (UFF / "frf_58.uff").read_bytes()),
+    "response function": Sample(
         "a.csv", table("f (Hz),real (m/s^2/N),imag (m/s^2/N)", 1 + TIMES, VALUES, VALUES), counted=False
     ),
 }  # fmt: skip
 TEXT = {name: good for name, good in GOOD.items() if good.name[-3:] in ("at2", "txt", "csv", "oml", "mtx")}
 
 
-def prepare(folder: Path, good: Good, content: bytes) -> Path:
-    """Write a file, and the case that reads it; return its path."""
+def prepare(folder: Path, good: Sample, content: bytes) -> Path:
+    """Write a file and the case that reads it; return the path of the file."""
     for name, text in {**good.other, good.name: content}.items():
         (folder / name).write_bytes(text)
     (folder / "case.toml").write_text('duration = "0.5 ms"\n' + good.case.replace("FILE", good.name))
     return folder / good.name
 
 
-def read(folder: Path, good: Good, content: bytes) -> Any:
+def read_file(folder: Path, good: Sample, content: bytes) -> Any:
     """Read a file as a user does."""
     file = prepare(folder, good, content)
     return rb.Case.from_file(folder / "case.toml") if good.case else read_frequency_response(file)
 
 
 def check_refused(
-    folder: Path, good: Good, content: bytes, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    folder: Path, good: Sample, content: bytes, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Check that a file is refused by an error with its name, by the command line with exit code 2."""
+    """Check that an error with the name of the file is raised, by the command line with exit code 2."""
     if not good.case:
         with pytest.raises(rb.RattleboxError, match=good.name):
-            read(folder, good, content)
+            read_file(folder, good, content)
         return
     prepare(folder, good, content)
     monkeypatch.setattr(sys, "argv", ["rattlebox", "run", str(folder / "case.toml"), "--out", str(folder / "out")])
@@ -166,8 +166,8 @@ def check_refused(
     assert "Traceback" not in printed and good.name in printed and "try:" in printed
 
 
-def test_every_reader_has_a_good_file(tmp_path: Path) -> None:
-    """The good files can be read, and reach all readers of the package."""
+def test_every_reader_has_a_sample(tmp_path: Path) -> None:
+    """The valid files can be read, and all readers of the package are tested."""
     codes = {reader.__code__: name for name, reader in READERS.items()}
     reached: set[str] = set()
     before = sys.getprofile()
@@ -179,7 +179,7 @@ def test_every_reader_has_a_good_file(tmp_path: Path) -> None:
     for good in GOOD.values():
         sys.setprofile(note)
         try:
-            read(tmp_path, good, good.content)
+            read_file(tmp_path, good, good.content)
         finally:
             sys.setprofile(before)
     assert reached == set(READERS)
@@ -203,22 +203,22 @@ def test_other_content(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """An empty file and one with any other content are refused."""
+    """An empty file and files with other content are refused."""
     check_refused(tmp_path, GOOD[name], damage(GOOD[name].content), monkeypatch, capsys)
 
 
 @pytest.mark.parametrize("name", [name for name, good in GOOD.items() if good.counted])
 @pytest.mark.parametrize("share", [0.02, 0.3, 0.6, 0.9])
-def test_cut_files(
+def test_truncated_files(
     tmp_path: Path, name: str, share: float, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A file that states its length, or has a mark of its end, is refused wherever it is cut."""
+    """A file that states its length or has an end mark is refused wherever it is truncated."""
     good = GOOD[name]
     check_refused(tmp_path, good, good.content[: int(share * len(good.content))], monkeypatch, capsys)
 
 
 @pytest.mark.parametrize("name", [name for name, good in GOOD.items() if not good.counted and b"," in good.content])
-def test_cut_tables(
+def test_truncated_tables(
     tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A table whose last line lacks columns is refused."""
@@ -246,17 +246,17 @@ def test_text_in_place_of_a_number(
 
 
 @pytest.mark.parametrize("name", [name for name, good in GOOD.items() if good.swapped])
-def test_the_other_byte_order(
+def test_contradicting_byte_order(
     tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A binary file whose mark of the byte order contradicts its content is refused."""
+    """A binary file whose byte order mark contradicts its content is refused."""
     good = GOOD[name]
     assert good.swapped is not None and good.swapped[0] in good.content
     check_refused(tmp_path, good, good.content.replace(*good.swapped, 1), monkeypatch, capsys)
 
 
 def without_unit(name: str, factor: float) -> bytes:
-    """Return the file of a record with its values times a factor, and no unit."""
+    """Return a record with scaled values and without its unit."""
     times, values = TIMES, factor * VALUES
     return {
         "one column": table("acceleration", values),
@@ -271,7 +271,7 @@ def without_unit(name: str, factor: float) -> bytes:
 @pytest.mark.parametrize(("factor", "implausible"), [(1.0, False), (1000.0, True), (1e-6, True)])
 def test_records_without_unit(tmp_path: Path, name: str, factor: float, implausible: bool) -> None:
     """The assumed unit of a record without unit is noted with the peak; an implausible peak gives a warning."""
-    notes = plausibility_notes(read(tmp_path, GOOD[name], without_unit(name, factor)))
+    notes = plausibility_notes(read_file(tmp_path, GOOD[name], without_unit(name, factor)))
     peak = f"{factor * np.abs(VALUES).max():.4g} m/s^2"
     assert any(note.startswith("note") and peak in note and "m/s^2 is assumed" in note for note in notes)
     assert any(note.startswith("warning") and peak in note for note in notes) == implausible
@@ -281,15 +281,15 @@ def test_records_without_unit(tmp_path: Path, name: str, factor: float, implausi
     ("name", "stated", "none"),
     [("AT2", b" IN UNITS OF G", b""), ("UFF record", b"acc (g)              g   ", b"acc                 NONE ")],
 )
-def test_files_that_state_a_unit_without_it(tmp_path: Path, name: str, stated: bytes, none: bytes) -> None:
+def test_empty_unit_fields(tmp_path: Path, name: str, stated: bytes, none: bytes) -> None:
     """Formats with a field for the unit are refused, or their unit is noted, if the field is empty."""
     assert stated in GOOD[name].content
     content = GOOD[name].content.replace(stated, none)
     if name == "AT2":
         with pytest.raises(rb.DataError, match=r'states no unit\n.*try: unit = "g"'):
-            read(tmp_path, GOOD[name], content)
+            read_file(tmp_path, GOOD[name], content)
     else:
-        notes = plausibility_notes(read(tmp_path, GOOD[name], content))
+        notes = plausibility_notes(read_file(tmp_path, GOOD[name], content))
         assert any("m/s^2 is assumed, with a peak of 1 m/s^2" in note for note in notes)
 
 
@@ -297,5 +297,5 @@ def test_files_that_state_a_unit_without_it(tmp_path: Path, name: str, stated: b
 def test_an_implausible_peak_in_a_stated_unit(tmp_path: Path, unit: str, implausible: bool) -> None:
     """A record in a wrong unit gives a warning with its peak if no shock has that acceleration."""
     good = GOOD["two columns"]
-    notes = plausibility_notes(read(tmp_path, good, table(f"time (s),acceleration ({unit})", TIMES, VALUES)))
+    notes = plausibility_notes(read_file(tmp_path, good, table(f"time (s),acceleration ({unit})", TIMES, VALUES)))
     assert any(note.startswith("warning") and "peak of" in note for note in notes) == implausible

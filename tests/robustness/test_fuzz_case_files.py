@@ -1,4 +1,4 @@
-"""Case files with anything at all in them: a case, or an error of the package, and nothing else."""
+"""Random changes of case files: the result is a case or an error of the package."""
 
 from __future__ import annotations
 
@@ -106,7 +106,9 @@ anything = st.recursive(
     ),
     max_leaves=5,
 )
-patient = settings(derandomize=True, max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+many_examples = settings(
+    derandomize=True, max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
 
 
 def places(node: Any) -> list[tuple[Any, Any]]:
@@ -122,7 +124,7 @@ def places(node: Any) -> list[tuple[Any, Any]]:
 
 @st.composite
 def mutated(draw: st.DrawFn) -> str:
-    """Draw an example with up to three of its values replaced, removed or added to."""
+    """Draw an example file with up to three values replaced, removed or added."""
     data = copy.deepcopy(tomllib.loads(draw(st.sampled_from(TEXTS))))
     for _ in range(draw(st.integers(1, 3))):
         container, key = draw(st.sampled_from(places(data)))
@@ -139,7 +141,7 @@ def mutated(draw: st.DrawFn) -> str:
 
 
 def case_or_case_error(text: str) -> rb.Case | None:
-    """Read a case file; anything but a case or an error of the package that fits a screen is a failure."""
+    """Read a case file; errors must be of the package and fit on a screen."""
     try:
         return rb.Case.from_toml(text, source="case.toml")
     except (rb.CaseError, rb.DataError, rb.ResourceError) as error:
@@ -149,17 +151,17 @@ def case_or_case_error(text: str) -> rb.Case | None:
         return None
 
 
-@patient
+@many_examples
 @given(mutated())
 def test_a_mutated_case_file_is_a_case_or_a_case_error(text: str) -> None:
-    """No value of any type in any place of a case file raises anything but an error of the package."""
+    """No value of any type in any place raises another error."""
     case_or_case_error(text)
 
 
-@patient
+@many_examples
 @given(st.sampled_from(TEXTS), st.data())
 def test_a_case_file_with_damaged_text_is_a_case_or_a_case_error(text: str, data: st.DataObject) -> None:
-    """No cut, no inserted and no overwritten text raises anything but an error of the package."""
+    """No truncated, inserted or overwritten text raises another error."""
     start = data.draw(st.integers(0, len(text)))
     stop = data.draw(st.integers(start, min(len(text), start + 40)))
     case_or_case_error(text[:start] + data.draw(st.text(max_size=12)) + text[stop:])
@@ -168,7 +170,7 @@ def test_a_case_file_with_damaged_text_is_a_case_or_a_case_error(text: str, data
 @settings(derandomize=True, max_examples=200, deadline=None)
 @given(st.text(max_size=60))
 def test_any_text_is_refused(text: str) -> None:
-    """A text that is no case file gives a CaseError, never a case."""
+    """A random text raises a CaseError."""
     assert case_or_case_error(text) is None
 
 
@@ -197,6 +199,6 @@ FRAMES = {
     ids=["large integer", "huge integer", "deep", "overflow", "power", "time", "table"],
 )
 @pytest.mark.parametrize("field", FRAMES)
-def test_values_that_no_number_holds(field: str, value: str) -> None:
-    """Integers, nestings, powers and types beyond any field give a CaseError."""
+def test_extreme_values(field: str, value: str) -> None:
+    """Integers, nestings, powers and types beyond any field raise a CaseError."""
     assert case_or_case_error(FRAMES[field].format(value=value)) is None

@@ -1,4 +1,4 @@
-"""What `make` installs, in a folder where it has installed something before or not."""
+"""What make installs, depending on earlier installations in the folder."""
 
 import shutil
 import subprocess
@@ -11,7 +11,7 @@ pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="make is no
 
 
 def commands(target: str, *stamps: str, folder: Path) -> str:
-    """Return the commands that make would run for a target, after set-ups that left these stamps."""
+    """Return the commands that make would run for a target after earlier set-ups, given by their stamps."""
     shutil.copy(ROOT / "Makefile", folder)
     for name in ("CMakeLists.txt", "pyproject.toml", "constraints.txt"):
         (folder / name).touch()
@@ -26,8 +26,8 @@ def commands(target: str, *stamps: str, folder: Path) -> str:
 
 
 @pytest.mark.parametrize("target", ["demo", "reproduction"])
-def test_demo_installs_the_package_alone(target: str, tmp_path: Path) -> None:
-    """The demonstration needs one core for this machine and no tool of developers."""
+def test_demo_installs_only_the_package(target: str, tmp_path: Path) -> None:
+    """The demonstration builds one core for this machine and installs no tool of developers."""
     todo = commands(target, folder=tmp_path)
     assert "RATTLEBOX_LEVELS=best" in todo
     assert "RATTLEBOX_LEVELS=all" not in todo and "[dev" not in todo
@@ -41,6 +41,6 @@ def test_tests_install_everything_after_a_demo(target: str, tmp_path: Path) -> N
 
 
 def test_demo_keeps_a_complete_setup(tmp_path: Path) -> None:
-    """Where everything is installed, the demonstration installs nothing and so removes no instruction set."""
+    """After a complete set-up, the demonstration installs nothing and so removes no instruction set."""
     todo = commands("demo", ".installed", folder=tmp_path)
     assert "pip" not in todo and "rattlebox demo" in todo

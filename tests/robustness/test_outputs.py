@@ -1,4 +1,4 @@
-"""Output files of all kinds: complete or as they were, after a kill at any moment and on a full disk."""
+"""Output files are complete or unchanged, after a kill at any time and on a full disk."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ import time
 from pathlib import Path
 
 import pytest
+from support.mounts import needs_mounts, with_own_mounts
 
 import rattlebox as rb
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox.model.files import read_arrays
-
-from .mounts import needs_mounts, with_own_mounts
 
 CASE = """
 duration = "%s"
@@ -50,7 +49,7 @@ while True:
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with two runs."""
+    """Return a folder with the files of two runs."""
     folder = tmp_path_factory.mktemp("runs")
     for name, duration in (("first", "0.2 s"), ("second", "0.3 s")):
         run = rb.simulate(rb.Case.from_toml(CASE % duration))
@@ -59,8 +58,8 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def check_whole(folder: Path, runs: Path) -> int:
-    """Check that each file is one that was written, from first to last byte; return how many there are."""
+def check_complete(folder: Path, runs: Path) -> int:
+    """Check that each file is complete; return the number of files."""
     files = [path for path in folder.iterdir() if not path.name.startswith(".")]
     for path in files:
         if path.suffix == ".csv":
@@ -79,8 +78,8 @@ def check_whole(folder: Path, runs: Path) -> int:
 
 
 def test_killed_while_files_are_written(runs: Path, tmp_path: Path) -> None:
-    """After kill -9 at a random moment every file is whole, CSV, PNG, SVG, netCDF, MAT and TOML."""
-    chance, seen, left = random.Random(1), 0, 0
+    """After SIGKILL at a random time every CSV, PNG, SVG, netCDF, MAT and TOML file is complete."""
+    generator, complete, unfinished = random.Random(1), 0, 0
     for name in ("first", "second"):
         os.link(runs / f"{name}.nc", tmp_path / f"{name}.nc")
     (tmp_path / "out").mkdir()
@@ -91,18 +90,18 @@ def test_killed_while_files_are_written(runs: Path, tmp_path: Path) -> None:
         while not (tmp_path / "ready").exists():
             assert process.poll() is None and time.monotonic() < until
             time.sleep(0.01)
-        time.sleep(chance.uniform(0.1, 1.0))
+        time.sleep(generator.uniform(0.1, 1.0))
         process.send_signal(signal.SIGKILL)
         process.wait()
-        seen += check_whole(tmp_path / "out", runs)
-        left += sum(path.name.startswith(".") for path in (tmp_path / "out").iterdir())
-    assert seen > 20 and left > 0  # some kills fell into a write
+        complete += check_complete(tmp_path / "out", runs)
+        unfinished += sum(path.name.startswith(".") for path in (tmp_path / "out").iterdir())
+    assert complete > 20 and unfinished > 0  # some kills interrupted a write
 
 
 @needs_mounts
 @pytest.mark.parametrize("size", [64, 150, 260, 400])
-def test_a_full_disk_leaves_no_half_file(size: int, tmp_path: Path) -> None:
-    """However much room there is, a run on a full disk names a file and an advice, and each file there is whole."""
+def test_full_disk_leaves_complete_files(size: int, tmp_path: Path) -> None:
+    """With little space, the command reports a file with advice, and each existing file is complete."""
     (tmp_path / "case.toml").write_text(CASE % "0.2 s")
     run = rb.simulate(rb.Case.from_file(tmp_path / "case.toml"))
     run.save(tmp_path / "first.nc")
@@ -122,11 +121,11 @@ def test_a_full_disk_leaves_no_half_file(size: int, tmp_path: Path) -> None:
     assert errors[-1].startswith("  try: ")
     (copy / "rattlebox.json").unlink(missing_ok=True)
     assert not any(path.name.startswith(".") for path in copy.iterdir())
-    check_whole(copy, tmp_path)
+    check_complete(copy, tmp_path)
 
 
-def test_a_file_is_on_the_disk_before_an_earlier_one_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The content is flushed before the name changes, and the folder after it."""
+def test_content_is_flushed_before_the_replacement(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The content is flushed before the file is renamed, and the folder afterwards."""
     happened: list[str] = []
     flush, rename = os.fsync, Path.replace
     monkeypatch.setattr(
@@ -141,7 +140,7 @@ def test_a_file_is_on_the_disk_before_an_earlier_one_goes(tmp_path: Path, monkey
 
 
 def test_links_and_devices(tmp_path: Path) -> None:
-    """A link stays one and its file is replaced; a device is written to; an earlier file stays where writing fails."""
+    """The target of a link is replaced, a device is written to, and an earlier file stays if writing fails."""
     target, link = tmp_path / "target.toml", tmp_path / "link.toml"
     target.write_text("earlier")
     link.symlink_to(target)

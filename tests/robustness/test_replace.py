@@ -1,4 +1,4 @@
-"""`rattlebox run --replace` keeps the earlier run until the new one is over, and files of a user in any case."""
+"""`rattlebox run --replace` keeps the earlier run until the new one is finished, and never removes foreign files."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ softening = 100
 
 @pytest.fixture(autouse=True)
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Case files in the current folder."""
+    """Write the case files to the current folder."""
     monkeypatch.chdir(tmp_path)
     for name, text in (
         ("impact", IMPACT),
@@ -80,7 +80,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def stop(*arguments: str, by: int, once: Callable[[], object]) -> str:
-    """Start the command in a process, stop it when a condition holds, and return its standard error."""
+    """Start the command in another process, send a signal when a condition holds, and return its standard error."""
     command = [sys.executable, "-m", "rattlebox.cli", "run", *arguments, *OPTIONS]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
     until = time.monotonic() + 60
@@ -92,63 +92,65 @@ def stop(*arguments: str, by: int, once: Callable[[], object]) -> str:
 
 
 def contents(folder: Path = Path("out")) -> dict[str, bytes]:
-    """Content of the files of a folder, without those below it."""
+    """Return the content of the files in a folder, without subfolders."""
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def changes(file: Path) -> Callable[[], bool]:
-    """Return what tells that a file is not what it is now."""
+def has_changed(file: Path) -> Callable[[], bool]:
+    """Return a condition: a file has changed since this call."""
     before = file.read_bytes()
     return lambda: file.read_bytes() != before
 
 
-def begun() -> bool:
-    """Whether a replacement has a checkpoint."""
+def replacement_has_checkpoint() -> bool:
+    """Return whether a replacement has a checkpoint."""
     return any(Path("out").glob("replacement-*/run.checkpoint"))
 
 
 @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGKILL])
-def test_a_finished_run_is_kept_until_the_new_one_is_over(by: int) -> None:
-    """Results and snapshots are unchanged after a stop; the same command goes on, and takes their place in the end."""
+def test_finished_run_is_kept_until_the_new_one_is_finished(by: int) -> None:
+    """Results and snapshots are unchanged after a stop; the same command resumes and replaces them at the end."""
     assert run("first.toml", "--csv").returncode == 0
     before = contents()
     assert before.keys() == {MARKER, "run.nc", "run.vtkhdf", "motion.csv", "energy.csv", "particles.csv"}
-    stop("long.toml", "--replace", by=by, once=begun)
+    stop("long.toml", "--replace", by=by, once=replacement_has_checkpoint)
     after = contents()
     assert {name: after[name] for name in before} == before
     assert {*after} - {*before} <= {".run.checkpoint.lock"}
     assert "an unfinished run that replaces this one" in rattlebox("show", "out").stdout
-    # The earlier case is run again, and says that there is something else.
+    # The earlier case runs again, and its message mentions the replacement.
     done = run("first.toml")
     assert done.returncode == 0 and "started with --replace" in done.stderr
-    message = stop("long.toml", "--replace", by=signal.SIGINT, once=changes(next(Path("out").glob("*/run.checkpoint"))))
+    message = stop(
+        "long.toml", "--replace", by=signal.SIGINT, once=has_changed(next(Path("out").glob("*/run.checkpoint")))
+    )
     assert "resuming from out/replacement-" in message
-    # A third case takes the place of the first, and the second is kept.
+    # A third case replaces the first, and the second stays.
     assert run("second.toml", "--replace").returncode == 0
-    assert begun()
+    assert replacement_has_checkpoint()
     assert contents().keys() == {MARKER, "run.nc", "run.vtkhdf"}
     assert rb.load("out/run.nc") == rb.simulate(rb.Case.from_file("second.toml"), snapshots="other.vtkhdf")
     assert Snapshots("out/run.vtkhdf").numbers == Snapshots("other.vtkhdf").numbers
 
 
 @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGKILL])
-def test_a_checkpoint_is_kept_until_the_new_run_is_over(by: int) -> None:
-    """A run that was stopped goes on from its checkpoint, after another one has begun to replace it and was stopped."""
+def test_checkpoint_is_kept_until_the_new_run_is_finished(by: int) -> None:
+    """An interrupted run resumes after another run has begun to replace it and was interrupted."""
     stop("longer.toml", by=signal.SIGINT, once=Path("out/run.checkpoint").is_file)
     before = contents()
     assert "--replace" in run("long.toml").stderr
-    stop("long.toml", "--replace", by=by, once=begun)
+    stop("long.toml", "--replace", by=by, once=replacement_has_checkpoint)
     assert {name: text for name, text in contents().items() if "lock" not in name} == before
     assert "resuming from out/run.checkpoint" in stop(
-        "longer.toml", by=signal.SIGINT, once=changes(Path("out/run.checkpoint"))
+        "longer.toml", by=signal.SIGINT, once=has_changed(Path("out/run.checkpoint"))
     )
     assert run("impact.toml", "--replace").returncode == 0
     assert contents().keys() == {MARKER, "run.nc"}
 
 
 @pytest.mark.parametrize("after", range(6))
-def test_a_stop_during_the_exchange(after: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The files of two runs are exchanged in steps; a stop between any of them is made up for by the next command."""
+def test_interrupted_exchange(after: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files of two runs are exchanged in steps; the next command completes an interrupted exchange."""
     assert run("impact.toml", "--csv").returncode == 0
     steps = 0
 
@@ -176,8 +178,8 @@ def test_a_stop_during_the_exchange(after: int, monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize(
     "name", ["motion.csv", "motion.png", "run.mat", "run.vtkhdf", "run.checkpoint", "run.nc", "energy.csv"]
 )
-def test_files_of_a_user_are_not_replaced(name: str) -> None:
-    """A file with the name of a result that this command did not write is refused before anything is computed."""
+def test_foreign_files_are_not_replaced(name: str) -> None:
+    """A foreign file with the name of a result is refused before anything is computed."""
     Path("out").mkdir()
     mine = Path("out", name)
     mine.write_text("mine")
@@ -188,8 +190,8 @@ def test_files_of_a_user_are_not_replaced(name: str) -> None:
         assert mine.read_text() == "mine"
 
 
-def test_a_result_that_was_edited_is_not_replaced() -> None:
-    """A table that the user has changed since is neither written again nor removed."""
+def test_edited_result_is_not_replaced() -> None:
+    """A table that the user has changed is neither overwritten nor removed."""
     assert run("impact.toml", "--csv").returncode == 0
     edited = Path("out/motion.csv")
     edited.write_text(edited.read_text() + "my note\n")
@@ -201,8 +203,8 @@ def test_a_result_that_was_edited_is_not_replaced() -> None:
     assert contents().keys() == {MARKER, "run.nc", "motion.csv"}
 
 
-def test_the_demonstration_replaces_its_own_files_only() -> None:
-    """The folder of the demonstration may be used again; a user's file in it is refused before anything is computed."""
+def test_demo_replaces_only_its_own_files() -> None:
+    """The demo may use its folder again; a foreign file in it is refused before anything is computed."""
     for _ in range(2):
         assert rattlebox("demo", "-o", "out").returncode == 0
     Path("out/demo.png").write_text("mine")
@@ -211,10 +213,10 @@ def test_the_demonstration_replaces_its_own_files_only() -> None:
     assert Path("out/demo.png").read_text() == "mine"
 
 
-def test_files_beside_a_replacement_stay() -> None:
-    """Files that a user has put into the folder of a replacement stay there when it is over."""
+def test_foreign_files_in_a_replacement_stay() -> None:
+    """Foreign files in the folder of a replacement stay there at the end."""
     assert run("first.toml").returncode == 0
-    stop("long.toml", "--replace", by=signal.SIGKILL, once=begun)
+    stop("long.toml", "--replace", by=signal.SIGKILL, once=replacement_has_checkpoint)
     Path("long.toml").write_text(BEADS % ("0.2 s", 0.3))
     (folder,) = Path("out").glob("replacement-*")
     (folder / "notes.txt").write_text("mine")

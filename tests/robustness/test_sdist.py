@@ -22,7 +22,7 @@ def build(folder: Path) -> Path:
 
 
 def test_source_distribution_is_reproducible(tmp_path: Path) -> None:
-    """Two builds of the same files have the same bits, and contain the core and the reproduction but no compiled file."""
+    """Two builds have the same bits, with the core and the reproduction but no compiled file."""
     first, second = (build(tmp_path / name) for name in ("first", "second"))
     assert hashlib.sha256(first.read_bytes()).digest() == hashlib.sha256(second.read_bytes()).digest()
     with tarfile.open(first) as archive:

@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from support import impact_cases
 
 import rattlebox as rb
-
-from . import cases
 
 Array = NDArray[np.float64]
 DURATION = 1.0
@@ -85,7 +84,7 @@ class Flights:
                 velocity=list(self.p[k]),
             ),
             damper=rb.ImpactDamper(
-                ball=cases.ball(1e-3),
+                ball=impact_cases.ball(1e-3),
                 gap=gap,
                 start=float(self.ball[k]) / gap,
                 velocity=float(self.speed[k]),
@@ -144,12 +143,12 @@ def random_flights(modes: int, harmonic: bool, count: int, seed: int) -> Flights
 def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp], Array]:
     """Return the first touches, by a fine grid with refined minima and bisection.
 
-    Returns time (infinite where there is none), side, and how near to a tangent the decision was taken: the
+    Returns time (infinite where there is none), side, and the margin of the decision near tangents: the
     smallest |gap| over the clearance among the minima before the touch.
     """
     t = np.linspace(0, DURATION, GRID)
     n = k.size
-    time, side, doubt = np.full(n, np.inf), np.full(n, -1), np.full(n, np.inf)
+    time, side, margin = np.full(n, np.inf), np.full(n, -1), np.full(n, np.inf)
     margins = flights.margin(k, np.broadcast_to(t, (n, GRID)))
     for wall, gap in enumerate(margins):
         dips = (gap[:, 1:-1] <= gap[:, :-2]) & (gap[:, 1:-1] <= gap[:, 2:])
@@ -176,7 +175,7 @@ def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray
         low = np.where(grid_hit < GRID, t[np.maximum(np.minimum(grid_hit, GRID - 1) - 1, 0)], 0)
         for r, c, at, g in zip(row, column, bottom, depth, strict=True):
             if at < high[r]:
-                doubt[r] = min(doubt[r], abs(g) / flights.clearance[k[r]])
+                margin[r] = min(margin[r], abs(g) / flights.clearance[k[r]])
                 if g < 0:
                     high[r], low[r] = at, t[c]
         hit = np.nonzero(np.isfinite(high))[0]
@@ -188,7 +187,7 @@ def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray
         result = 0.5 * (low + high)
         better = result < time[hit]
         time[hit[better]], side[hit[better]] = result[better], wall
-    return time, side, doubt
+    return time, side, margin
 
 
 KINDS = pytest.mark.parametrize(
@@ -216,9 +215,9 @@ def compare(modes: int, harmonic: bool, count: int) -> None:
     flights = random_flights(modes, harmonic, count, seed=100 * modes + harmonic)
     parts = np.array_split(np.arange(count), max(1, count // 250))
     result = [first_touches(flights, part) for part in parts]
-    time, side, doubt = (np.concatenate(v) for v in zip(*result, strict=True))
+    time, side, margin = (np.concatenate(v) for v in zip(*result, strict=True))
     runs = rb.simulate_many([flights.case(k) for k in range(count)], threads=2)
-    clear = doubt > CLOSE
+    clear = margin > CLOSE
     assert clear.mean() > 0.95
     ours, wall = np.full(count, np.inf), np.full(count, -1)
     for k, run in enumerate(runs):
@@ -232,7 +231,7 @@ def compare(modes: int, harmonic: bool, count: int) -> None:
     both = clear & hit
     assert np.array_equal(wall[both], side[both])
     # The time of a grazing touch is known to rounding error over its slope, which is the root of the depth of the minimum.
-    expected = 1e-9 + 1e-15 / np.sqrt(np.minimum(doubt[both], 1.0)) * 1e3
+    expected = 1e-9 + 1e-15 / np.sqrt(np.minimum(margin[both], 1.0)) * 1e3
     assert np.all(np.abs(ours[both] - time[both]) <= expected)
 
 

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-
-from .exact import dashpot, impact_oscillator, masri_caughey, printed, restitution_laws, shaken
+from support.exact import dashpot, impact_oscillator, masri_caughey, printed, restitution_laws, shaken
 
 ENDINGS = ("zero_overlap", "zero_force")
 

@@ -283,7 +283,7 @@ def test_parameters_change_the_case(fmi: int, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("fmi", VERSIONS)
 def test_bad_values_return_an_error(fmi: int, tmp_path: Path) -> None:
-    """NaN as input, steps that are negative or not in order, and unknown variables return an error; the FMU goes on."""
+    """NaN, negative steps, steps out of order and unknown variables return an error, and the FMU stays usable."""
     with unit(tmp_path, ball(), fmi) as own:
         own.initialize()
         own.step(0.0, 1e-3, velocity=0.1)

@@ -25,7 +25,7 @@ DAMPINGS: dict[str, dict[str, float]] = {
     "underdamped": {"damping_ratio": 0.05},
     "almost critical": {"damping_ratio": 1 - 1e-9},
     "critical": {"damping_ratio": 1.0},
-    "hardly overdamped": {"damping_ratio": 1 + 1e-7},
+    "slightly overdamped": {"damping_ratio": 1 + 1e-7},
     "overdamped": {"damping_ratio": 3.0},
     "far overdamped": {"damping_ratio": 50.0},
     "rigid body": {"stiffness": 0.0, "damping": 0.0},

@@ -3,13 +3,16 @@
 from collections.abc import Callable, Iterator
 
 import pytest
-
-from . import maps
-from .measures import Line
+from support import study_lines
+from support.impact_lines import Line
 
 
 @pytest.mark.parametrize(
-    "lines", [pytest.param(f, id=f.__name__, marks=pytest.mark.slow if f is maps.limits else ()) for f in maps.ALL]
+    "lines",
+    [
+        pytest.param(f, id=f.__name__, marks=pytest.mark.slow if f is study_lines.limits else ())
+        for f in study_lines.ALL
+    ],
 )
 def test_map_finds_the_exact_value(lines: Callable[[], Iterator[Line]]) -> None:
     """Thresholds, amplitudes, limits, multipliers and best designs are within their tolerances."""

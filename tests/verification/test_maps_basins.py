@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from support import impact_cases
+from support.exact import shaken
 
 import rattlebox as rb
-
-from . import cases
-from .exact import shaken
 
 RESTITUTION, GAMMA = 0.8, 0.9
 
@@ -22,9 +21,9 @@ def state(orbit: shaken.TableOrbit, since: float) -> tuple[float, float]:
 
 def test_bouncing_balls_coexist() -> None:
     """Rest on the table and the orbits that bounce every cycle and every second cycle coexist, and are found to 1e-8."""
-    case = cases.table(shaken.table_orbit(RESTITUTION, GAMMA, 1), 1)
+    case = impact_cases.table(shaken.table_orbit(RESTITUTION, GAMMA, 1), 1)
     begin = case.structure.motion[0].phase
-    gap = cases.TABLE_GAP
+    gap = impact_cases.TABLE_GAP
     starts = {
         "damper.start": np.linspace(0, 12, 7) / gap - 1,
         "damper.velocity": np.linspace(-4, 4, 7),

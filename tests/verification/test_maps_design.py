@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import impact_cases
+from support.exact import printed, shaken
 
 import rattlebox as rb
-
-from . import cases
-from .exact import printed, shaken
 
 AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
 
@@ -16,7 +15,7 @@ AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency
 def test_trials_have_the_exact_loss() -> None:
     """Every trial below the best clearance has the loss of collect-and-collide."""
     result = rb.design(
-        cases.sticky_load(1.0, 1.0),
+        impact_cases.sticky_load(1.0, 1.0),
         {"damper.gap": ("0.2 m", "1.5 m")},
         {"reduced_loss": "max"},
         cycles=(10, 20),
@@ -29,7 +28,7 @@ def test_trials_have_the_exact_loss() -> None:
 
 def test_loss_map_of_an_inelastic_ball() -> None:
     """Effective mass and loss of an inelastic ball on a shaker are the published ones at any frequency."""
-    case = cases.inelastic_ball(1.2, 1.0)
+    case = impact_cases.inelastic_ball(1.2, 1.0)
     gammas = np.array(list(printed.APPARENT_MASS))
     # g = 1: at twice the frequency a quarter of the amplitude is the same motion.
     for ratio in (1.0, 2.0):
@@ -52,7 +51,11 @@ def test_loss_map_of_two_impacts_a_cycle() -> None:
     for ratio in ratios.tolist():
         orbit = shaken.two_impacts(e, ratio)
         result = rb.loss_map(
-            cases.shaken_cavity(orbit, 1.0), [float(orbit.amplitude)], ["1 rad/s"], cycles=(0, 20), progress=False
+            impact_cases.shaken_cavity(orbit, 1.0),
+            [float(orbit.amplitude)],
+            ["1 rad/s"],
+            cycles=(0, 20),
+            progress=False,
         )
         exact = (1 - e**2) * orbit.approach**2 / orbit.amplitude**2
         assert float(result.reduced_loss.item()) == pytest.approx(exact, rel=1e-8)
@@ -120,7 +123,7 @@ def test_sensitivity_of_a_published_function() -> None:
 
     case = rb.Case(
         structure=rb.SDOF(mass=1.0, stiffness=1.0),
-        damper=rb.ImpactDamper(ball=cases.ball(1.0), gap=10.0, contact=rb.Tsuji(restitution=0.5)),
+        damper=rb.ImpactDamper(ball=impact_cases.ball(1.0), gap=10.0, contact=rb.Tsuji(restitution=0.5)),
         duration=1e-3,
         method=rb.Newton(),
         output=rb.Output(times=[0.0]),

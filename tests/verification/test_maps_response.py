@@ -4,18 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from support import impact_cases
+from support.exact import oscillator
+from support.study_lines import PEAK, SAMPLES, UNSTABLE, followed, growth, orbit
 
 import rattlebox as rb
-
-from . import cases
-from .exact import oscillator
-from .maps import PEAK, SAMPLES, UNSTABLE, followed, growth, orbit
 
 
 def test_levels_scale_with_the_clearance() -> None:
     """At another level of the load the response is that of another clearance over the load."""
     mu, e, clearance = 0.1, 0.5, 20.0
-    case = cases.impact_damper(orbit((mu, e, clearance), 1.0), 1.0)
+    case = impact_cases.impact_damper(orbit((mu, e, clearance), 1.0), 1.0)
     levels = [0.8, 1.0, 1.25]
     response = rb.frequency_response(
         case, [1 / (2 * math.pi)], levels=levels, direction="fresh", cycles=(300, 16), samples=SAMPLES, progress=False
@@ -36,7 +35,7 @@ def test_unstable_motions_are_left(key: tuple[float, float, float]) -> None:
 @pytest.mark.parametrize("key", UNSTABLE)
 def test_exponent_of_an_unstable_orbit(key: tuple[float, float, float]) -> None:
     """Before rounding errors grow, the exponent is that of the unstable orbit."""
-    result = rb.lyapunov(cases.impact_damper(orbit(key, 1.0), 1.0), cycles=(0, 24), reach=0.0, progress=False)
+    result = rb.lyapunov(impact_cases.impact_damper(orbit(key, 1.0), 1.0), cycles=(0, 24), reach=0.0, progress=False)
     assert float(result.growth_per_cycle) == pytest.approx(2 * growth(key, 1.0), rel=2e-3)
 
 

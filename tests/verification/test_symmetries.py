@@ -8,17 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import impact_cases, impact_lines
 
 import rattlebox as rb
-
-from . import cases, measures
 
 TIMES = np.linspace(0, 0.5, 101)
 
 
 def short(sign: float = 1.0) -> Any:
     """Return the reference case with the ball off centre, or its mirror image."""
-    return cases.reference_case(start=0.3 * sign, force=5000.0 * sign, duration=0.5, times=TIMES)
+    return impact_cases.reference_case(start=0.3 * sign, force=5000.0 * sign, duration=0.5, times=TIMES)
 
 
 def row(sign: float = 1.0, order: int = 1) -> Any:
@@ -38,7 +37,7 @@ def row(sign: float = 1.0, order: int = 1) -> Any:
 
 def test_mirrored_case_is_the_mirrored_run() -> None:
     """With reversed start and pulse the motion changes its sign bit for bit."""
-    a, b = measures.simulate(short()).arrays, measures.simulate(short(-1.0)).arrays
+    a, b = impact_lines.simulate(short()).arrays, impact_lines.simulate(short(-1.0)).arrays
     assert np.array_equal(a.displacement, -b.displacement)
     assert np.array_equal(a.ball_position, -b.ball_position)
     assert np.array_equal(a.impacts.time, b.impacts.time)
@@ -47,7 +46,7 @@ def test_mirrored_case_is_the_mirrored_run() -> None:
 
 def test_row_counted_from_the_other_end_is_the_mirrored_run() -> None:
     """A row in reverse order under the reverse pulse moves as the mirror image, up to rounding."""
-    a, b = measures.simulate(row()).arrays, measures.simulate(row(-1.0, -1)).arrays
+    a, b = impact_lines.simulate(row()).arrays, impact_lines.simulate(row(-1.0, -1)).arrays
     assert len(a.impacts) > 5
     early = a.impacts.time < 0.1
     assert a.impacts.time[early] == pytest.approx(b.impacts.time[early], rel=1e-8)
@@ -77,8 +76,8 @@ def test_rescaled_units_give_the_rescaled_run(exact: bool) -> None:
             output=rb.Output(times=list(np.linspace(0, 0.4, 41) * time)),
         )
 
-    a = measures.simulate(scaled(1, 1, 1, 1)).arrays
-    b = measures.simulate(scaled(length, mass, time, force)).arrays
+    a = impact_lines.simulate(scaled(1, 1, 1, 1)).arrays
+    b = impact_lines.simulate(scaled(length, mass, time, force)).arrays
     assert len(a.impacts) == len(b.impacts) > 10
     assert b.impacts.time[:30] / time == pytest.approx(a.impacts.time[:30], rel=1e-9)
     assert np.abs(b.displacement / length - a.displacement).max() <= 1e-8 * np.abs(a.displacement).max()
@@ -86,15 +85,15 @@ def test_rescaled_units_give_the_rescaled_run(exact: bool) -> None:
 
 def test_run_split_in_a_flight_is_the_whole_run() -> None:
     """A run ended in a flight and continued from its last state agrees with the uninterrupted one."""
-    log = measures.simulate(cases.reference_case(duration=0.3, times=[0.0])).arrays.impacts
+    log = impact_lines.simulate(impact_cases.reference_case(duration=0.3, times=[0.0])).arrays.impacts
     middles = 0.5 * (log.time[:-1] + log.duration[:-1] + log.time[1:])
-    whole = measures.simulate(cases.reference_case(duration=0.3, times=middles)).arrays
+    whole = impact_lines.simulate(impact_cases.reference_case(duration=0.3, times=middles)).arrays
     # A flight that has the ball near the place where the cavity is at rest, as a start asks for.
     near = np.abs(whole.ball_position[1:-1, 0]) < 0.39e-3
     number = int(np.nonzero(near[4:])[0][0]) + 4
     split = float(middles[number])
-    first = measures.simulate(cases.reference_case(duration=split, times=[0.0])).arrays
-    second = measures.simulate(
+    first = impact_lines.simulate(impact_cases.reference_case(duration=split, times=[0.0])).arrays
+    second = impact_lines.simulate(
         rb.Case(
             structure=rb.SDOF(
                 mass=20.0,
@@ -121,15 +120,17 @@ def test_run_split_in_a_flight_is_the_whole_run() -> None:
 
 def test_output_times_do_not_change_the_run() -> None:
     """The bits of the impacts do not depend on the output."""
-    few = measures.simulate(cases.reference_case(duration=1.0, times=[0.0])).arrays.impacts
-    many = measures.simulate(cases.reference_case(duration=1.0, times=np.linspace(0, 1, 5001))).arrays.impacts
+    few = impact_lines.simulate(impact_cases.reference_case(duration=1.0, times=[0.0])).arrays.impacts
+    many = impact_lines.simulate(
+        impact_cases.reference_case(duration=1.0, times=np.linspace(0, 1, 5001))
+    ).arrays.impacts
     assert few == many
 
 
 def fingerprint() -> str:
     """Return a digest of the bits of some runs."""
     digest = hashlib.sha256()
-    for case in (cases.reference_case(duration=1.0), row(), cases.five_balls(0.3)):
+    for case in (impact_cases.reference_case(duration=1.0), row(), impact_cases.five_balls(0.3)):
         a = rb.simulate(case).arrays
         for values in (a.displacement, a.ball_position, a.impacts.time, a.normal_loss):
             digest.update(np.ascontiguousarray(values).tobytes())
@@ -149,7 +150,7 @@ def test_other_process_gives_the_same_bits() -> None:
 
 def test_threads_give_the_same_bits() -> None:
     """Many runs have the same bits on one thread, on two threads and one by one, in the order of the cases."""
-    group = [cases.reference_case(start=s, duration=0.5, times=TIMES) for s in np.linspace(-0.9, 0.9, 16)]
+    group = [impact_cases.reference_case(start=s, duration=0.5, times=TIMES) for s in np.linspace(-0.9, 0.9, 16)]
     one, two = rb.simulate_many(group, threads=1), rb.simulate_many(group, threads=2)
     for case, a, b in zip(group, one, two, strict=True):
         alone = rb.simulate(case).arrays

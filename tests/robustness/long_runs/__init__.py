@@ -1,1 +1,1 @@
-"""Long runs of particles that are stopped, killed, resumed, refused."""
+"""Interruption and restart of runs with particles."""

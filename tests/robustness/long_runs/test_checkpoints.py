@@ -1,14 +1,12 @@
-"""Long runs of particles: what stops them, what is kept, what goes on, and what is said."""
+"""Checkpoints and snapshots: interrupted runs resume with the same bits, other files are refused."""
 
 from __future__ import annotations
 
 import errno
-import os
 import re
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,6 +14,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import particle_run
+from support.ctrl_c import CtrlC
+from support.mounts import needs_mounts, with_own_mounts
+from support.particle_run import bits, case
 
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER
@@ -24,22 +26,19 @@ from rattlebox.engines.dem_run import DemRun
 from rattlebox.model.differences import differences
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
-from ..mounts import needs_mounts, with_own_mounts
-from .long_run import bits, case
-
-SCRIPT = Path(__file__).with_name("long_run.py")
+SCRIPT = Path(particle_run.__file__)
 FULL = ((16, "run.vtkhdf"), (64, "run.vtkhdf"), (300, "run.checkpoint"), (500, "run.checkpoint"))
-"""Sizes of disks [kB], and the file that they have no room for."""
+"""Sizes of file systems [kB], and the file that does not fit."""
 
 
 @pytest.fixture(scope="module")
-def whole() -> Mapping[str, Any]:
-    """Return a run that nothing stopped."""
+def uninterrupted() -> Mapping[str, Any]:
+    """Return the bits of a run without interruption."""
     return bits(rb.simulate(case(output=rb.Output(rate="2 kHz"))))
 
 
-def stop_at(snapshot: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Press Ctrl-C at a snapshot, before it is taken."""
+def interrupt_at(snapshot: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Raise KeyboardInterrupt before a snapshot is written."""
     append = SnapshotFile.append
 
     def stopping(self: SnapshotFile, number: int, *state: Any) -> None:
@@ -50,13 +49,13 @@ def stop_at(snapshot: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(SnapshotFile, "append", stopping)
 
 
-def test_runs_that_are_stopped_again_and_again_have_the_same_bits(
-    whole: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_repeatedly_interrupted_run_has_the_same_bits(
+    uninterrupted: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Stopped in the midst of contacts that slide, roll and are dented, a run goes on as if nothing had been."""
+    """A run that is interrupted while contacts slide, roll and yield resumes with the bits of an uninterrupted one."""
     files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
     for stop in (1, 4, 5, 9):
-        stop_at(stop, monkeypatch)
+        interrupt_at(stop, monkeypatch)
         part = rb.simulate(case(), **files)
         monkeypatch.undo()
         assert part.status == "interrupted"
@@ -65,13 +64,13 @@ def test_runs_that_are_stopped_again_and_again_have_the_same_bits(
         assert len(Snapshots(files["snapshots"])) == stop
     run = rb.simulate(case(method=rb.Dem(threads=2)), **files)
     assert run.ok
-    assert bits(run) == whole
+    assert bits(run) == uninterrupted
 
 
-def test_snapshots_of_runs_that_were_stopped_are_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Snapshots before and after a stop are those of a run that nothing stopped."""
+def test_snapshots_of_an_interrupted_run_are_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Snapshots before and after an interruption are those of an uninterrupted run."""
     files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
-    stop_at(5, monkeypatch)
+    interrupt_at(5, monkeypatch)
     rb.simulate(case(), **files)
     monkeypatch.undo()
     rb.simulate(case(), **files)
@@ -80,21 +79,21 @@ def test_snapshots_of_runs_that_were_stopped_are_the_same(tmp_path: Path, monkey
 
 
 def same_snapshots(first: Path, second: Path) -> bool:
-    """Whether two files hold the same to the last bit."""
+    """Return whether all arrays of two files of snapshots are equal bit by bit."""
     pairs = zip(Snapshots(first), Snapshots(second), strict=True)
     return all(np.array_equal(vars(a)[name], vars(b)[name]) for a, b in pairs for name in vars(a))
 
 
-def test_a_run_that_is_over_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run again, a run that has reached its end comes back at once and is the same."""
+def test_finished_run_is_read_from_its_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A finished run is returned from its checkpoint without preparation or simulation."""
     run = rb.simulate(case(), checkpoint=tmp_path / "run.checkpoint", snapshots=tmp_path / "run.vtkhdf")
     monkeypatch.setattr("rattlebox.prepare.particles.settle", None)
     again = rb.simulate(case(), checkpoint=tmp_path / "run.checkpoint", snapshots=tmp_path / "run.vtkhdf")
     assert bits(again) == bits(run)
 
 
-def test_a_killed_run_goes_on(tmp_path: Path) -> None:
-    """A process that is killed leaves a checkpoint and snapshots from which the run goes on to the same bits."""
+def test_killed_run_resumes(tmp_path: Path) -> None:
+    """A killed process leaves a checkpoint and snapshots from which the run resumes with the same bits."""
     duration = "0.5 s"
     checkpoint, snapshots = tmp_path / "run.checkpoint", tmp_path / "run.vtkhdf"
     for kill in range(3):
@@ -118,24 +117,15 @@ def test_a_killed_run_goes_on(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_stops_within_a_fifth_of_a_second(tmp_path: Path) -> None:
-    """Ctrl-C in the middle of hours of work ends it within 0.2 s, state and samples kept."""
+    """Ctrl-C ends a run of hours within 0.2 s; state and samples are stored."""
     took = []
     hours = case(duration="1000 s", output=rb.Output(rate="100 Hz"))
-    for _ in range(5):  # something else may need the processor
-        pressed: list[float] = []
-
-        def press(pressed: list[float] = pressed) -> None:
-            pressed.append(time.perf_counter())
-            os.kill(os.getpid(), signal.SIGINT)
-
-        waiting = threading.Timer(0.3, press)
-
-        def begun(done: int, total: int, waiting: threading.Timer = waiting) -> None:
-            if waiting.ident is None:
-                waiting.start()
-
-        run = rb.simulate(hours, checkpoint=tmp_path / "run.checkpoint", progress=begun)
-        took.append(time.perf_counter() - pressed[0])
+    for _ in range(5):  # other programs may delay the signal
+        ctrl_c = CtrlC(0.3)
+        run = rb.simulate(
+            hours, checkpoint=tmp_path / "run.checkpoint", progress=lambda done, total, ctrl_c=ctrl_c: ctrl_c.start()
+        )
+        took.append(ctrl_c.elapsed())
         assert run.status == "interrupted"
         assert str(tmp_path / "run.checkpoint") in run.message
         if took[-1] < 0.2:
@@ -143,10 +133,10 @@ def test_ctrl_c_stops_within_a_fifth_of_a_second(tmp_path: Path) -> None:
     pytest.fail(f"Ctrl-C took {took}")
 
 
-def test_states_are_kept_by_the_clock_of_the_run(
-    whole: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_checkpoints_at_intervals_of_simulated_time(
+    uninterrupted: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Asked for one every so much simulated time, checkpoints are of those times, and the bits stay the same."""
+    """With an interval of simulated time, checkpoints are written at its multiples, and the bits do not change."""
     times: list[float | None] = []
     write = Checkpoint.write
 
@@ -162,11 +152,11 @@ def test_states_are_kept_by_the_clock_of_the_run(
     )
     step = run.diagnostics["step"]
     assert times == pytest.approx([*np.arange(7) * 8e-3, 0.05], abs=1.5 * step)
-    assert bits(run) == whole
+    assert bits(run) == uninterrupted
 
 
-def test_runs_in_short_pieces_still_hear(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """However many snapshots are asked for, progress is told at each and can stop the run; checkpoints come by the clock."""
+def test_many_snapshots_do_not_delay_progress_and_checkpoints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With many snapshots, progress is reported at each and can stop the run; checkpoints follow the wall clock."""
     many = case(output=rb.Output(rate="2 kHz", snapshots=500), method=rb.Dem(checkpoint="1 ms"))
     caught: list[int] = []
     kept: list[float] = []
@@ -191,7 +181,7 @@ def test_runs_in_short_pieces_still_hear(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_two_processes_cannot_share_a_checkpoint(tmp_path: Path) -> None:
-    """While one process keeps its state in a file another is refused and told which; the hold ends with the process."""
+    """While a process uses a checkpoint, another one is refused with its number; the lock ends with the process."""
     files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
     with subprocess.Popen([sys.executable, SCRIPT, tmp_path, "50 s"]) as process:
         while not files["checkpoint"].exists():
@@ -206,8 +196,8 @@ def test_two_processes_cannot_share_a_checkpoint(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"run.checkpoint", "run.vtkhdf"}
 
 
-def test_what_a_killed_process_left_unfinished_is_removed(tmp_path: Path) -> None:
-    """A state that was being written when its process was killed goes with the next run; other files stay."""
+def test_unfinished_files_of_a_killed_process_are_removed(tmp_path: Path) -> None:
+    """The next run removes the unfinished checkpoint of a killed process; other files stay."""
     file = tmp_path / "run.checkpoint"
     left, other = (
         tmp_path / ".run.checkpoint.ab3_xyz9.partial.checkpoint",
@@ -219,8 +209,8 @@ def test_what_a_killed_process_left_unfinished_is_removed(tmp_path: Path) -> Non
     assert not left.exists() and other.exists()
 
 
-def test_other_runs_are_refused_with_the_differences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A checkpoint of another case, version or core is refused; what differs is listed; the file stays as it was."""
+def test_checkpoint_of_another_run_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A checkpoint of another case, version or core is refused; the message lists the differences, the file stays."""
     file = tmp_path / "run.checkpoint"
     short = case(duration="1 ms", output=rb.Output(rate="2 kHz"))
     rb.simulate(short, checkpoint=file)
@@ -246,8 +236,8 @@ def test_other_runs_are_refused_with_the_differences(tmp_path: Path, monkeypatch
     assert rb.simulate(short.model_copy(update={"method": rb.Dem(threads=2, checkpoint=60)}), checkpoint=file).ok
 
 
-def test_files_that_have_changed_are_noticed(tmp_path: Path) -> None:
-    """A case that reads the same, but names a file that holds something else now, is another run."""
+def test_changed_input_file_is_another_run(tmp_path: Path) -> None:
+    """A case with the same text whose input file has changed is another run."""
     places = tmp_path / "places.csv"
     places.write_text("x, y, z\n0, 0, 0\n")
     damper = {
@@ -269,7 +259,7 @@ def test_files_that_have_changed_are_noticed(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("content", [b"", b"notes", b"PK\x03\x04 torn"])
 def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
-    """A file that is no checkpoint is left alone."""
+    """A file that is no checkpoint is refused and stays unchanged."""
     file = tmp_path / "notes.txt"
     file.write_bytes(content)
     with pytest.raises(rb.DataError, match=r"is not an intact checkpoint: .* is damaged\n  try: another file"):
@@ -277,8 +267,8 @@ def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
     assert file.read_bytes() == content
 
 
-def test_a_torn_checkpoint_is_refused(tmp_path: Path) -> None:
-    """Bits that changed on disk are noticed, wherever they matter."""
+def test_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
+    """A flipped bit in a checkpoint is detected, or does not change the run."""
     file = tmp_path / "run.checkpoint"
     short = case(duration="1 ms", output=rb.Output(rate="2 kHz"))
     rb.simulate(short, checkpoint=file)
@@ -294,12 +284,12 @@ def test_a_torn_checkpoint_is_refused(tmp_path: Path) -> None:
         except rb.DataError:
             refused += 1
         else:
-            assert bits(again) == bits(run)  # where the file says nothing
+            assert bits(again) == bits(run)  # of bytes without meaning
     assert refused > 40
 
 
-def test_long_values_are_told_where_they_part() -> None:
-    """Of two long values that differ at their ends, those ends are shown; of tables in lists, their number or place."""
+def test_differences_of_long_values_are_shortened() -> None:
+    """Of long values that differ at their ends, these ends are listed; of lists of tables, their length or the place."""
     there, here = ({"file": f"kept/by/someone/a/folder/of/many/records/{name}.csv"} for name in ("push", "pull"))
     assert differences(there, here) == [
         '  file: ...ne/a/folder/of/many/records/push.csv" there, ...ne/a/folder/of/many/records/pull.csv" here'
@@ -309,10 +299,10 @@ def test_long_values_are_told_where_they_part() -> None:
     assert differences({"a": [{"b": 1}]}, {"a": [{"b": 1}, {"b": 2}]}) == ["  a: 1 there, 2 here"]
 
 
-def test_snapshots_that_are_gone_are_missed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A run does not go on without the snapshots that it has taken."""
+def test_missing_snapshots_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run does not resume without the snapshots that it had written."""
     files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
-    stop_at(3, monkeypatch)
+    interrupt_at(3, monkeypatch)
     rb.simulate(case(), **files)
     monkeypatch.undo()
     files["snapshots"].unlink()
@@ -320,20 +310,20 @@ def test_snapshots_that_are_gone_are_missed(tmp_path: Path, monkeypatch: pytest.
         rb.simulate(case(), **files)
 
 
-def test_snapshots_that_are_something_else_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A run does not go on with snapshots that are torn, foreign or a folder, and says what they are and what to try."""
+def test_damaged_or_foreign_snapshots_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run does not resume with a truncated or foreign file or a folder as snapshots; the message says what it is."""
     files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
-    stop_at(3, monkeypatch)
+    interrupt_at(3, monkeypatch)
     rb.simulate(case(), **files)
     monkeypatch.undo()
-    whole = files["snapshots"].read_bytes()
+    uninterrupted = files["snapshots"].read_bytes()
 
     def refused() -> str:
         with pytest.raises(rb.DataError) as caught:
             rb.simulate(case(), **files)
         return str(caught.value)
 
-    for content in (whole[:5000], b"notes"):
+    for content in (uninterrupted[:5000], b"notes"):
         files["snapshots"].write_bytes(content)
         message = f"{files['snapshots']} is not an intact HDF5 file\n  try: put the file"
         assert refused().startswith(message)
@@ -343,12 +333,12 @@ def test_snapshots_that_are_something_else_are_told(tmp_path: Path, monkeypatch:
     assert refused().startswith(f"{files['snapshots']} is a folder; snapshots must be a file\n  try: ")
 
 
-def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
-    whole: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_full_disk_leaves_the_last_checkpoint(
+    uninterrupted: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """When the disk is full in the middle, the checkpoint before is whole, and with room the run goes on from it."""
+    """If the disk is full during a run, the last checkpoint is intact, and the run resumes from it."""
     files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
-    stop_at(5, monkeypatch)
+    interrupt_at(5, monkeypatch)
     rb.simulate(case(), **files)
     before = files["checkpoint"].read_bytes()
     monkeypatch.undo()
@@ -366,7 +356,7 @@ def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
     monkeypatch.undo()
     assert files["checkpoint"].read_bytes() == before
     assert {path.name for path in tmp_path.iterdir()} == {"run.checkpoint", "run.vtkhdf"}
-    assert bits(rb.simulate(case(), **files)) == whole
+    assert bits(rb.simulate(case(), **files)) == uninterrupted
 
 
 @needs_mounts
@@ -378,8 +368,8 @@ def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
     ],
     ids=[*(f"{size} kB" for size, _ in FULL), "read-only"],
 )
-def test_real_disks_that_take_no_more(mount: str, name: str, message: str, tmp_path: Path) -> None:
-    """A file system that is really full or read-only ends the run with that message, and nothing else is said after it."""
+def test_full_and_read_only_file_systems(mount: str, name: str, message: str, tmp_path: Path) -> None:
+    """A file system that is full or read-only ends the run with that message as the last lines."""
     done = with_own_mounts(f"{mount.format(tmp_path)}; {sys.executable} {SCRIPT} {tmp_path} '20 s'")
     assert done.returncode == 1, done.stderr
     assert "Exception ignored" not in done.stderr
@@ -390,8 +380,8 @@ def test_real_disks_that_take_no_more(mount: str, name: str, message: str, tmp_p
 
 
 @needs_mounts
-def test_runs_that_find_no_room(tmp_path: Path) -> None:
-    """A run that is written to a full disk is told so in one line, and leaves nothing there."""
+def test_saving_to_a_full_disk(tmp_path: Path) -> None:
+    """Saving a run to a full disk raises one error and leaves no file."""
     rb.simulate(case(output=rb.Output(rate="2 kHz"))).save(tmp_path / "run.nc")
     disk = tmp_path / "disk"
     disk.mkdir()
@@ -405,8 +395,8 @@ def test_runs_that_find_no_room(tmp_path: Path) -> None:
     assert "Exception ignored" not in done.stderr
 
 
-def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
-    """A particle that leaves its cavity stops the run with its number, time, speed, step and the last checkpoint."""
+def test_escaped_particle_is_reported(tmp_path: Path) -> None:
+    """A particle that leaves its cavity ends the run; the message has its number, time, speed, step and the checkpoint."""
     file = tmp_path / "run.checkpoint"
     fast = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="6 mm", count=2),
@@ -420,17 +410,17 @@ def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
     assert run.status == "escaped"
     where = "Particle 1, in 'damper', left its cavity at "
     assert run.message.startswith(where)
-    caught = run.message.removeprefix(where).split()
-    assert float(caught[0]) == pytest.approx(40, rel=0.1)
+    speed = run.message.removeprefix(where).split()[0]
+    assert float(speed) == pytest.approx(40, rel=0.1)
     step = run.diagnostics["step"]
     assert f"{step:.4g} s" in run.message
     assert "t = 0 s" in run.message and file.name in run.message
-    time_told = float(run.message.split("at t = ")[1].split()[0])
-    assert 0.012 / 40 < time_told < 0.0185 / 40 + 3 * step
+    time_of_escape = float(run.message.split("at t = ")[1].split()[0])
+    assert 0.012 / 40 < time_of_escape < 0.0185 / 40 + 3 * step
 
 
 def test_particles_are_counted_over_all_dampers() -> None:
-    """The number of a particle in a message is its place in `run.particles`, whichever damper it is in."""
+    """The number of a particle in a message is its index in `run.particles`, whichever damper contains it."""
     steel = {
         "particles": rb.Particles(material="steel", diameter="6 mm", count=2),
         "contact": rb.Tsuji(restitution=0.5),
@@ -453,8 +443,8 @@ def test_particles_are_counted_over_all_dampers() -> None:
     assert run.particles.position.values[:3, 0].max() < 1e-3
 
 
-def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
-    """Checkpoints and snapshots are refused where there is nothing to keep, and snapshots need a file."""
+def test_runs_without_particles_refuse_checkpoints(tmp_path: Path) -> None:
+    """Runs without particles refuse checkpoints and snapshots; snapshots need a file."""
     plain = rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4, velocity=1), duration="1 ms")
     with pytest.raises(rb.CaseError, match="are for particle dampers only"):
         rb.simulate(plain, checkpoint=tmp_path / "run.checkpoint")
@@ -464,8 +454,8 @@ def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
         rb.simulate(case())
 
 
-def test_a_run_stopped_before_its_first_step_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ctrl-C before the first step leaves a run with one sample, and a checkpoint from which it goes on."""
+def test_run_interrupted_before_its_first_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C before the first step leaves one sample and a checkpoint from which the run resumes."""
 
     def press(*_: object) -> bool:
         raise KeyboardInterrupt
@@ -479,7 +469,7 @@ def test_a_run_stopped_before_its_first_step_goes_on(tmp_path: Path, monkeypatch
     assert bits(rb.simulate(short, checkpoint=file)) == bits(rb.simulate(short))
 
 
-LOST = """
+DISCARDING = """
 import os, signal, sys, time, weakref
 from rattlebox.cli.commands import app
 from rattlebox.cli.main import main
@@ -508,9 +498,9 @@ main()
 """
 
 
-def test_a_stop_where_exceptions_are_lost_is_heard() -> None:
-    """SIGTERM while a weak reference is cleared, where Python drops exceptions, stops the command all the same."""
-    done = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, check=False)
+def test_sigterm_where_python_discards_exceptions() -> None:
+    """SIGTERM in the callback of a weak reference, where Python discards exceptions, stops the command."""
+    done = subprocess.run([sys.executable, "-c", DISCARDING], capture_output=True, text=True, check=False)
     assert done.returncode == 128 + signal.SIGTERM, done.stderr
 
 
@@ -535,15 +525,15 @@ main()
 """
 
 
-def test_a_stop_while_compiled_modules_load_is_heard() -> None:
-    """SIGTERM while a module in C loads, which may lose what is raised there, stops the command once it is loaded."""
+def test_sigterm_while_a_compiled_module_loads() -> None:
+    """SIGTERM while a compiled module is loaded, which may discard exceptions, stops the command afterwards."""
     done = subprocess.run([sys.executable, "-c", LOADING], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "stopped\n")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
-    """Stopped by Ctrl-C or a cluster, the command says how to go on; given again it finishes and leaves no checkpoint."""
+def test_command_resumes(number: int, tmp_path: Path) -> None:
+    """An interrupted command prints how to resume; repeated, it finishes and removes the checkpoint."""
     case(duration="0.7 s").to_file(tmp_path / "case.toml")
     command = [sys.executable, "-m", "rattlebox.cli", "run", "case.toml", "--no-figures"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
@@ -561,8 +551,8 @@ def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
     assert len(Snapshots(tmp_path / "out/run.vtkhdf")) == 11
 
 
-def test_folders_that_are_not_there_are_told(tmp_path: Path) -> None:
-    """A checkpoint or snapshots in a folder that does not exist are refused before anything is computed."""
+def test_missing_folders_are_refused(tmp_path: Path) -> None:
+    """A checkpoint or snapshots in a missing folder are refused before anything is computed."""
     for name in ("checkpoint", "snapshots"):
         files = {"snapshots": tmp_path / "run.vtkhdf", name: tmp_path / "nowhere" / "file"}
         with pytest.raises(
@@ -571,7 +561,7 @@ def test_folders_that_are_not_there_are_told(tmp_path: Path) -> None:
             rb.simulate(case(), **files)
 
 
-def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
+def test_invalid_paths_are_refused(tmp_path: Path) -> None:
     """A folder in place of a file, and one file for both, are refused before anything is computed."""
     file = tmp_path / "file"
     for files, message in (

@@ -1,4 +1,4 @@
-"""States of particle runs that were changed behind their checksums are refused, or run on; they never end the process."""
+"""Saved states of particle runs that were changed without a wrong checksum: refused or harmless, never a crash."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FLIPS = 1500
 
 
 def shaken(kind: str) -> rb.Case:
-    """Return particles of two sizes that are shaken, with all that contacts remember."""
+    """Return a shaken case with particles of two sizes and all kinds of contact history."""
     contact: Any = {
         "hertz": rb.Tsuji(restitution=0.7),
         "yielding": rb.Thornton(yield_pressure="20 MPa"),
@@ -47,7 +47,7 @@ def shaken(kind: str) -> rb.Case:
 
 
 def run_flipped(kind: str, seed: int) -> tuple[int, int]:
-    """Flip a bit at a time in a state and go on from it; return how many states were refused, and how many ran on."""
+    """Restore states with one flipped bit and run on; return the numbers of refused and of accepted states."""
     prepared = prepare(shaken(kind))
     packed, step = pack_particles(prepared), prepared.step
     first = _core.Dem(packed)
@@ -73,8 +73,8 @@ def run_flipped(kind: str, seed: int) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("kind", ["hertz", "yielding"])
-def test_flipped_bits_do_no_harm(kind: str) -> None:
-    """Whatever bit of a state is flipped, the process lives; indices and counts that do not fit are refused."""
+def test_flipped_bits_do_not_crash(kind: str) -> None:
+    """No flipped bit of a state ends the process; indices and counts out of range are refused."""
     done = subprocess.run(
         [sys.executable, "-c", f"import test_damaged_states as t; print(*t.run_flipped({kind!r}, 1))"],
         cwd=Path(__file__).parent,
@@ -88,11 +88,10 @@ def test_flipped_bits_do_no_harm(kind: str) -> None:
     assert refused + ran == FLIPS
 
 
-def test_a_state_that_was_changed_is_refused_with_its_file(tmp_path: Path) -> None:
-    """A checkpoint with a sound archive, in whose state a count was changed, is refused by name before the run."""
+def test_changed_state_in_an_intact_archive_is_refused(tmp_path: Path) -> None:
+    """A checkpoint with valid checksums but a changed state is refused with its name before the run."""
     case, path = shaken("hertz"), tmp_path / "run.checkpoint"
-    whole = rb.simulate(case, checkpoint=path)
-    assert whole.ok
+    assert rb.simulate(case, checkpoint=path).ok
     with np.load(path) as file:
         members = {name: file[name] for name in file.files}
     packed = pack_particles(prepare(case))

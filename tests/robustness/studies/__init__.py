@@ -1,1 +1,1 @@
-"""Studies that are stopped, killed, resumed, refused."""
+"""Interruption and restart of studies."""

@@ -1,4 +1,4 @@
-"""The page on clusters: what it shows works."""
+"""The examples of the page on clusters."""
 
 import re
 import shutil
@@ -16,20 +16,20 @@ ROOT = Path(__file__).parents[3]
 
 
 def block(language: str, number: int = 0) -> str:
-    """Return what the page shows in a language."""
+    """Return a code block of the page by its language."""
     result = re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / "how-to" / "cluster.md").read_text(), re.DOTALL)
     assert len(result) == {"toml": 2}.get(language, 1)
     return str(result[number])
 
 
 def test_the_study_file() -> None:
-    """The study file is read, with the axes in the order of its lines."""
+    """The study file is read, with its axes in the order of the lines."""
     study = study_from_toml(block("toml"), folder=ROOT / "examples")
     assert list(study.axes) == ["damper.gap", "load.amplitude"]
 
 
 def test_the_map(tmp_path: Path) -> None:
-    """The file of a ready map is run, with fewer values."""
+    """The study file of another kind runs, with fewer values."""
     study = study_from_toml(block("toml", 1).replace("count = 41", "count = 5"), folder=ROOT / "examples")
     result = study.run(store=tmp_path / "study.zarr", progress=False)
     assert result.sizes["structure.motion.amplitude"] == 5
@@ -37,7 +37,7 @@ def test_the_map(tmp_path: Path) -> None:
 
 
 def test_the_python_script(tmp_path: Path) -> None:
-    """The script runs as it stands, and leaves a finished store."""
+    """The script runs unchanged and leaves a finished store."""
     (tmp_path / "script.py").write_text(block("python"))
     done = subprocess.run(
         [sys.executable, "-W", "error", "script.py"],
@@ -54,7 +54,7 @@ def test_the_python_script(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
 def test_the_job_script(tmp_path: Path) -> None:
-    """The job script, with a stand-in for srun and kept to the loopback, runs the study and ends what it started."""
+    """The job script, with a stand-in for srun and on the loopback, runs the study and ends its processes."""
     programs = tmp_path / ".venv" / "bin"
     programs.mkdir(parents=True)
     (programs / "activate").write_text(f"PATH={programs}:{Path(sys.executable).parent}:$PATH\n")
@@ -67,6 +67,6 @@ def test_the_job_script(tmp_path: Path) -> None:
     process = subprocess.Popen(
         ["bash", "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    output, message = process.communicate(timeout=60)  # until all that it started has closed the pipes
+    output, message = process.communicate(timeout=60)  # until all of its processes have closed the pipes
     assert output.endswith("6 variants: 6 finished\nwritten to study.zarr\n"), message
     assert open_study(tmp_path / "study.zarr").impacts.shape == (2, 3)

@@ -1,23 +1,23 @@
-"""Sweeps that follow a motion: killed, stopped, and spread over workers."""
+"""Studies with continuation: killed, stopped, and distributed over workers."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 import xarray as xr
 from distributed import Client
+from support.dask_programs import running_scheduler, worker
+from support.datasets import bits
+from support.logistic_study import variants_in
+from support.waiting import wait_for
 
 import rattlebox as rb
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.stored import progress_of
-
-from .fake import done_in
-from .test_cluster import running_scheduler, worker
 
 AMPLITUDE = "structure.motion.amplitude"
 STUDY = """\
@@ -42,7 +42,7 @@ rb.bifurcation(case, "structure.motion.amplitude", values, cycles=(400, 16), sto
 
 
 def diagram(**options: Any) -> xr.Dataset:
-    """The same diagram, here."""
+    """Return the bifurcation diagram of the study."""
     names: dict[str, Any] = {}
     exec(STUDY, names)
     return rb.bifurcation(
@@ -50,28 +50,21 @@ def diagram(**options: Any) -> xr.Dataset:
     )
 
 
-def bits(data: xr.Dataset) -> dict[str, bytes]:
-    """Every variable to the last bit."""
-    return {str(name): values.values.tobytes() for name, values in data.data_vars.items()}
-
-
 @pytest.mark.parametrize("after", [10, 70])  # on the way up, and down again
-def test_killed_on_the_way(after: int, tmp_path: Path) -> None:
-    """A diagram that is killed on its way up or down goes on from there, with the bits of one that ran through."""
+def test_killed_diagram_resumes(after: int, tmp_path: Path) -> None:
+    """A diagram that is killed on its way up or down resumes with the bits of an uninterrupted one."""
     store = tmp_path / "study.zarr"
     process = subprocess.Popen([sys.executable, "-c", KILLED], cwd=tmp_path)
-    until = time.monotonic() + 60
-    while done_in(store) < after:
-        assert time.monotonic() < until and process.poll() is None
-        time.sleep(0.002)
+    wait_for(lambda: variants_in(store) >= after, pause=0.002)
+    assert process.poll() is None
     process.kill()
     process.wait()
     assert after <= progress_of(store).done < 120
     assert bits(diagram(store=store)) == bits(diagram())
 
 
-def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
-    """A diagram that was stopped begins with what is there; when it is finished, nothing is left to do."""
+def test_resumed_diagram_computes_nothing_twice(tmp_path: Path) -> None:
+    """A stopped diagram resumes from its finished points; a finished one computes nothing."""
     store = tmp_path / "study.zarr"
 
     def press(done: int, total: int) -> None:
@@ -91,8 +84,8 @@ def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
     assert again() == [120]
 
 
-def test_a_worker_is_killed_on_the_way(tmp_path: Path) -> None:
-    """Sweeps up and down at two levels share two workers; one is killed, and the bits are those of this process."""
+def test_killed_worker(tmp_path: Path) -> None:
+    """Sweeps up and down at two levels on two workers, one of which is killed, have the bits of this process."""
     case = rb.Case(
         structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
         damper=rb.ImpactDamper(

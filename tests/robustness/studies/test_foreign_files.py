@@ -11,13 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.logistic_study import Logistic
 
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER, Marker, fill, read_marker, remove, write_marker
 from rattlebox.studies.runner import run_work
 from rattlebox.studies.stored import open_study
-
-from .fake import Logistic
 
 CASE = """
 duration = "50 ms"
@@ -40,8 +39,8 @@ NAMES = (
 )
 
 
-def plant(folder: Path, names: tuple[str, ...] = NAMES) -> dict[Path, str]:
-    """Put files of a user into a folder."""
+def add_files(folder: Path, names: tuple[str, ...] = NAMES) -> dict[Path, str]:
+    """Write files of a user into a folder."""
     files = {folder / name: f"my {name}" for name in names}
     for path, text in files.items():
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -50,12 +49,12 @@ def plant(folder: Path, names: tuple[str, ...] = NAMES) -> dict[Path, str]:
 
 
 @pytest.fixture
-def mine(tmp_path: Path) -> Iterator[Callable[..., dict[Path, str]]]:
-    """Return a function that puts files into a folder; they are there and unchanged at the end of the test."""
+def user_files(tmp_path: Path) -> Iterator[Callable[..., dict[Path, str]]]:
+    """Return a function that writes files of a user; all of them are unchanged at the end of the test."""
     all_of_them: dict[Path, str] = {}
 
     def put(folder: Path, names: tuple[str, ...] = NAMES) -> None:
-        all_of_them.update(plant(folder, names))
+        all_of_them.update(add_files(folder, names))
 
     yield put
     assert all_of_them
@@ -63,8 +62,8 @@ def mine(tmp_path: Path) -> Iterator[Callable[..., dict[Path, str]]]:
         assert path.read_text() == text
 
 
-def test_a_folder_of_a_user_is_no_store(tmp_path: Path, mine: Any) -> None:
-    """A folder with other files is refused, whatever their names are."""
+def test_folder_of_a_user_is_refused(tmp_path: Path, user_files: Any) -> None:
+    """A folder with foreign files is refused, whatever their names are."""
     for number, names in enumerate(
         [
             ("thesis/ch1.tex", "progress/plan.txt"),
@@ -76,17 +75,17 @@ def test_a_folder_of_a_user_is_no_store(tmp_path: Path, mine: Any) -> None:
         ]
     ):
         folder = tmp_path / str(number)
-        mine(folder, names)
+        user_files(folder, names)
         with pytest.raises(rb.StoreError, match=r"\n  try: "):
             run_work(Logistic(), store=folder, progress=False)
         assert {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} == {*names}
 
 
 @pytest.mark.parametrize("kind", ["sweep", "command", "bifurcation", "frequency_response", "design"])
-def test_every_study_refuses_a_folder_of_a_user(kind: str, tmp_path: Path, mine: Any) -> None:
-    """The functions and the command that take a store refuse a folder that has a subfolder called progress."""
+def test_every_study_refuses_a_folder_of_a_user(kind: str, tmp_path: Path, user_files: Any) -> None:
+    """All functions and the command that take a store refuse a folder with a foreign subfolder called progress."""
     folder = tmp_path / "project"
-    mine(folder, ("thesis/ch1.tex", "progress/plan.txt"))
+    user_files(folder, ("thesis/ch1.tex", "progress/plan.txt"))
     case = rb.Case.from_toml(CASE)
     if kind == "command":
         (tmp_path / "case.toml").write_text(CASE)
@@ -107,8 +106,8 @@ def test_every_study_refuses_a_folder_of_a_user(kind: str, tmp_path: Path, mine:
         calls[kind]()
 
 
-def test_a_study_goes_on_beside_files_of_a_user(tmp_path: Path, mine: Any) -> None:
-    """Files that were put into a store stay there while the study goes on, is repaired, and loses blocks."""
+def test_store_with_foreign_files_resumes(tmp_path: Path, user_files: Any) -> None:
+    """Foreign files in a store stay there while the study resumes, is repaired and loses blocks."""
     store = tmp_path / "study.zarr"
 
     def stop(done: int, total: int) -> None:
@@ -117,7 +116,7 @@ def test_a_study_goes_on_beside_files_of_a_user(tmp_path: Path, mine: Any) -> No
 
     with suppress(ZeroDivisionError):
         run_work(Logistic(), store=store, block=5, progress=stop)
-    mine(store)
+    user_files(store)
     left = store / "value" / "c" / "1" / f"0.{'a' * 32}.partial"
     left.write_text("half a chunk")
     first = run_work(Logistic(), store=store, progress=False).load()
@@ -127,8 +126,8 @@ def test_a_study_goes_on_beside_files_of_a_user(tmp_path: Path, mine: Any) -> No
     assert run_work(Logistic(), store=store, progress=False).load().equals(first)
 
 
-def test_a_half_made_store_with_files_of_a_user(tmp_path: Path, mine: Any) -> None:
-    """What a killed process left is removed by its list."""
+def test_incomplete_store_with_foreign_files(tmp_path: Path, user_files: Any) -> None:
+    """Of an incomplete store only the files in its list are removed."""
     store = tmp_path / "study.zarr"
     run_work(Logistic(), store=tmp_path / "other.zarr", progress=False)
     made = read_marker(tmp_path / "other.zarr")
@@ -138,31 +137,31 @@ def test_a_half_made_store_with_files_of_a_user(tmp_path: Path, mine: Any) -> No
     for name in ("zarr.json", "gone/zarr.json", "value/zarr.json"):
         (store / name).parent.mkdir(exist_ok=True)
         (store / name).write_text("{")
-    mine(store, ("thesis.tex", "gone/notes.txt", "photos/a.jpg"))
+    user_files(store, ("thesis.tex", "gone/notes.txt", "photos/a.jpg"))
     run_work(Logistic(), store=store, progress=False)
     assert not (store / "gone" / "zarr.json").exists()
 
 
 @pytest.mark.parametrize("name", ["zarr.json", "value/c/0/0", "gap/zarr.json"])
-def test_files_in_the_way_are_not_written_over(name: str, tmp_path: Path, mine: Any) -> None:
-    """A user's file with the name of one that a study needs is reported, and nothing is written."""
+def test_foreign_files_are_not_overwritten(name: str, tmp_path: Path, user_files: Any) -> None:
+    """A foreign file with a name that the study needs is reported, and nothing is written."""
     store = tmp_path / "study.zarr"
     store.mkdir()
     write_marker(store, Marker("Rattlebox study", rb.__version__))
-    mine(store, (name,))
+    user_files(store, (name,))
     with pytest.raises(rb.StoreError, match="was not written by Rattlebox\n  try: move it"):
         run_work(Logistic(), store=store, progress=False)
 
 
-def test_a_map_beside_files_of_a_user(tmp_path: Path, mine: Any) -> None:
-    """A ready map is made anew beside files in its folder; one that is in its way is reported."""
+def test_diagram_with_foreign_files(tmp_path: Path, user_files: Any) -> None:
+    """A diagram is written again next to foreign files in its folder; a foreign map folder does not matter to a sweep."""
     store, case = tmp_path / "study.zarr", rb.Case.from_toml(CASE)
 
     def made() -> Any:
         return rb.bifurcation(case, "damper.gap", [3e-4, 4e-4], cycles=(1, 2), store=store, progress=False)
 
     first = made()
-    mine(store / "map", ("notes.txt", "c/notes.txt"))
+    user_files(store / "map", ("notes.txt", "c/notes.txt"))
     (store / "map" / "zarr.json").write_text("{")
     with pytest.raises(
         rb.StoreError, match=r"is damaged: zarr\.json is missing or has changed\n  try: its command again"
@@ -173,15 +172,15 @@ def test_a_map_beside_files_of_a_user(tmp_path: Path, mine: Any) -> None:
 
     other = tmp_path / "other.zarr"
     rb.sweep(case, {"damper.gap": [3e-4, 4e-4]}, ["impacts"], store=other, progress=False)
-    mine(other, ("map/zarr.json",))
+    user_files(other, ("map/zarr.json",))
     assert open_study(other).impacts.size == 2
 
 
-def test_a_list_does_not_lead_out_of_its_folder(tmp_path: Path, mine: Any) -> None:
-    """A marker made by somebody else removes nothing outside of its folder, through dots or through links."""
+def test_marker_cannot_remove_files_elsewhere(tmp_path: Path, user_files: Any) -> None:
+    """A forged marker removes nothing outside of its folder, neither by dots in a path nor by links."""
     folder = tmp_path / "given"
     folder.mkdir()
-    mine(tmp_path / "home", ("thesis.tex",))
+    user_files(tmp_path / "home", ("thesis.tex",))
     write_marker(folder, Marker("Rattlebox study", "1", files={"../home/thesis.tex": ""}))
     with pytest.raises(ValueError, match="has changed"):
         fill(folder, Marker("Rattlebox study", "1"), {"a": b"b"})
@@ -189,8 +188,8 @@ def test_a_list_does_not_lead_out_of_its_folder(tmp_path: Path, mine: Any) -> No
     remove(folder, ["link/thesis.tex"])
 
 
-def test_a_store_that_is_removed_while_it_runs(tmp_path: Path) -> None:
-    """A study whose folder is removed stops with a message, and leaves no half of a store behind."""
+def test_store_that_is_removed_during_a_study(tmp_path: Path) -> None:
+    """A study whose folder is removed stops with a message and does not create an incomplete store."""
     store = tmp_path / "study.zarr"
 
     def clear(done: int, total: int) -> None:

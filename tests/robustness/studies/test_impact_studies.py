@@ -1,17 +1,16 @@
-"""Studies of real cases: killed and stopped."""
+"""Interruption and restart of studies of impact dampers."""
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import sys
-import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from support.ctrl_c import CtrlC
+from support.logistic_study import variants_in
+from support.waiting import wait_for
 
 import rattlebox as rb
 from rattlebox.studies.axes import read_axes
@@ -19,8 +18,6 @@ from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.runner import Stopped, run_work
 from rattlebox.studies.stored import open_study, progress_of
 from rattlebox.studies.study_file import read_study
-
-from .fake import done_in
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 STUDY = f"""\
@@ -39,14 +36,12 @@ run_work(study.work, store="study.zarr", workers=1, block=100)
 """
 
 
-def test_a_killed_study_goes_on(tmp_path: Path) -> None:
-    """A study of 2000 runs, killed in the middle, goes on by the command and gives the same bits as in memory."""
+def test_killed_study_resumes(tmp_path: Path) -> None:
+    """A study of 2000 runs that is killed resumes by the command and has the bits of one in memory."""
     (tmp_path / "study.toml").write_text(STUDY)
     store = tmp_path / "study.zarr"
     process = subprocess.Popen([sys.executable, "-c", SMALL_BLOCKS], cwd=tmp_path)
-    until = time.monotonic() + 30
-    while not done_in(store) and time.monotonic() < until:
-        time.sleep(0.01)
+    wait_for(lambda: variants_in(store))
     process.kill()
     process.wait()
     assert 0 < progress_of(store).done < 2000
@@ -61,22 +56,25 @@ def test_a_killed_study_goes_on(tmp_path: Path) -> None:
     }
 
 
-def own(run: rb.Run) -> float:
-    """A measure of one's own."""
+def impact_count(run: rb.Run) -> float:
+    """Return the number of impacts, as a measure of a user."""
     return float(len(run.arrays.impacts))
 
 
-def ball() -> rb.Case:
-    """A ball that a shaker throws to and fro."""
+def shaken_ball() -> rb.Case:
+    """Return a shaken_ball in a shaken cavity."""
     damper = rb.ImpactDamper(
-        ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", velocity=0.1, contact=rb.Tsuji(restitution=0.6)
+        ball=rb.Sphere(radius="10 mm", material="steel"),
+        gap="1 mm",
+        velocity=0.1,
+        contact=rb.Tsuji(restitution=0.6),
     )
     motion = rb.Harmonic(amplitude="1 mm", frequency="10 Hz")
     return rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s", method=rb.Newton())
 
 
 def one_block(store: Path) -> None:
-    """One block that takes minutes."""
+    """Run a study of one block that takes minutes."""
     case = rb.Case.from_file(EXAMPLE)
     design = read_axes(case, {"damper.start": rb.linspace(-0.5, 0.5, 100_000)})
     run_work(ImpactWork(case, design, ["impacts"]), store=store, block=100_000, progress=False)
@@ -86,11 +84,13 @@ STARTS = {"damper.start": rb.linspace(-0.5, 0.5, 100_000)}
 WORK: dict[str, Callable[[Path], object]] = {
     "one block": one_block,
     "sweep": lambda store: rb.sweep(rb.Case.from_file(EXAMPLE), STARTS, ["impacts"], store=store, progress=False),
-    "own measure": lambda store: rb.sweep(rb.Case.from_file(EXAMPLE), STARTS, [own], store=store, progress=False),
-    "bifurcation": lambda store: rb.bifurcation(
-        ball(), "damper.gap", [1e-3, 2e-3], cycles=(10**8, 4), store=store, progress=False
+    "measure of a user": lambda store: rb.sweep(
+        rb.Case.from_file(EXAMPLE), STARTS, [impact_count], store=store, progress=False
     ),
-    "lyapunov": lambda store: rb.lyapunov(ball(), STARTS, cycles=(10**4, 10**4), store=store, progress=False),
+    "bifurcation": lambda store: rb.bifurcation(
+        shaken_ball(), "damper.gap", [1e-3, 2e-3], cycles=(10**8, 4), store=store, progress=False
+    ),
+    "lyapunov": lambda store: rb.lyapunov(shaken_ball(), STARTS, cycles=(10**4, 10**4), store=store, progress=False),
     "design": lambda store: rb.design(
         rb.Case.from_file(EXAMPLE), {"damper.gap": (1e-4, 1e-3)}, starts=100_000, store=store, progress=False
     ),
@@ -99,19 +99,13 @@ WORK: dict[str, Callable[[Path], object]] = {
 
 @pytest.mark.parametrize("work", WORK)
 def test_ctrl_c_stops_within_a_fifth_of_a_second(work: str, tmp_path: Path) -> None:
-    """Ctrl-C in the middle of hours of work ends it within 0.2 s, and says how to go on."""
+    """Ctrl-C during hours of work ends it within 0.2 s, with a message on how to resume."""
     took = []
-    for attempt in range(5):  # something else may need the processor
-        pressed: list[float] = []
-
-        def press(pressed: list[float] = pressed) -> None:
-            pressed.append(time.perf_counter())
-            os.kill(os.getpid(), signal.SIGINT)
-
-        threading.Timer(0.5 + 0.2 * attempt, press).start()
-        with pytest.raises(Stopped, match="the same command resumes from there"):
+    for attempt in range(5):  # other programs may delay the signal
+        stopped = pytest.raises(Stopped, match="the same command resumes from there")
+        with CtrlC(0.5 + 0.2 * attempt) as ctrl_c, stopped:
             WORK[work](tmp_path / "study.zarr")
-        took.append(time.perf_counter() - pressed[0])
+        took.append(ctrl_c.elapsed())
         if took[-1] < 0.2:
             return
     pytest.fail(f"Ctrl-C took {took}")

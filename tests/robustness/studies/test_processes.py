@@ -1,36 +1,28 @@
-"""Studies on processes of this machine: the same bits, a function of a Run, a process that dies, and Ctrl-C."""
+"""Studies on processes of this machine: bits, functions of a Run, crashes and Ctrl-C."""
 
 from __future__ import annotations
 
 import os
-import signal
 import sys
-import threading
-import time
 from pathlib import Path
 
 import cloudpickle  # type: ignore[import-untyped]
 import pytest
-import xarray as xr
+from support import logistic_study
+from support.ctrl_c import CtrlC
+from support.datasets import bits
+from support.logistic_study import Logistic
 
 import rattlebox as rb
 from rattlebox.studies.runner import Stopped, run_work
 from rattlebox.studies.stored import progress_of
 
-from . import fake
-from .fake import Logistic
-
-for module in (fake, sys.modules[__name__]):  # worker processes cannot import the tests
+for module in (logistic_study, sys.modules[__name__]):  # worker processes cannot import the tests
     cloudpickle.register_pickle_by_value(module)
 
 
-def bits(data: xr.Dataset) -> dict[str, bytes]:
-    """Return every variable to the last bit."""
-    return {str(name): values.values.tobytes() for name, values in data.data_vars.items()}
-
-
 def mean_speed(run: rb.Run) -> float:
-    """Return a measure of a user, which refuses to run in the process of the test."""
+    """Return the mean velocity; fail in the process of the test."""
     assert os.getpid() != PROCESS
     return float(run.arrays.velocity.mean())
 
@@ -44,8 +36,8 @@ def test_processes_give_the_bits_of_threads(tmp_path: Path) -> None:
     assert bits(result) == bits(run_work(Logistic(), progress=False))
 
 
-def test_kinds_run_on_processes(tmp_path: Path) -> None:
-    """A function of a Run is called in other processes; a continuation with a store has the bits of one on a thread."""
+def test_functions_and_continuations_run_on_processes(tmp_path: Path) -> None:
+    """A function of a Run is called in other processes; a continuation with a store has the bits of one thread."""
     damper = rb.ImpactDamper(
         ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", velocity=0.1, contact=rb.Tsuji(restitution=0.6)
     )
@@ -60,32 +52,25 @@ def test_kinds_run_on_processes(tmp_path: Path) -> None:
 
 
 def test_errors_of_processes_are_reported(tmp_path: Path) -> None:
-    """An error of a block arrives as it is; a process that dies ends the study with advice, and the store resumes."""
-    with pytest.raises(ZeroDivisionError, match="a fault in the task"):
-        run_work(Logistic(broken=True), backend="processes", workers=2, progress=False)
+    """An error of a block is raised unchanged; a crashed process ends the study with advice, and the store resumes."""
+    with pytest.raises(ZeroDivisionError, match="an error of the task"):
+        run_work(Logistic(fail=True), backend="processes", workers=2, progress=False)
     store = tmp_path / "study.zarr"
     with pytest.raises(rb.ResourceError, match="a worker process ended before its block was computed\n  try: "):
-        run_work(Logistic(deadly=True), backend="processes", workers=2, store=store, block=60, progress=False)
+        run_work(Logistic(crash=True), backend="processes", workers=2, store=store, block=60, progress=False)
     assert progress_of(store).done == 0
     assert bits(run_work(Logistic(), store=store, progress=False)) == bits(run_work(Logistic(), progress=False))
 
 
 def test_ctrl_c_stops_processes() -> None:
-    """Ctrl-C in the middle of a block ends the study at once."""
-    pressed: list[float] = []
-
-    def press() -> None:
-        pressed.append(time.perf_counter())
-        os.kill(os.getpid(), signal.SIGINT)
-
-    threading.Timer(0.3, press).start()
-    with pytest.raises(Stopped, match="0 of 60 variants"):
+    """Ctrl-C during a block ends the study at once."""
+    with CtrlC(0.3) as ctrl_c, pytest.raises(Stopped, match="0 of 60 variants"):
         run_work(Logistic(pause=10), backend="processes", workers=2, progress=False)
-    assert time.perf_counter() - pressed[0] < 5
+    assert ctrl_c.elapsed() < 5
 
 
-def test_backends_are_named() -> None:
-    """Backends that do not exist are refused with those that do."""
+def test_unknown_backends_are_refused() -> None:
+    """An unknown backend is refused with the known ones."""
     for wrong in ("thread", 3, None):
         with pytest.raises(rb.CaseError, match="is not a backend"):
             run_work(Logistic(), backend=wrong)

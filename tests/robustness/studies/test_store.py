@@ -1,4 +1,4 @@
-"""A study on disk: what it holds, what it refuses, and what it says when the disk takes no more."""
+"""Stores: content, refused folders, damage and full disks."""
 
 from __future__ import annotations
 
@@ -12,6 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from support import logistic_study
+from support.datasets import bits
+from support.logistic_study import Grid, Logistic
+from support.mounts import needs_mounts, with_own_mounts
 
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER, read_marker, write_marker
@@ -19,25 +23,17 @@ from rattlebox.cli.show import show_study
 from rattlebox.studies.runner import run_work
 from rattlebox.studies.stored import open_study, progress_of
 
-from ..mounts import needs_mounts, with_own_mounts
-from .fake import Grid, Logistic
-
-FAKE = Path(__file__).with_name("fake.py")
+SCRIPT = Path(logistic_study.__file__)
 
 
 def study(store: Path | None = None, task: Logistic | None = None, **options: Any) -> xr.Dataset:
-    """Run the fake study."""
+    """Run the logistic study."""
     task = task or Logistic()
     return run_work(task, store=store, block=7, progress=False, **options)
 
 
-def bits(data: xr.Dataset) -> dict[str, bytes]:
-    """Every variable to the last bit."""
-    return {str(name): values.values.tobytes() for name, values in data.data_vars.items()}
-
-
-def test_on_disk_and_in_memory_are_the_same(tmp_path: Path) -> None:
-    """A store holds the same bits, coordinates, dimensions and attributes as a result in memory, for any block size."""
+def test_store_equals_result_in_memory(tmp_path: Path) -> None:
+    """A store has the bits, coordinates, dimensions and attributes of a result in memory, for any block size."""
     here = study()
     there = study(tmp_path / "maps" / "study.zarr")
     assert bits(here) == bits(there)
@@ -53,7 +49,7 @@ def test_on_disk_and_in_memory_are_the_same(tmp_path: Path) -> None:
 
 
 def test_a_store_is_plain_zarr(tmp_path: Path) -> None:
-    """A study opens in xarray by itself, with coordinates, texts and attributes, and without a warning."""
+    """Xarray opens a store without a warning, with coordinates, texts and attributes."""
     study(tmp_path / "study.zarr")
     data = xr.open_zarr(tmp_path / "study.zarr", chunks=None)
     assert list(data.material.values) == [f"m{i}" for i in range(10)]
@@ -62,8 +58,8 @@ def test_a_store_is_plain_zarr(tmp_path: Path) -> None:
     xr.testing.assert_identical(data, open_study(tmp_path / "study.zarr"))
 
 
-def test_what_is_not_finished_is_not_a_number(tmp_path: Path) -> None:
-    """A study that fails in the middle keeps what it had, tells how much that is, and shows gaps for the rest."""
+def test_missing_variants_are_nan(tmp_path: Path) -> None:
+    """A study that fails keeps its finished variants and their number; the other ones are NaN."""
 
     def fail(done: int, total: int) -> None:
         if done >= 20:
@@ -79,18 +75,18 @@ def test_what_is_not_finished_is_not_a_number(tmp_path: Path) -> None:
     assert bits(study(tmp_path / "study.zarr")) == bits(study())
 
 
-def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
-    """A finished study is returned without running anything, and progress starts from what is there."""
+def test_finished_study_computes_nothing(tmp_path: Path) -> None:
+    """A finished study is returned without computing, and progress reports all variants."""
     study(tmp_path / "study.zarr")
     seen: list[int] = []
-    task = Logistic(broken=True)
+    task = Logistic(fail=True)
     again = run_work(task, store=tmp_path / "study.zarr", progress=lambda done, total: seen.append(done))
     assert bits(again) == bits(study())
     assert seen == [60]
 
 
-def test_another_study_is_refused_with_the_differences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A store of another case, design, version or core is refused; what differs is listed; nothing is overwritten."""
+def test_store_of_another_study_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A store of another case, design, version or core is refused; the message lists the differences."""
     store = tmp_path / "study.zarr"
     before = bits(study(store))
     other = Logistic(case="[damper]\ngap = 0.2\n[load]\namplitude = 5.0\nkind = 'harmonic'\n")
@@ -117,16 +113,16 @@ def test_another_study_is_refused_with_the_differences(tmp_path: Path, monkeypat
 
 
 def test_many_differences_fit_one_screen(tmp_path: Path) -> None:
-    """Of many differences the first are told and the others counted."""
+    """Of many differences the first are listed and the others counted."""
     store = tmp_path / "study.zarr"
     study(store)
     with pytest.raises(rb.StoreError, match="and 12 more\n"):
         study(store, Logistic(case="\n".join(f"a{i:02} = {i}" for i in range(18))))
 
 
-def test_folders_of_other_things_are_refused(tmp_path: Path) -> None:
-    """A file, or a folder that holds something else, is left alone."""
-    (tmp_path / "notes.txt").write_text("mine")
+def test_other_files_and_folders_are_refused(tmp_path: Path) -> None:
+    """A file, or a folder with foreign files, is refused and stays unchanged."""
+    (tmp_path / "notes.txt").write_text("foreign")
     with pytest.raises(rb.StoreError, match="is a file; "):
         study(tmp_path / "notes.txt")
     with pytest.raises(rb.StoreError, match="holds other files"):
@@ -140,7 +136,7 @@ def test_folders_of_other_things_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_later_format_is_refused(tmp_path: Path) -> None:
-    """A store of a later layout is neither read nor written."""
+    """A store of a later format is neither read nor written."""
     store = tmp_path / "study.zarr"
     study(store)
     marker = read_marker(store)
@@ -151,8 +147,8 @@ def test_a_later_format_is_refused(tmp_path: Path) -> None:
             use(store)
 
 
-def test_a_store_that_was_half_made_is_made_again(tmp_path: Path) -> None:
-    """A store whose maker was killed before its last file is begun anew, also by another study."""
+def test_incomplete_store_is_created_again(tmp_path: Path) -> None:
+    """A store that was killed during its creation is created anew, also by another study."""
     for again in (Logistic(), Logistic(Grid(shape=(4, 10)))):
         store = tmp_path / f"{again.grid.shape[0]}.zarr"
         study(store)
@@ -165,8 +161,8 @@ def test_a_store_that_was_half_made_is_made_again(tmp_path: Path) -> None:
         assert bits(study(store, again)) == bits(study(task=again))
 
 
-def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """When the disk is full in the middle, the blocks before are kept, and with room the study goes on."""
+def test_full_disk_leaves_the_stored_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If the disk is full during a study, the stored blocks are intact, and the study resumes."""
     from zarr.storage import _local
 
     put, written = _local._put, 0
@@ -196,38 +192,38 @@ def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypat
     ],
     ids=["full", "read-only"],
 )
-def test_real_disks_that_take_no_more(mount: str, message: str, tmp_path: Path) -> None:
-    """A file system that is really full or read-only ends the study with that message."""
-    script = f"{mount.format(tmp_path)}; {sys.executable} {FAKE} {tmp_path}/study.zarr 0"
+def test_full_and_read_only_file_systems(mount: str, message: str, tmp_path: Path) -> None:
+    """A file system that is full or read-only ends the study with that message."""
+    script = f"{mount.format(tmp_path)}; {sys.executable} {SCRIPT} {tmp_path}/study.zarr 0"
     done = with_own_mounts(script)
     assert f"{message}\n  try: " in done.stderr.splitlines()[-2] + "\n" + done.stderr.splitlines()[-1] + "\n"
 
 
-def test_a_task_that_fails_is_not_hidden(tmp_path: Path) -> None:
-    """An error of the task arrives as it is, and the store stays usable."""
-    with pytest.raises(ZeroDivisionError, match="a fault in the task"):
-        study(tmp_path / "study.zarr", Logistic(broken=True))
+def test_error_of_the_task_is_raised(tmp_path: Path) -> None:
+    """An error of the task is raised unchanged, and the store can still be used."""
+    with pytest.raises(ZeroDivisionError, match="an error of the task"):
+        study(tmp_path / "study.zarr", Logistic(fail=True))
     assert bits(study(tmp_path / "study.zarr")) == bits(study())
 
 
 @pytest.mark.parametrize("name", ["zarr.json", "value/zarr.json", "gap/zarr.json", "gap/c/0", "material/c/0"])
 @pytest.mark.parametrize("how", ["cut", "changed", "emptied", "removed"])
-def test_damage_of_the_fixed_part_is_reported_and_repaired(name: str, how: str, tmp_path: Path) -> None:
-    """A damaged description or axis is reported by what reads a study; the command that began it repairs it."""
+def test_damaged_metadata_is_reported_and_repaired(name: str, how: str, tmp_path: Path) -> None:
+    """Damaged metadata or axes are reported on reading; the command that started the study repairs them."""
     store = tmp_path / "study.zarr"
     before = bits(study(store))
     damage(store / name, how)
     for use in (open_study, show_study):
         with pytest.raises(rb.StoreError, match=f"{name} is missing or has changed\n  try: the command that started"):
             use(store)
-    again = run_work(Logistic(broken=True), store=store, progress=False)  # which computes nothing
+    again = run_work(Logistic(fail=True), store=store, progress=False)  # which computes nothing
     assert bits(again) == before
     xr.testing.assert_equal(again.load(), study())
 
 
 @pytest.mark.parametrize("how", ["cut", "changed"])
 def test_a_damaged_marker_is_reported(how: str, tmp_path: Path) -> None:
-    """Without its list of files a study is not touched."""
+    """Without its list of files a store is neither read nor changed."""
     store = tmp_path / "study.zarr"
     study(store)
     damage(store / MARKER, how)
@@ -239,8 +235,8 @@ def test_a_damaged_marker_is_reported(how: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("how", ["cut", "changed", "emptied", "removed"])
-def test_a_damaged_block_counts_as_not_computed(how: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A lost or changed chunk of any variable makes all of its block missing, until the same command computes it again."""
+def test_damaged_block_is_computed_again(how: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A lost or changed chunk makes its block missing in all variables, until the same command computes it again."""
     store = tmp_path / "study.zarr"
     task = Logistic(Grid(shape=(6, 14)))
     before = bits(study(store, task))
@@ -261,8 +257,8 @@ def test_a_damaged_block_counts_as_not_computed(how: str, tmp_path: Path, capsys
         assert bits(open_study(store)) == before
 
 
-def test_a_block_of_missing_values_is_kept(tmp_path: Path) -> None:
-    """A block whose values are all not-a-number is computed once."""
+def test_block_of_nan_is_computed_once(tmp_path: Path) -> None:
+    """A block whose values are all NaN is computed once."""
 
     class Nothing(Logistic):
         def run(self, start: int, stop: int, **options: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What somebody at a terminal sees of a study: a bar with rate and time left, and how to go on after Ctrl-C."""
+"""Output of a study to a terminal: progress bar with rate and remaining time, and the message after Ctrl-C."""
 
 import os
 import pty
@@ -26,15 +26,15 @@ file = "{EXAMPLE}"
 
 @pytest.mark.skipif(sys.platform == "win32", reason="terminals are made otherwise")
 def test_bar_and_ctrl_c(tmp_path: Path) -> None:
-    """On a terminal a bar tells how far, how fast and how long; Ctrl-C ends with code 130 and what to do."""
+    """A terminal shows a bar with share, rate and remaining time; Ctrl-C ends with code 130 and how to resume."""
     (tmp_path / "study.toml").write_text(STUDY)
-    ours, theirs = pty.openpty()
+    own_end, other_end = pty.openpty()
     shown = bytearray()
 
     def read() -> None:
         while True:
             try:
-                shown.extend(os.read(ours, 4096))
+                shown.extend(os.read(own_end, 4096))
             except OSError:  # the other end is closed
                 return
 
@@ -42,10 +42,10 @@ def test_bar_and_ctrl_c(tmp_path: Path) -> None:
         [sys.executable, "-m", "rattlebox.cli", "sweep", "study.toml"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
-        stderr=theirs,
+        stderr=other_end,
         env=os.environ | {"TERM": "xterm", "COLUMNS": "120"},
     )
-    os.close(theirs)
+    os.close(other_end)
     reader = threading.Thread(target=read)
     reader.start()
     until = time.monotonic() + 60
@@ -56,7 +56,7 @@ def test_bar_and_ctrl_c(tmp_path: Path) -> None:
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=20)
     reader.join(timeout=10)
-    os.close(ours)
+    os.close(own_end)
     text = re.sub(r"\x1b\[[\d;?]*[A-Za-z]", "", shown.decode())
     assert process.returncode == 130
     assert out == b""

@@ -183,7 +183,7 @@ def test_a_total_mass_below_the_effective_masses() -> None:
 
 
 def test_base_motions_with_small_participation() -> None:
-    """A base motion that hardly excites the modes gives a warning."""
+    """A base motion with very small participation of the modes gives a warning."""
     for participation, warned in ((1e-5, True), (0.9, False)):
         modal = rb.Modal(frequencies=[10], damping_ratios=[0.01], shapes={"a": [1.0]}, participation=[participation])
         run = rb.simulate(rb.Case(structure=modal, base=rb.HalfSine(amplitude=1.0, duration=0.01), duration=0.1))

@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.particle_dampers import CAVITIES, balls, case, damper
 
 import rattlebox as rb
 from rattlebox.model.packing import check_packing
 from rattlebox.model.units import registry
-
-from .particle_dampers import CAVITIES, balls, case, damper
 
 
 @pytest.mark.parametrize("name", CAVITIES)

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg
+from support.particle_dampers import CAVITIES, SIZES, STEEL, balls, case, damper
 
 import rattlebox as rb
-
-from .particle_dampers import CAVITIES, SIZES, STEEL, balls, case, damper
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from support.particle_dampers import SIZES, STEEL, balls, damper
 
 import rattlebox as rb
-
-from .particle_dampers import SIZES, STEEL, balls, damper
 
 
 @pytest.mark.parametrize("name", SIZES)

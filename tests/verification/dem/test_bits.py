@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
 
 import rattlebox as rb
 from rattlebox.core import _core
 from rattlebox.prepare.settle import insert
-
-from . import cases
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 0
 
@@ -81,7 +80,7 @@ def test_threads_give_the_same_bits(law: str) -> None:
     """One, two, three and five threads compute the same bits: samples, state, contacts and counts."""
     bits = []
     for threads in (1, 2, 3, 5):
-        dem, last = cases.dem_of(shaken(law, duration=0.005), threads)
+        dem, last = dem_cases.dem_of(shaken(law, duration=0.005), threads)
         dem.run(last)
         assert dem.status == 0
         bits.append(flat(dem.records()) + end(dem))
@@ -92,20 +91,20 @@ def test_threads_give_the_same_bits(law: str) -> None:
 def test_restart_gives_the_same_bits(law: str) -> None:
     """A run from a saved state with another number of threads has the bits of the uninterrupted run, including history."""
     case = shaken(law, duration=0.01)
-    whole, last = cases.dem_of(case)
+    whole, last = dem_cases.dem_of(case)
     for until in (7, 7, last // 3, last // 2):
         whole.run(until)
     assert sum(len(whole.contacts(k).first) for k in range(2)) > 10
     state, bits = whole.save(), end(whole)
     early = whole.records()
     whole.run(last)
-    again, _ = cases.dem_of(case, threads=2)
+    again, _ = dem_cases.dem_of(case, threads=2)
     again.restore(state)
     assert end(again) == bits
     again.run(last)
     assert end(again) == end(whole)
     assert flat(again.records()) == flat(whole.records())
-    unbroken, _ = cases.dem_of(case)
+    unbroken, _ = dem_cases.dem_of(case)
     unbroken.run(last)
     assert end(unbroken) == end(whole)
     assert len(early.time) < len(unbroken.records().time)
@@ -128,9 +127,9 @@ def test_very_different_sizes_give_the_same_bits() -> None:
     )
     bits = []
     for threads in (1, 2, 3):
-        dem, last = cases.dem_of(case, threads)
+        dem, last = dem_cases.dem_of(case, threads)
         dem.run(last // 2)
-        again, _ = cases.dem_of(case, threads)
+        again, _ = dem_cases.dem_of(case, threads)
         again.restore(dem.save())
         dem.records()  # those so far
         for each in (dem, again):
@@ -149,7 +148,7 @@ def test_threads_on_one_core_give_the_same_bits() -> None:
     try:
         os.sched_setaffinity(0, {min(before)})
         for threads in (1, 3):
-            dem, last = cases.dem_of(shaken("Hertz", duration=0.005), threads)
+            dem, last = dem_cases.dem_of(shaken("Hertz", duration=0.005), threads)
             dem.run(last)
             assert os.sched_getaffinity(0) == {min(before)}
             bits.append(flat(dem.records()) + end(dem))
@@ -180,15 +179,15 @@ def test_large_beds_give_the_same_bits() -> None:
     """Results of beds that exceed the caches do not depend on threads or stops."""
     count = 21_000
     case = large_bed(count, 0.11, mass=5.0, duration=0.008, rate=1000.0)
-    one, last = cases.dem_of(case)
+    one, last = dem_cases.dem_of(case)
     one.run(last // 2)
     state = one.save()
-    two, _ = cases.dem_of(case, threads=2)
+    two, _ = dem_cases.dem_of(case, threads=2)
     two.restore(state)
     for dem in (one, two):
         dem.run(last)
         assert dem.status == 0
-    whole, _ = cases.dem_of(case, threads=3)
+    whole, _ = dem_cases.dem_of(case, threads=3)
     whole.run(last)
     ends = [flat(dem.state()) + flat(dem.contacts(0)) + flat(dem.counts()) for dem in (one, two, whole)]
     assert len(set(ends)) == 1
@@ -209,7 +208,7 @@ def test_a_million_spheres() -> None:
 def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
     """Another process that continues from a file of the state ends with the same bits."""
     case = shaken("Hertz", duration=0.01)
-    dem, last = cases.dem_of(case)
+    dem, last = dem_cases.dem_of(case)
     dem.run(last // 2)
     np.save(tmp_path / "state.npy", dem.save())
     dem.run(last)
@@ -225,7 +224,7 @@ def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
 
 def finish(state: str, target: str) -> None:
     """Finish the case of the test above from a saved state, and write the bits of its end."""
-    dem, last = cases.dem_of(shaken("Hertz", duration=0.01))
+    dem, last = dem_cases.dem_of(shaken("Hertz", duration=0.01))
     dem.restore(np.load(state))
     dem.run(last)
     Path(target).write_bytes(end(dem))
@@ -235,8 +234,8 @@ def finish(state: str, target: str) -> None:
 def test_output_does_not_change_the_run(law: str) -> None:
     """The end has the same bits whether every step is sampled or only the last one."""
     case = shaken(law, duration=0.004, rate=500.0)
-    prepared = cases.prepare(case)
-    packed, step = cases.pack_particles(prepared), prepared.step
+    prepared = dem_cases.prepare(case)
+    packed, step = dem_cases.pack_particles(prepared), prepared.step
     ends = []
     for every in (1, step.count):
         dem = _core.Dem(packed.replace(every=every))
@@ -262,7 +261,7 @@ def test_contacts_of_a_stopped_run_are_refused() -> None:
         duration=100.0,
         method=rb.Dem(),
     )
-    dem, last = cases.dem_of(at_rest)
+    dem, last = dem_cases.dem_of(at_rest)
     dem.run(2000)  # however soon it is stopped then, all that lie on each other touch
     for _ in range(3):  # at times as many touch as before
         assert not dem.run(last, lambda _: False)
@@ -276,9 +275,9 @@ def test_contacts_of_a_stopped_run_are_refused() -> None:
 def test_a_run_that_is_stopped_again_and_again_gives_the_same_bits(threads: int) -> None:
     """After a stop at any step all workers are at the same step, and the run continues with the same bits."""
     case = shaken("Hertz", rate=500.0, duration=0.1)  # many times as long as it takes to be heard
-    whole, last = cases.dem_of(case)
+    whole, last = dem_cases.dem_of(case)
     whole.run(last)
-    dem, _ = cases.dem_of(case, threads=threads)
+    dem, _ = dem_cases.dem_of(case, threads=threads)
     steps = [dem.step]
     while not dem.run(last, lambda _: False):
         steps.append(dem.step)
@@ -293,7 +292,7 @@ def test_contention_leaves_one_worker() -> None:
     before = os.sched_getaffinity(0)
     command = [sys.executable, "-c", "import time\nend = time.time() + 30\nwhile time.time() < end: pass"]
     case = shaken("Hertz", duration=0.02)
-    alone, last = cases.dem_of(case)
+    alone, last = dem_cases.dem_of(case)
     alone.run(last)
     others: list[subprocess.Popen[bytes]] = []
     try:
@@ -301,7 +300,7 @@ def test_contention_leaves_one_worker() -> None:
         others += [subprocess.Popen(command) for _ in range(4)]
         lone = 0
         for _ in range(20):  # whether others hold a team up is up to them
-            crowded, _ = cases.dem_of(case, 2)
+            crowded, _ = dem_cases.dem_of(case, 2)
             crowded.run(last)
             lone += crowded.serial_steps
             assert flat(crowded.records()) + end(crowded) == flat(alone.records()) + end(alone)

@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
 
 import rattlebox as rb
-
-from . import cases
 
 SOFT = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25, yield_stress=5e6)
 SIZES = rb.LogNormal(median="2.5 mm", geometric_standard_deviation=1.5, smallest="1 mm", largest="5 mm")
@@ -60,9 +59,9 @@ def test_particles_alone_keep_both_momenta(law: str) -> None:
     """Spheres that collide far from walls conserve momentum and angular momentum to rounding, with friction and rolling."""
     case = cloud(law, inwards=2.0, random=0.3, size=0.4)
     contents = case.dampers[0].contents
-    dem, last = cases.dem_of(case)
+    dem, last = dem_cases.dem_of(case)
     dem.run(0)
-    (before, turning), shares = momenta(cases.particles_start(case), contents), []
+    (before, turning), shares = momenta(dem_cases.particles_start(case), contents), []
     for k in range(1, 9):
         dem.run(last * k // 8)
         after, turned = momenta(dem.state().cavities[0], contents)
@@ -90,7 +89,7 @@ FREE = rb.Modal(
 def test_a_free_cavity_and_its_particles_keep_their_momentum(law: str, cavity: Any) -> None:
     """A free cavity and its particles conserve their momentum in all three directions to rounding."""
     case = cloud(law, random=1.0, cavity=cavity, structure=FREE)
-    result = cases.run(case)
+    result = dem_cases.run(case)
     arrays = result.arrays
     total = arrays.momentum[:, 0] + MASS * arrays.cavity_velocity[:, 0]
     scale = np.abs(arrays.particles.mass[:, None] * arrays.particles.velocity).sum() + MASS
@@ -118,7 +117,7 @@ def test_cavities_at_several_points_keep_the_momentum_of_each_mode() -> None:
         .model_copy(update={"point": point, "name": point})
         for law, cavity, point in zip(("rough", "rolling", "yielding"), cavities, shapes, strict=True)
     ]
-    arrays = cases.run(
+    arrays = dem_cases.run(
         rb.Case(structure=free, dampers=dampers, duration=0.02, output=rb.Output(rate=2000.0), method=rb.Dem())
     ).arrays
     points = np.array([shapes[name] for name in arrays.dampers])  # (dampers, modes, axes)
@@ -145,7 +144,7 @@ def test_force_on_the_cavity_is_the_change_of_momentum(law: str) -> None:
         rate=1 / dt,
         method=rb.Dem(dt=dt * (1 + 1e-9)),
     )
-    result = cases.run(case)
+    result = dem_cases.run(case)
     arrays = result.arrays
     assert arrays.time.size == result.counts["steps"] > 500
     mean = 0.5 * (arrays.cavity_force[1:, 0] + arrays.cavity_force[:-1, 0])
@@ -175,7 +174,7 @@ def test_moment_on_the_cavity_is_the_change_of_angular_momentum(law: str, cavity
         method=rb.Dem(dt=dt * (1 + 1e-9)),
     )
     contents = case.dampers[0].contents
-    dem, _ = cases.dem_of(case)
+    dem, _ = dem_cases.dem_of(case)
     moments, turning, weighing = [], [], []
     for k in range(steps):
         dem.run(k)

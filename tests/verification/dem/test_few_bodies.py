@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
+from support.exact.few_bodies import Ball, Bodies, Laws, Matter, Mode, Wall, box, cylinder, sphere
 
 import rattlebox as rb
-
-from ..exact.few_bodies import Ball, Bodies, Laws, Matter, Mode, Wall, box, can, hollow
-from . import cases
 
 STEEL, GLASS, ALUMINIUM = Matter(7800, 2e8, 0.3), Matter(2500, 6e7, 0.2), Matter(2700, 7e7, 0.33)
 MATERIALS = {
@@ -62,9 +61,9 @@ class Setup:
 
 
 SETUPS = {
-    "a leaning can, Hertz, by table": Setup(
+    "a leaning cylinder, Hertz, by table": Setup(
         cavity=rb.Cylinder(radius=13e-3, length=28e-3, axis=AXIS),
-        walls=can(13e-3, 28e-3, AXIS),
+        walls=cylinder(13e-3, 28e-3, AXIS),
         contact=rb.Tsuji(restitution=rb.Tabulated(speeds=TABLE[0], values=TABLE[1])),
         wall_contact=rb.Tsuji(restitution=0.7),
         laws=(Laws(TABLE, friction=0.3, rolling=0.05), Laws(0.7, friction=0.2, rolling=0.03, rolling_stiffness=2.5)),
@@ -99,7 +98,7 @@ SETUPS = {
     ),
     "a sphere, rigid, without friction among balls": Setup(
         cavity=rb.SphericalCavity(radius=14e-3),
-        walls=hollow(14e-3),
+        walls=sphere(14e-3),
         contact=rb.Tsuji(restitution=1.0),
         wall_contact=rb.Tsuji(restitution=0.6, ending="zero_overlap"),
         laws=(Laws(1.0), Laws(0.6, pulls=True, friction=0.3)),
@@ -116,16 +115,16 @@ SETUPS = {
 def run_engine(setup: Setup) -> Any:
     """Return the results of the engine."""
     wall = "rigid" if setup.wall is None else MATERIALS[setup.wall]
-    balls = [cases.Ball(b.radius, b.position, b.velocity, b.spin, MATERIALS[b.matter]) for b in BALLS]
+    balls = [dem_cases.Ball(b.radius, b.position, b.velocity, b.spin, MATERIALS[b.matter]) for b in BALLS]
     laws = {"contact": setup.contact, "wall_contact": setup.wall_contact} | setup.options
-    damper = cases.damper(balls, cavity=setup.cavity, wall=wall, point="tip", **laws)
+    damper = dem_cases.damper(balls, cavity=setup.cavity, wall=wall, point="tip", **laws)
     structure = rb.Modal(
         frequencies=[mode.frequency for mode in MODES],
         damping_ratios=[mode.damping for mode in MODES],
         shapes={"tip": [list(mode.shape) for mode in MODES]},
         velocity=[mode.velocity for mode in MODES],
     )
-    return cases.run(
+    return dem_cases.run(
         rb.Case(
             structure=structure,
             load=PULSE,

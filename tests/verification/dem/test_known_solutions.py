@@ -5,15 +5,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_lines
+from support.exact import printed
+from support.impact_lines import Line
 
 import rattlebox as rb
 
-from ..exact import printed
-from ..measures import Line
-from . import measures
 
-
-@pytest.mark.parametrize("lines", measures.ALL, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("lines", dem_lines.ALL, ids=lambda f: f.__name__)
 def test_run_has_the_exact_value(lines: Callable[[], Iterator[Line]]) -> None:
     """Every line of the verification table is within its tolerance."""
     result = list(lines())
@@ -22,40 +21,40 @@ def test_run_has_the_exact_value(lines: Callable[[], Iterator[Line]]) -> None:
     assert not failed, "\n".join(failed)
 
 
-@pytest.mark.parametrize("name", measures.IMPACTS)
+@pytest.mark.parametrize("name", dem_lines.IMPACTS)
 def test_elastic_impacts_have_the_printed_values(name: str) -> None:
     """Tests 1 and 2 of Chung and Ooi: force, overlap and time agree with all six digits that are printed."""
-    for ours, shown in zip(measures.elastic_impact(*measures.IMPACTS[name]), printed.ELASTIC[name], strict=True):
+    for ours, shown in zip(dem_lines.elastic_impact(*dem_lines.IMPACTS[name]), printed.ELASTIC[name], strict=True):
         assert ours == pytest.approx(shown, rel=1e-5)
 
 
 @pytest.mark.parametrize("e", printed.FALLING)
 def test_falling_ball_has_the_printed_values(e: float) -> None:
     """The exact solution for MFiX's falling ball has the printed speeds and time to six digits."""
-    for exact, shown in zip(measures.bounce(e), printed.FALLING[e], strict=True):
+    for exact, shown in zip(dem_lines.bounce(e), printed.FALLING[e], strict=True):
         assert shown is None or exact == pytest.approx(shown, rel=5e-6)
 
 
-@pytest.mark.parametrize("law", measures.LAWS)
+@pytest.mark.parametrize("law", dem_lines.LAWS)
 def test_one_ball_in_one_direction_agrees_with_the_impact_engine(law: str) -> None:
     """Structure and ball converge to the 1-D engine over eight impacts or more, with the square of the step."""
-    *exact, impacts = measures.one_ball_exactly(law)
+    *exact, impacts = dem_lines.one_ball_exactly(law)
     assert impacts >= 8
 
     def error(dt: float) -> Any:
-        return [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(measures.one_ball(law, dt), exact, strict=True)]
+        return [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(dem_lines.one_ball(law, dt), exact, strict=True)]
 
     coarse, fine = np.array(error(4e-7)), np.array(error(2.5e-8))
     # The time of each touch within its step is random, so only the mean order is checked.
     assert np.log2(coarse / fine) / 4 == pytest.approx(2, abs=0.4)
-    assert fine[1] < 1e-4 * measures.PLAY
+    assert fine[1] < 1e-4 * dem_lines.PLAY
 
 
 @pytest.mark.parametrize("part", [0.3, 0.8, 0.97])
 def test_ball_stands_on_a_gentle_slope(part: float) -> None:
     """A ball rests on a slope below the coefficient of rolling resistance, after a small displacement."""
-    path, speed = measures.along(
-        measures.on_floor(0.0, 0.0, 0.5, rolling=rb.Rolling(0.05, damping=0.3), slope=part * 0.05)
+    path, speed = dem_lines.along(
+        dem_lines.on_floor(0.0, 0.0, 0.5, rolling=rb.Rolling(0.05, damping=0.3), slope=part * 0.05)
     )
     assert np.abs(speed[-1]) < 1e-9
     assert 0 < path[-1] < 5e-6
@@ -64,16 +63,16 @@ def test_ball_stands_on_a_gentle_slope(part: float) -> None:
 
 def test_ball_without_resistance_rolls_on() -> None:
     """Without rolling resistance a rolling ball has constant speed and no friction loss."""
-    result = measures.on_floor(0.3, 0.3 / 0.02, 0.5)
-    _, speed = measures.along(result)
+    result = dem_lines.on_floor(0.3, 0.3 / 0.02, 0.5)
+    _, speed = dem_lines.along(result)
     assert speed[-1] == pytest.approx(0.3, rel=1e-4)
     energy = 0.7 * result.arrays.particles.mass[0] * 0.3**2
     assert result.arrays.sliding_loss[-1].sum() < 1e-4 * energy
     assert result.arrays.rolling_loss[-1].sum() == 0
 
 
-@pytest.mark.parametrize("name", measures.FILLED)
+@pytest.mark.parametrize("name", dem_lines.FILLED)
 def test_settled_fill_loads_its_cavity_downwards_only(name: str) -> None:
     """The lateral forces of a settled fill on the cavity cancel."""
-    force, weight = measures.settled(name)
+    force, weight = dem_lines.settled(name)
     assert np.abs(force[:2]).max() < 1e-6 * weight

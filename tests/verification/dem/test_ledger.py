@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
+from support.dem_cases import Ball
 
 import rattlebox as rb
 
-from . import cases
-from .cases import Ball
 from .test_conservation import LAWS, cloud
 
 CHANNELS = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss", "viscous_loss")
@@ -37,7 +37,7 @@ def run_spheres(law: str, dt: float, drive: str = "a start") -> Any:
         law, random=1.0, gravity=(1.0, 0, -9.81), duration=0.0048, rate=6250.0, method=rb.Dem(dt=dt * (1 + 1e-9))
     )
     parts = {"dampers": case.dampers, "duration": case.duration, "output": case.output, "method": case.method}
-    return cases.run(rb.Case(**parts, **DRIVES[drive]), closes=False)
+    return dem_cases.run(rb.Case(**parts, **DRIVES[drive]), closes=False)
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_ledger_of_one_impact_closes(law: str, e: float) -> None:
     ball = Ball(2e-3)
     contact = rb.Tsuji(restitution=e) if law == "Hertz" else rb.Linear(contact_time="10 us", restitution=e)
     for gap in np.linspace(1.00, 1.05, 7):
-        damper = cases.damper(
+        damper = dem_cases.damper(
             [Ball(ball.radius, (0, 0, 0), (1, 0, 0))],
             cavity=rb.Box(size=(6e-3 + 2e-3 * gap, 0.1, 0.1)),
             contact=contact,
@@ -89,7 +89,7 @@ def test_work_on_moving_balls_begins_at_zero(law: str) -> None:
         case = cloud(law, random=1.0, duration=0.0048, rate=6250.0, method=rb.Dem(dt=dt * (1 + 1e-9)))
         parts = {"dampers": case.dampers, "duration": case.duration, "output": case.output, "method": case.method}
         swing = rb.Harmonic(amplitude="300 m/s^2", frequency=150, direction="x", phase=np.pi / 2)
-        run = cases.run(rb.Case(**parts, structure=AT_REST, base=swing), closes=False)
+        run = dem_cases.run(rb.Case(**parts, structure=AT_REST, base=swing), closes=False)
         assert run.arrays.base_work[0] == 0
         residuals.append(run.energy_residual)
     assert np.log2(residuals[0] / residuals[1]) / 3 == pytest.approx(2, abs=0.35)
@@ -108,7 +108,7 @@ def test_springs_of_sliding_contacts_hold_what_friction_allows(law: str) -> None
     held = (rubbing**2 + (resistance * weight) ** 2) / (2 * ratio * stiffness)
     excess = []
     for dt in (4e-7, 1e-7):
-        case = cases.case(
+        case = dem_cases.case(
             [ball],
             dt=dt,
             steps=round(0.005 / dt),
@@ -119,6 +119,6 @@ def test_springs_of_sliding_contacts_hold_what_friction_allows(law: str) -> None
             rolling=rb.Rolling(resistance, damping=0.3) if rolls else None,
             gravity=(0, 0, -pull),
         )
-        excess.append((cases.run(case).arrays.contact_energy[3:, 0] - pressed) / held - 1)
+        excess.append((dem_cases.run(case).arrays.contact_energy[3:, 0] - pressed) / held - 1)
     assert np.all(np.abs(excess[0]) < (0.35 if rolls else 0.025))
     assert np.all(np.abs(excess[1]) < np.abs(excess[0]) / 12)

@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import brute_force, dem_cases
 
 import rattlebox as rb
 from rattlebox.prepare.settle import insert
-
-from . import brute, cases
 
 CAVITIES = {
     "box": rb.Box(size=("40 mm", "30 mm", "60 mm")),
@@ -62,7 +61,7 @@ def gas(
 def follow(case: Any, checks: int = 40) -> dict[str, int]:
     """Compare contacts, forces, and force and moment on the cavity with brute force during a run."""
     damper = case.dampers[0]
-    dem, last = cases.dem_of(case)
+    dem, last = dem_cases.dem_of(case)
     contents, walls = damper.contents, damper.cavity.walls()
     soft = [(1 - each.material.poisson**2) / each.material.young for each in damper.particles]
     compliance = np.array(soft)[contents.species]
@@ -76,7 +75,7 @@ def follow(case: Any, checks: int = 40) -> dict[str, int]:
         assert dem.status == 0
         now, raw = dem.state().cavities[0], dem.records()
         moved = raw.q[-1] @ cavity_shape(case)
-        result = brute.look(now.position - moved, contents.radius, walls, inside, wall, 1e-12)
+        result = brute_force.find_contacts(now.position - moved, contents.radius, walls, inside, wall, 1e-12)
         listed = dem.contacts(0)
         there = {(min(i, j), max(i, j)) for i, j in zip(listed.first.tolist(), listed.second.tolist(), strict=True)}
         assert len(there) == len(listed.first)

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
+from support.dem_cases import Ball
+from support.exact import restitution_laws
 
 import rattlebox as rb
-
-from ..exact import restitution_laws
-from . import cases
-from .cases import Ball
 
 # Largest error of the restitution, over that power of the step in parts of an elastic contact: what was measured, a quarter
 # above the worst of eight phases of the first touch and all e, with steps from 1/20 to 1/320. Forces that pull until the
@@ -51,11 +50,11 @@ def worst(
 ) -> float:
     """Return the largest error of the restitution over several times of first touch within a step."""
     first, second = pair
-    time = cases.contact_time(first, second, speed)
-    mass = first.mass if second is None else cases.reduced(first.mass, second.mass)
+    time = dem_cases.contact_time(first, second, speed)
+    mass = first.mass if second is None else dem_cases.reduced(first.mass, second.mass)
     errors = []
     for phase in PHASES:
-        case = cases.head_on(
+        case = dem_cases.head_on(
             first,
             second,
             speed,
@@ -64,7 +63,7 @@ def worst(
             lasts=4 * time,
             contact=make(e, ending, time, mass),
         )
-        errors.append(cases.rebound(cases.run(case, closes=False)) / speed - e)
+        errors.append(dem_cases.rebound(dem_cases.run(case, closes=False)) / speed - e)
     return float(np.abs(errors).max())
 
 
@@ -94,9 +93,9 @@ def test_wall_counts_with_the_mass_behind_it(e: float, share: float) -> None:
     """At a free cavity of a fifth to five times the mass of the ball the effective mass includes the structure."""
     ball, speed, per_contact = Ball(5e-3), 1.0, 160
     together = ball.mass * share / (1 + share)
-    time = cases.HERTZ_TIME * (together / cases.stiffness(ball)) ** 0.4 * speed**-0.2
+    time = dem_cases.HERTZ_TIME * (together / dem_cases.stiffness(ball)) ** 0.4 * speed**-0.2
     for contact in (hertz(e, "zero_force"), linear(e, "zero_force", time, together)):
-        case = cases.head_on(
+        case = dem_cases.head_on(
             ball,
             None,
             speed,
@@ -106,7 +105,7 @@ def test_wall_counts_with_the_mass_behind_it(e: float, share: float) -> None:
             contact=contact,
             structure=rb.SDOF(mass=share * ball.mass, stiffness=0),
         )
-        arrays = cases.run(case).arrays
+        arrays = dem_cases.run(case).arrays
         after = arrays.velocity[-1, 0] - arrays.particles.velocity[0, 0]
         assert after == pytest.approx(e * speed, abs=2.9 / per_contact**2)
         assert ball.mass * (arrays.particles.velocity[0, 0] + share * arrays.velocity[-1, 0]) == pytest.approx(
@@ -163,17 +162,17 @@ def test_laws_of_restitution_use_the_sizes_of_the_pair(law: str, speed: float, e
     factor, order = ERRORS["hertz", ending]
     small, large = Ball(2e-3), Ball(9e-3)
     for first, second in ((small, large), (small, small), (large, large), (small, None), (large, None)):
-        mass = first.mass if second is None else cases.reduced(first.mass, second.mass)
-        radius = first.radius if second is None else cases.reduced(first.radius, second.radius)
+        mass = first.mass if second is None else dem_cases.reduced(first.mass, second.mass)
+        radius = first.radius if second is None else dem_cases.reduced(first.radius, second.radius)
         exact = LAWS[law][1](radius, mass, speed, second is None)
-        time = cases.contact_time(first, second, speed, "rigid")
-        case = cases.head_on(
+        time = dem_cases.contact_time(first, second, speed, "rigid")
+        case = dem_cases.head_on(
             first, second, speed, dt=time / 80, phase=0.5, lasts=4 * time, contact=contact, wall="rigid"
         )
-        assert cases.rebound(cases.run(case)) / speed == pytest.approx(exact, abs=factor * 80**-order)
+        assert dem_cases.rebound(dem_cases.run(case)) / speed == pytest.approx(exact, abs=factor * 80**-order)
         # The same pair with another ball of another size, which changes only the reference pair.
         many = with_bystander(case, 0.5 * small.radius)
-        assert cases.rebound(cases.run(many)) == pytest.approx(cases.rebound(cases.run(case)), rel=1e-9)
+        assert dem_cases.rebound(dem_cases.run(many)) == pytest.approx(dem_cases.rebound(dem_cases.run(case)), rel=1e-9)
 
 
 def with_bystander(case: Any, radius: float) -> Any:

@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
+from support.dem_cases import Ball
+from support.dem_lines import ALUMINA, OBLIQUE_E, OBLIQUE_FRICTION, OBLIQUE_SPEED, oblique_impact, oblique_law
+from support.exact import oblique, printed
 
 import rattlebox as rb
 from rattlebox import alpha_of_restitution
-
-from ..exact import oblique, printed
-from . import cases
-from .cases import Ball
-from .measures import ALUMINA, OBLIQUE_E, OBLIQUE_FRICTION, OBLIQUE_SPEED, oblique_impact, oblique_law
 
 VERIFICATION = Path(__file__).parents[3] / "docs" / "validation" / "verification.md"
 
@@ -49,7 +48,7 @@ def test_oblique_impacts_of_unlike_balls_follow_the_law(degrees: float, e: float
     first, second = Ball(2e-3, material="steel"), Ball(5e-3, material="glass")
     speed, angle, both = 1.0, math.radians(degrees), first.radius + second.radius
     down, per_contact = speed * math.cos(angle), 200
-    dt = cases.contact_time(first, second, down) / per_contact
+    dt = dem_cases.contact_time(first, second, down) / per_contact
     apart = both + 5.5 * dt * down
     along = -speed * math.sin(angle)
     balls = [
@@ -57,7 +56,7 @@ def test_oblique_impacts_of_unlike_balls_follow_the_law(degrees: float, e: float
         dataclasses.replace(second, position=(apart, 0, 0), velocity=(-0.3 * down, -0.3 * along, 0)),
     ]
     friction = 0.3
-    case = cases.case(
+    case = dem_cases.case(
         balls,
         dt=dt,
         steps=4 * per_contact,
@@ -65,23 +64,23 @@ def test_oblique_impacts_of_unlike_balls_follow_the_law(degrees: float, e: float
         contact=rb.Tsuji(restitution=e),
         friction=friction,
     )
-    arrays = cases.run(case).arrays
-    mass = cases.reduced(first.mass, second.mass)
+    arrays = dem_cases.run(case).arrays
+    mass = dem_cases.reduced(first.mass, second.mass)
     shear = 1 / sum((2 - m.poisson) * 2 * (1 + m.poisson) / m.young for m in (first.stuff, second.stuff))
-    stiffness = cases.stiffness(first, second)
-    law = oblique.Impact(  # of the relative motion; its unit of length is the distance of the centres at the touch
+    stiffness = dem_cases.stiffness(first, second)
+    law = oblique.Impact(  # of the relative motion; the unit of length is the distance of the centres at first touch
         alpha=float(alpha_of_restitution(e)),
-        ratio=8 * shear * math.sqrt(cases.reduced(first.radius, second.radius)) / stiffness,
+        ratio=8 * shear * math.sqrt(dem_cases.reduced(first.radius, second.radius)) / stiffness,
         friction=friction,
         damping=1.0,
         stiffness=stiffness * both**2.5 / (mass * down**2),
     )
-    slip, swirl, up = law.follow(math.tan(angle))
+    slip, spin, up = law.follow(math.tan(angle))
     relative = arrays.particles.velocity[0] - arrays.particles.velocity[1]
     turned = first.radius * arrays.particles.spin[0, 2] + second.radius * arrays.particles.spin[1, 2]
     # The normal rotates during the contact by about 1e-3.
     assert relative == pytest.approx((-up * down, -slip * down, 0), abs=3e-3)
-    assert turned == pytest.approx(-swirl * down, abs=3e-3)
+    assert turned == pytest.approx(-spin * down, abs=3e-3)
 
 
 def test_friction_converges_at_second_order() -> None:
@@ -178,10 +177,10 @@ def test_sticking_springs_have_the_closed_form(ratio: float) -> None:
     ball = Ball(RADIUS, (0, 0, -half + RADIUS + gap), (0.03, -0.04, -speed), (0, 0, 0), BALL.material)
     contact = rb.Linear(stiffness=stiffness, restitution=1.0)
     friction = rb.LinearSpring(1e6, ratio=ratio)
-    case = cases.case(
+    case = dem_cases.case(
         [ball], dt=dt, steps=per_contact + 20, cavity=rb.Box(size=(2 * half,) * 3), contact=contact, friction=friction
     )
-    arrays = cases.run(case).arrays
+    arrays = dem_cases.run(case).arrays
     e = oblique.sticking(ratio)
     # The lever arm is shorter than the radius by the overlap, 0.13 %, which shifts the phase by the same part of 2 pi.
     assert arrays.particles.velocity[0] == pytest.approx((0.03 * e, -0.04 * e, speed), abs=0.05 * 3e-3)
@@ -205,11 +204,11 @@ def test_balls_that_spin_together_do_not_slide() -> None:
     """Test 7 of Chung and Ooi: of two balls that turn like wheels on each other only the speeds along the line change."""
     ball = Ball(RADIUS, spin=(0, 0, 300), material=BALL.material)
     other = Ball(RADIUS, spin=(0, 0, -300), material=BALL.material)
-    time = cases.contact_time(ball, other, 0.4)
-    case = cases.head_on(
+    time = dem_cases.contact_time(ball, other, 0.4)
+    case = dem_cases.head_on(
         ball, other, 0.4, dt=time / 100, phase=0.5, lasts=2 * time, contact=rb.Tsuji(restitution=1.0), friction=0.4
     )
-    arrays = cases.run(case).arrays
+    arrays = dem_cases.run(case).arrays
     assert arrays.particles.velocity == pytest.approx(np.array([[-0.2, 0, 0], [0.2, 0, 0]]), abs=0.4e-5)
     assert arrays.particles.spin == pytest.approx(np.array([[0, 0, 300], [0, 0, -300]]), rel=1e-9)
     assert np.abs(arrays.sliding_loss).max() < 1e-12 * 0.5 * ball.mass * 0.2**2
@@ -221,12 +220,12 @@ def test_spinning_balls_slide_on_each_other(factor: float) -> None:
     e, friction, speed = 0.9, 0.1, 0.4
     ball = Ball(RADIUS, spin=(0, 0, 900), material=BALL.material)
     other = Ball(factor * RADIUS, spin=(0, 0, 900), material=BALL.material)
-    time = cases.contact_time(ball, other, speed)
-    case = cases.head_on(
+    time = dem_cases.contact_time(ball, other, speed)
+    case = dem_cases.head_on(
         ball, other, speed, dt=time / 200, phase=0.5, lasts=3 * time, contact=rb.Tsuji(restitution=e), friction=friction
     )
-    arrays = cases.run(case).arrays
-    mass = cases.reduced(ball.mass, other.mass)
+    arrays = dem_cases.run(case).arrays
+    mass = dem_cases.reduced(ball.mass, other.mass)
     change = (arrays.particles.velocity - [[speed / 2, 0, 0], [-speed / 2, 0, 0]]) * arrays.particles.mass[:, None]
     impulse = -change[0, 0]
     assert impulse == pytest.approx((1 + e) * mass * speed, rel=3e-4)

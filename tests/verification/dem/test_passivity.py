@@ -4,11 +4,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
 
 import rattlebox as rb
 from rattlebox.prepare.time_step import expected_speeds, limits
-
-from . import cases
 
 GLASS = rb.Material(name="glassy", density=2500, young=5e9, poisson=0.25, yield_stress=5e7)
 FASTEST, SMALLEST, LARGEST = 2.0, 1e-3, 6e-3
@@ -28,7 +27,7 @@ FRICTIONS: dict[str, dict[str, Any]] = {
     "spring": {"friction": rb.LinearSpring(0.5, stiffness=2e5)},
     "rolling": {"friction": 0.5, "rolling": 0.3},
     "rolling with dashpot": {"friction": 1.0, "rolling": rb.Rolling(0.5, stiffness=3.0, damping=0.5)},
-    "hardly sliding": {"friction": 100.0},
+    "large friction": {"friction": 100.0},
     "strong dashpot": {"friction": rb.Mindlin(50.0, damping=20.0)},
     "stiff spring": {"friction": rb.LinearSpring(2.0, stiffness=1e9)},
     "stiff rolling": {"friction": 10.0, "rolling": rb.Rolling(5.0, stiffness=100.0)},
@@ -133,7 +132,7 @@ def gains(make: Any, share: float, **laws: Any) -> tuple[Any, Any]:
         output=rb.Output(times=[steps * dt]),
         method=rb.Dem(dt=dt * (1 + 1e-9)),
     )
-    result = cases.run(case, closes=False)
+    result = dem_cases.run(case, closes=False)
     contents, arrays = damper.contents, result.arrays
 
     def energy(velocity: Any, spin: Any) -> Any:

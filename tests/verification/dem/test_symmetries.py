@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from support import dem_cases
+from support.dem_cases import Ball
 
 import rattlebox as rb
 
-from . import cases
-from .cases import Ball
 from .test_conservation import LAWS
 
 SOFT = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25, yield_stress=5e6)
@@ -56,7 +56,7 @@ def run_spheres(
         output=rb.Output(times=[steps * DT]),
         method=rb.Dem(dt=DT * (1 + 1e-9)),
     )
-    return cases.run(case)
+    return dem_cases.run(case)
 
 
 def shaking(turn: Any) -> Any:
@@ -185,7 +185,7 @@ def test_other_units_give_the_same_run(law: str, exact: bool) -> None:
         gravity = tuple(GRAVITY * speed / time)
         damper = rb.ParticleDamper(particles=particles, cavity=cavity, packing=start, gravity=gravity, **options)
         dt, steps = DT * time, 2000
-        return cases.run(
+        return dem_cases.run(
             rb.Case(
                 structure=rb.SDOF(mass=0.1 * mass, stiffness=4e3 * mass / time**2, damping=0.3 * mass / time),
                 damper=damper,

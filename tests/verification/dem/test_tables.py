@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
+from support.dem_cases import Ball
+from support.exact import oblique
 
 import rattlebox as rb
-
-from ..exact import oblique
-from . import cases
-from .cases import Ball
 
 SHOT, BEAD = Ball(2e-3, material="steel"), Ball(3e-3, material="glass")
 HALF = 0.05
@@ -60,8 +59,8 @@ def meeting(first: Ball, second: Ball | None, **table: Any) -> tuple[Any, ...]:
     damper = rb.ParticleDamper(
         particles=species, cavity=rb.Box(size=(2 * HALF,) * 3), packing=packing, gravity=(0, 0, 0), **table
     )
-    slowest = max(cases.contact_time(ball, None, 1.0) for ball in met)
-    result = cases.run(
+    slowest = max(dem_cases.contact_time(ball, None, 1.0) for ball in met)
+    result = dem_cases.run(
         rb.Case(
             structure=rb.Fixed(),
             damper=damper,
@@ -128,8 +127,8 @@ def test_a_ratio_of_stiffnesses_holds_for_every_pair(radii: tuple[float, float |
             Ball(second, (second + gap / 2, 0, 0), (-speed / 2, -aside / 2, 0)),
         ]
     others = [Ball(2e-3, (0, half / 2, half / 2)), Ball(6e-3, (0, -half / 2, -half / 2))]  # so that the mean is neither
-    result = cases.run(
-        cases.case(
+    result = dem_cases.run(
+        dem_cases.case(
             [*balls, *others],
             dt=dt,
             steps=1020,
@@ -164,8 +163,8 @@ def test_softening_has_the_reported_effects(law: str) -> None:
     ball, speed = Ball(3e-3), 0.5
     results = []
     for softening in (1.0, 100.0):
-        time = cases.contact_time(ball, None, speed) * softening**0.4
-        case = cases.head_on(
+        time = dem_cases.contact_time(ball, None, speed) * softening**0.4
+        case = dem_cases.head_on(
             ball,
             None,
             speed,
@@ -175,14 +174,14 @@ def test_softening_has_the_reported_effects(law: str) -> None:
             contact=SOFTENED[law],
             softening=softening,
         )
-        result = cases.run(case)
-        dem, last = cases.dem_of(case)
+        result = dem_cases.run(case)
+        dem, last = dem_cases.dem_of(case)
         touching = 0
         for step in range(last + 1):
             dem.run(step)
             touching += dem.contacts(0).first.size > 0
         overlap = result.diagnostics["largest_overlap"]
-        results.append((touching * case.method.dt, overlap, cases.rebound(result)))
+        results.append((touching * case.method.dt, overlap, dem_cases.rebound(result)))
     (time, overlap, rebound), (longer, larger, after) = results
     match = re.search(r"last ([\d.]+) times as long, and overlap ([\d.]+) times as much", result.notes[1])
     assert match is not None

@@ -5,12 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import dem_cases
+from support.dem_cases import Ball
+from support.exact import printed, restitution_laws
 
 import rattlebox as rb
-
-from ..exact import printed, restitution_laws
-from . import cases
-from .cases import Ball
 
 STEEL = rb.materials()["steel"]
 PRESSURE = 1.6 * STEEL.yield_stress
@@ -28,8 +27,8 @@ def modulus(wall: Any = None) -> float:
 
 def yield_speed(first: Ball, second: Ball | None) -> float:
     """Return V_y of a pair, or of a ball at a wall of steel [m/s]."""
-    radius = first.radius if second is None else cases.reduced(first.radius, second.radius)
-    mass = first.mass if second is None else cases.reduced(first.mass, second.mass)
+    radius = first.radius if second is None else dem_cases.reduced(first.radius, second.radius)
+    mass = first.mass if second is None else dem_cases.reduced(first.mass, second.mass)
     return restitution_laws.thornton_speed(radius, mass, modulus(), PRESSURE)
 
 
@@ -38,16 +37,16 @@ def impact(
 ) -> tuple[float, float, float]:
     """Return restitution, and plastic loss and all other loss over the energy of the relative motion."""
     speed = ratio * yield_speed(first, second)
-    time = cases.contact_time(first, second, speed)
-    case = cases.head_on(
+    time = dem_cases.contact_time(first, second, speed)
+    case = dem_cases.head_on(
         first, second, speed, dt=time / per_contact, phase=phase, lasts=4 * time, contact=rb.Thornton(), one_kind=True
     )
-    result = cases.run(case)
-    mass = first.mass if second is None else cases.reduced(first.mass, second.mass)
+    result = dem_cases.run(case)
+    mass = first.mass if second is None else dem_cases.reduced(first.mass, second.mass)
     arrays = result.arrays
     others = arrays.normal_loss[-1].sum() + arrays.sliding_loss[-1].sum() + arrays.rolling_loss[-1].sum()
     energy = 0.5 * mass * speed**2
-    return cases.rebound(result) / speed, arrays.plastic_loss[-1].sum() / energy, others / energy
+    return dem_cases.rebound(result) / speed, arrays.plastic_loss[-1].sum() / energy, others / energy
 
 
 @pytest.mark.parametrize("pair", [(SMALL, None), (SMALL, LARGE), (LARGE, LARGE)], ids=["wall", "unequal", "equal"])
@@ -83,14 +82,14 @@ GRAVITY = 2e5  # presses the ball into the floor about as far as yielding begins
 
 def pressed(swing: float) -> tuple[Any, Any]:
     """Return run and overlap of a ball that settles on a steel floor, which shakes in the second half of the run."""
-    depth = (SMALL.mass * GRAVITY / cases.stiffness(SMALL)) ** (2 / 3)
+    depth = (SMALL.mass * GRAVITY / dem_cases.stiffness(SMALL)) ** (2 / 3)
     time = 2 * math.pi * math.sqrt(depth / GRAVITY)
     dt, steps = time / 200, 8000
     motion = rb.Harmonic(
         amplitude=f"{swing * GRAVITY} m/s^2", frequency=1 / (3.3 * time), start=0.5 * steps * dt, direction="z"
     )
     half = 5 * SMALL.radius
-    case = cases.case(
+    case = dem_cases.case(
         [Ball(SMALL.radius, (0, 0, SMALL.radius - half))],
         dt=dt,
         steps=steps,
@@ -100,13 +99,13 @@ def pressed(swing: float) -> tuple[Any, Any]:
         gravity=(0, 0, -GRAVITY),
         structure=rb.Shaker(motion=motion),
     )
-    arrays = cases.run(case).arrays
+    arrays = dem_cases.run(case).arrays
     return arrays, SMALL.radius - half - arrays.centre_of_mass[:, 0, 2]
 
 
 def forces(overlap: Any) -> tuple[Any, Any]:
     """Return force and plastic loss along a history of overlaps, from the closed forms."""
-    stiff, hard, radius = cases.stiffness(SMALL), PRESSURE, SMALL.radius
+    stiff, hard, radius = dem_cases.stiffness(SMALL), PRESSURE, SMALL.radius
     first = radius * (math.pi * hard / (2 * modulus())) ** 2
     deepest = np.maximum.accumulate(overlap)
     past = np.maximum(deepest - first, 0.0)

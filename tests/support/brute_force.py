@@ -10,8 +10,12 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Found:
-    """Contacts: pairs (first, second), where walls are numbered after the particles; overlaps; force on each particle."""
+class Contacts:
+    """Contacts and forces at one time.
+
+    `pairs` holds (first, second), with walls numbered after the particles; `doubtful` those that overlap by less than the
+    tolerance; `force` acts on the particles (n, 3), `on_cavity` and `moment` on the cavity (3,).
+    """
 
     pairs: set[tuple[int, int]]
     doubtful: set[tuple[int, int]]
@@ -20,19 +24,19 @@ class Found:
     moment: Array
 
 
-def look(positions: Array, radii: Array, walls: Any, inside: Array, wall: Array, doubt: float) -> Found:
+def find_contacts(positions: Array, radii: Array, walls: Any, inside: Array, wall: Array, tolerance: float) -> Contacts:
     """Return contacts and forces at a moment.
 
     Parameters
     ----------
     positions, radii
-        From the centre of the cavity, (n, 3) and (n,) [m].
+        Positions from the centre of the cavity and radii, (n, 3) and (n,) [m].
     walls
-        Axis, offset and curvature of each, as a cavity gives them.
+        Walls of the cavity, with `axis`, `offset` and `form`.
     inside, wall
         Factor of sqrt(R*) in the Hertz stiffness, (n, n) among particles and (n,) at walls.
-    doubt
-        Overlaps smaller than this may be there or not [m].
+    tolerance
+        Size of the overlap below which rounding may decide on a contact [m].
     """
     n = len(radii)
     force, on_cavity, moment = np.zeros((n, 3)), np.zeros(3), np.zeros(3)
@@ -40,8 +44,8 @@ def look(positions: Array, radii: Array, walls: Any, inside: Array, wall: Array,
     apart = positions[:, None] - positions[None]
     distance = np.sqrt((apart**2).sum(axis=2))
     overlap = radii[:, None] + radii[None] - distance
-    for i, j in zip(*np.nonzero(np.triu(overlap > -doubt, 1)), strict=True):
-        (doubtful if overlap[i, j] < doubt else pairs).add((int(i), int(j)))
+    for i, j in zip(*np.nonzero(np.triu(overlap > -tolerance, 1)), strict=True):
+        (doubtful if overlap[i, j] < tolerance else pairs).add((int(i), int(j)))
         stiff = inside[i, j] * np.sqrt(radii[i] * radii[j] / (radii[i] + radii[j]))
         push = stiff * max(overlap[i, j], 0.0) ** 1.5 * apart[i, j] / distance[i, j]
         force[i] += push
@@ -49,12 +53,12 @@ def look(positions: Array, radii: Array, walls: Any, inside: Array, wall: Array,
     for k, (axis, offset, form) in enumerate(zip(walls.axis, walls.offset, walls.form, strict=True)):
         across = positions - np.outer(positions @ axis, axis) if form == "cylinder" else positions
         reach = np.linalg.norm(across, axis=1) if form != "plane" else positions @ axis
-        for i in np.nonzero(reach + radii > offset - doubt)[0]:
+        for i in np.nonzero(reach + radii > offset - tolerance)[0]:
             deep = reach[i] + radii[i] - offset
-            (doubtful if deep < doubt else pairs).add((int(i), n + k))
+            (doubtful if deep < tolerance else pairs).add((int(i), n + k))
             normal = across[i] / reach[i] if form != "plane" else axis
             push = wall[i] * np.sqrt(radii[i]) * max(deep, 0.0) ** 1.5 * normal
             force[i] -= push
             on_cavity += push
             moment += np.cross(positions[i] + (offset - reach[i]) * normal, push)
-    return Found(pairs, doubtful, force, on_cavity, moment)
+    return Contacts(pairs, doubtful, force, on_cavity, moment)

@@ -1,4 +1,4 @@
-"""A study whose variants are cheap, chaotic and as slow as one likes; run as a program, it is a study to be killed."""
+"""A study with cheap, chaotic variants that take a chosen time; as a program, a study that tests can interrupt."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ class Grid:
     first: float = 3.6
 
     def coords(self) -> dict[str, Any]:
-        """Numbers with a unit, and names."""
+        """Return numbers with a unit, and names."""
         names = np.array([f"m{i}" for i in range(self.shape[1])])
         return {"gap": ("gap", np.linspace(0, 1, self.shape[0]), {"units": "m"}), "material": ("material", names)}
 
     def describe(self) -> dict[str, Any]:
-        """What is compared."""
+        """Return the description that must agree to resume."""
         return {"shape": list(self.shape), "first": self.first}
 
 
 @dataclass
 class Logistic:
-    """The logistic map: its bits tell any difference of order or number."""
+    """Iterations of the logistic map, whose bits depend on the order of all operations."""
 
     grid: Grid = field(default_factory=Grid)
     pause: float = 0.0
     case: str = "[damper]\ngap = 0.1\n[load]\namplitude = 5.0\n"
-    broken: bool = False
-    deadly: bool = False
+    fail: bool = False
+    crash: bool = False
 
     @property
     def size(self) -> int:
@@ -57,12 +57,12 @@ class Logistic:
         return 7
 
     def coords(self) -> dict[str, Any]:
-        """No further dimension has coordinates."""
+        """Return no coordinates of further dimensions."""
         return {}
 
     @property
     def outputs(self) -> dict[str, Any]:
-        """A number, a status and a row of numbers."""
+        """Variables: a number, a status and a row of numbers."""
         names = "finished too_many_events"
         return {
             "value": ((), "float64", {"units": "J", "long_name": "value"}),
@@ -71,21 +71,21 @@ class Logistic:
         }
 
     def describe(self) -> dict[str, Any]:
-        """What is compared."""
+        """Return the description that must agree to resume."""
         return {"case": self.case, "measure": ["value"]}
 
     def run(
         self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
     ) -> dict[str, NDArray[Any]] | None:
-        """Take a pause for each variant, then compute them."""
+        """Compute a block after a pause for each of its variants."""
         until = time.perf_counter() + self.pause * (stop - start)
         while time.perf_counter() < until:
             if cancelled and cancelled():
                 return None
             time.sleep(0.002)
-        if self.broken:
-            raise ZeroDivisionError("a fault in the task")
-        if self.deadly and stop - start == self.size:
+        if self.fail:
+            raise ZeroDivisionError("an error of the task")
+        if self.crash and stop - start == self.size:
             os._exit(1)
         number = np.arange(start, stop)
         x = (number + 0.5) / self.size
@@ -95,13 +95,13 @@ class Logistic:
         return {"value": x, "status": (number % 7 == 0).astype("i1"), "orbit": orbit}
 
 
-def done_in(store: Path) -> int:
-    """Return how many variants a store holds, which may not have been made yet."""
-    return progress_of(store).done if is_made(store) else 0
+def variants_in(store: Path) -> int:
+    """Return the number of variants in a store, which may not exist yet."""
+    return progress_of(store).done if is_complete(store) else 0
 
 
-def is_made(store: Path) -> bool:
-    """Return whether a store waits for its first block, or has more."""
+def is_complete(store: Path) -> bool:
+    """Return whether a store has been created completely."""
     marker = read_marker(store)
     return marker is not None and marker.complete
 

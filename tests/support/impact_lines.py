@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import rattlebox as rb
 
-from . import cases
+from . import impact_cases
 from .exact import dashpot, impact_oscillator, masri_caughey, printed, restitution_laws, shaken
 
 ENDINGS = ("zero_overlap", "zero_force")
@@ -60,32 +60,32 @@ def first_impact(case: Any) -> tuple[float, float, float, float]:
 def tsuji() -> Iterator[Line]:
     """Yield restitution, contact time and overlap of Tsuji's law against a fixed wall."""
     speed = 0.7
-    scale = (cases.MASS / cases.STIFFNESS) ** 0.4 * speed**-0.2
+    scale = (impact_cases.MASS / impact_cases.STIFFNESS) ** 0.4 * speed**-0.2
     for zeta in (0.0, 0.1, 0.3, 0.5, 0.9):
         for ending in ENDINGS:
             contact = rb.Tsuji(alpha=math.sqrt(5) * zeta, ending=ending)
             time = dashpot.tsuji_contact_time(zeta, ending) * scale
-            e, duration, peak, _ = first_impact(cases.single_impact(contact, speed, 1.5 * time))
+            e, duration, peak, _ = first_impact(impact_cases.single_impact(contact, speed, 1.5 * time))
             name = f"Tsuji, damping ratio {zeta}, ends at {ending.replace('_', ' ')}"
             yield Line("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
             yield Line("1", f"{name}: contact time", time, duration, 1e-10)
-            overlap = dashpot.tsuji_peak_overlap(zeta) * (cases.MASS * speed**2 / cases.STIFFNESS) ** 0.4
+            overlap = dashpot.tsuji_peak_overlap(zeta) * (impact_cases.MASS * speed**2 / impact_cases.STIFFNESS) ** 0.4
             yield Line("1", f"{name}: largest overlap", overlap, peak, 1e-10)
 
 
 def linear() -> Iterator[Line]:
     """Yield restitution and contact time of the linear spring-dashpot against a fixed wall."""
     speed, stiffness = 0.7, 1e7
-    rate = math.sqrt(stiffness / cases.MASS)
+    rate = math.sqrt(stiffness / impact_cases.MASS)
     for zeta in (0.0, 0.1, 0.5, 0.9):
         for ending in ENDINGS:
-            contact = rb.Linear(stiffness=stiffness, damping=2 * zeta * cases.MASS * rate, ending=ending)
+            contact = rb.Linear(stiffness=stiffness, damping=2 * zeta * impact_cases.MASS * rate, ending=ending)
             time = dashpot.linear_contact_time(zeta, ending) / rate
-            e, duration, _, force = first_impact(cases.single_impact(contact, speed, 1.5 * time))
+            e, duration, _, force = first_impact(impact_cases.single_impact(contact, speed, 1.5 * time))
             name = f"linear, damping ratio {zeta}, ends at {ending.replace('_', ' ')}"
             yield Line("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
             yield Line("1", f"{name}: contact time", time, duration, 1e-10)
-            top = dashpot.linear_peak_force(zeta) * speed * rate * cases.MASS
+            top = dashpot.linear_peak_force(zeta) * speed * rate * impact_cases.MASS
             yield Line("1", f"{name}: largest force", top, force, 1e-10)
 
 
@@ -97,7 +97,7 @@ def prescribed_restitution() -> Iterator[Line]:
                 rb.Tsuji(restitution=e, ending=ending),
                 rb.Linear(stiffness=1e7, restitution=e, ending=ending),
             ):
-                got = first_impact(cases.single_impact(contact, 0.3, 1e-3))[0]
+                got = first_impact(impact_cases.single_impact(contact, 0.3, 1e-3))[0]
                 yield Line(
                     "1",
                     f"{type(contact).__name__}, e = {e} prescribed, {ending.replace('_', ' ')}",
@@ -109,15 +109,17 @@ def prescribed_restitution() -> Iterator[Line]:
 
 def jackson_green() -> Iterator[Line]:
     """Yield restitution, and speeds of a ball in a fixed cavity after n hits, over the critical speed."""
-    strain = cases.YIELD / cases.YOUNG
-    critical = restitution_laws.jackson_green_speed(cases.RADIUS, cases.MASS, cases.MODULUS, cases.YIELD, cases.POISSON)
+    strain = impact_cases.YIELD / impact_cases.YOUNG
+    critical = restitution_laws.jackson_green_speed(
+        impact_cases.RADIUS, impact_cases.MASS, impact_cases.MODULUS, impact_cases.YIELD, impact_cases.POISSON
+    )
     contact = rb.Tsuji(restitution=rb.JacksonGreen())
     for ratio in printed.JACKSON_GREEN:
         # At the limit of the law a rounded speed could exceed it.
-        case = cases.single_impact(contact, ratio * critical * (1 - 1e-14), 3e-4)
+        case = impact_cases.single_impact(contact, ratio * critical * (1 - 1e-14), 3e-4)
         exact = restitution_laws.jackson_green(ratio, strain)
         yield Line("2", f"Jackson-Green, V/V_c = {ratio}: restitution", exact, first_impact(case)[0], 1e-10)
-    log = simulate(cases.still_cavity(contact, 10 * critical, 0.2)).arrays.impacts
+    log = simulate(impact_cases.still_cavity(contact, 10 * critical, 0.2)).arrays.impacts
     for hits in printed.JACKSON_GREEN_HITS:
         exact = restitution_laws.jackson_green_after(10, hits, strain)
         # The error of the speed grows with the number of contacts.
@@ -132,13 +134,13 @@ def jackson_green() -> Iterator[Line]:
 
 def thornton() -> Iterator[Line]:
     """Yield restitution of the hysteretic contact."""
-    pressure = 1.6 * cases.YIELD
-    critical = restitution_laws.thornton_speed(cases.RADIUS, cases.MASS, cases.MODULUS, pressure)
+    pressure = 1.6 * impact_cases.YIELD
+    critical = restitution_laws.thornton_speed(impact_cases.RADIUS, impact_cases.MASS, impact_cases.MODULUS, pressure)
     for ratio in printed.THORNTON:
-        case = cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4)
+        case = impact_cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4)
         yield Line("3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10)
     ratio = 1e8
-    tail = first_impact(cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4))[0]
+    tail = first_impact(impact_cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4))[0]
     # The next term of the expansion is of first order in V_y / V.
     yield Line("3", "Thornton, tail: e (V/V_y)^(1/4) at 1e8", restitution_laws.THORNTON_TAIL, tail * ratio**0.25, 1e-7)
 
@@ -164,7 +166,7 @@ def damper_multiplier(orbit: masri_caughey.Orbit) -> float:
     """Return the largest multiplier of the mirrored half-cycle map, from perturbed runs."""
 
     def end(shift: NDArray[np.float64]) -> NDArray[np.float64]:
-        a = simulate(cases.impact_damper(orbit, 1.0, shift=tuple(shift))).arrays
+        a = simulate(impact_cases.impact_damper(orbit, 1.0, shift=tuple(shift))).arrays
         return np.array([a.displacement[-1, 0], a.velocity[-1, 0], a.ball_position[-1, 0], a.ball_velocity[-1, 0]])
 
     size = 1e-3 * orbit.clearance
@@ -181,7 +183,7 @@ def impact_damper() -> Iterator[Line]:
         # times the condition number of the eigenvalue.
         yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
         if exact < 1:
-            a = simulate(cases.impact_damper(orbit, 40.0)).arrays
+            a = simulate(impact_cases.impact_damper(orbit, 40.0)).arrays
             yield Line("4", f"{name}: approach speed", orbit.approach, a.impacts.approach_speed[-1], 1e-10)
             yield Line("4", f"{name}: ball velocity w", orbit.speed, a.ball_velocity[-1, 0], 1e-10)
             yield Line("4", f"{name}: max|x|/50", orbit.largest() / 50, largest_displacement(orbit) / 50, 1e-9)
@@ -190,7 +192,7 @@ def impact_damper() -> Iterator[Line]:
 def largest_displacement(orbit: masri_caughey.Orbit) -> float:
     """Return the largest displacement of the structure in half a cycle, from samples and a parabola through the peak."""
     span = orbit.half_period
-    case = cases.impact_damper(orbit, 1.0)
+    case = impact_cases.impact_damper(orbit, 1.0)
     case = case.model_copy(update={"output": rb.Output(times=np.linspace(0, span, 4001))})
     x = np.abs(simulate(case).arrays.displacement[:, 0])
     k = int(x.argmax())
@@ -205,17 +207,17 @@ SOFT_TIMES = (1 / 80, 1 / 160, 1 / 320, 1 / 640)
 def linear_damper(orbit: masri_caughey.Orbit, time: float) -> Any:
     """Return the damper with linear springs of a contact time."""
     law = rb.Linear(contact_time=time, restitution=orbit.restitution, ending="zero_force")
-    return cases.impact_damper(orbit, SOFT_HALF_CYCLES, method=rb.EventDriven(), contact=law)
+    return impact_cases.impact_damper(orbit, SOFT_HALF_CYCLES, method=rb.EventDriven(), contact=law)
 
 
 def hertz_damper(orbit: masri_caughey.Orbit, time: float) -> Any:
     """Return the damper with Hertz-Tsuji contacts that, undamped, would last a time at the exact approach speed."""
     mass = orbit.mass_ratio / (1 + orbit.mass_ratio)
     stiffness = mass * (3.2180655 / time) ** 2.5 / math.sqrt(orbit.approach)
-    young = 0.75 * stiffness / math.sqrt(cases.RADIUS)
+    young = 0.75 * stiffness / math.sqrt(impact_cases.RADIUS)
     soft = rb.Material(density=1.0, young=young, poisson=0.0)
     law = rb.Tsuji(restitution=orbit.restitution)
-    return cases.impact_damper(orbit, SOFT_HALF_CYCLES, method=rb.EventDriven(), contact=law, soft=soft)
+    return impact_cases.impact_damper(orbit, SOFT_HALF_CYCLES, method=rb.EventDriven(), contact=law, soft=soft)
 
 
 SOFT_HALF_CYCLES = 160.0
@@ -263,7 +265,7 @@ def slow_manifold() -> Iterator[Line]:
     for e in printed.SLOW_MANIFOLD_THRESHOLD:
         for above in (1.001, 1.5):
             orbit = shaken.two_impacts(e, above * shaken.threshold(e))
-            log = simulate(cases.shaken_cavity(orbit, 20.0)).arrays.impacts
+            log = simulate(impact_cases.shaken_cavity(orbit, 20.0)).arrays.impacts
             yield Line(
                 "5",
                 f"shaken cavity, e {e}, {above} x threshold: approach speed",
@@ -277,7 +279,7 @@ def slow_manifold() -> Iterator[Line]:
 def shaken_threshold(e: float) -> float:
     """Return the least amplitude with two impacts a cycle, from runs above it: amplitude^2 is a parabola of the speed."""
     amplitudes = [above * shaken.threshold(e) for above in (1.01, 1.1, 1.3)]
-    runs = [simulate(cases.shaken_cavity(shaken.two_impacts(e, a), 20.0)) for a in amplitudes]
+    runs = [simulate(impact_cases.shaken_cavity(shaken.two_impacts(e, a), 20.0)) for a in amplitudes]
     speeds = [run.arrays.impacts.approach_speed[-1] for run in runs]
     curve, slope, start = np.polyfit(speeds, np.square(amplitudes), 2)
     return float(np.sqrt(start - slope**2 / (4 * curve)))
@@ -286,7 +288,7 @@ def shaken_threshold(e: float) -> float:
 def collect_and_collide() -> Iterator[Line]:
     """Yield energy lost in a cycle by a ball that sticks to the walls."""
     for ratio in printed.COLLECT_AND_COLLIDE:
-        log = simulate(cases.sticky_load(ratio, 10.25)).arrays.impacts
+        log = simulate(impact_cases.sticky_load(ratio, 10.25)).arrays.impacts
         landed = log.energy_lost[log.energy_lost > 1e-6 * log.energy_lost.max()]
         ours = float(landed[-2:].sum() / ratio**2)
         yield Line(
@@ -302,7 +304,7 @@ def table_multiplier(orbit: shaken.TableOrbit) -> Any:
     """Return the Jacobian of the map from the top of one flight to the next, from perturbed runs."""
 
     def end(shift: NDArray[np.float64]) -> NDArray[np.float64]:
-        a = simulate(cases.table(orbit, 1.0, tuple(shift))).arrays
+        a = simulate(impact_cases.table(orbit, 1.0, tuple(shift))).arrays
         return np.array([a.relative_position[-1, 0], a.relative_velocity[-1, 0]])
 
     return differences(end, [1e-3, 1e-3])
@@ -323,7 +325,7 @@ def vibrating_table() -> Iterator[Line]:
     """Yield impact speed and doubling threshold of a ball on a shaken table."""
     for (e, n), (start, end) in printed.VIBRATING_TABLE.items():
         orbit = shaken.table_orbit(e, 0.5 * (start + end), n)
-        log = simulate(cases.table(orbit, 30.0)).arrays.impacts
+        log = simulate(impact_cases.table(orbit, 30.0)).arrays.impacts
         name = f"vibrating table, e {e}, {n} cycles"
         yield Line("7", f"{name}: approach speed", orbit.approach, log.approach_speed[-1], 1e-10)
         # The velocity of the table at the impact does not depend on its acceleration; it peaks at the birth of the orbit.
@@ -335,7 +337,7 @@ def vibrating_table() -> Iterator[Line]:
 def chatter() -> Iterator[Line]:
     """Yield time and path of a ball that chatters to rest."""
     height, e, gravity = 0.5, 0.8, 9.81
-    log = simulate(cases.dropped(height, e, gravity, 4.0)).arrays.impacts
+    log = simulate(impact_cases.dropped(height, e, gravity, 4.0)).arrays.impacts
     bounced = np.asarray(log.separation_speed > 0)
     speed = log.separation_speed[bounced]
     # Bounces below the threshold of sticking are summed as a geometric series.
@@ -347,13 +349,13 @@ def chatter() -> Iterator[Line]:
 
 def apparent_mass(gamma: float) -> tuple[float, float]:
     """Return m' and m'' of an inelastic ball on a shaker, from one cycle of the force on the cavity."""
-    log = simulate(cases.inelastic_ball(gamma, 6.0)).arrays.impacts
+    log = simulate(impact_cases.inelastic_ball(gamma, 6.0)).arrays.impacts
     hits = log.approach_speed > 1e-3 * log.approach_speed.max()
     land, speed = float(log.time[hits][-2]), float(log.approach_speed[hits][-2])
     off = land + (math.asin(1 / gamma) - land) % (2 * math.pi)
     nodes, weights = np.polynomial.legendre.leggauss(40)
     times, weights = land + 0.5 * (off - land) * (nodes + 1), 0.5 * (off - land) * weights
-    arrays = simulate(cases.inelastic_ball(gamma, 6.0, list(times))).arrays
+    arrays = simulate(impact_cases.inelastic_ball(gamma, 6.0, list(times))).arrays
     force = -np.interp(times, arrays.time, arrays.cavity_force[:, 0])
     sines = (weights * force * np.sin(times)).sum() + speed * math.sin(land)
     cosines = (weights * force * np.cos(times)).sum() + speed * math.cos(land)
@@ -372,7 +374,7 @@ def oscillator_with_stop() -> Iterator[Line]:
     """Yield the speed before impact of an oscillator with a stop."""
     for key, shown in printed.IMPACT_OSCILLATOR.items():
         orbit = min(impact_oscillator.orbits(*key), key=lambda o: abs(o.speed - shown))
-        log = simulate(cases.impact_oscillator(orbit, 20.0)).arrays.impacts
+        log = simulate(impact_cases.impact_oscillator(orbit, 20.0)).arrays.impacts
         name = "impact oscillator, zeta {}, omega {}, stop {}, e {}".format(*key)
         yield Line("9", f"{name}: speed before impact", orbit.speed, log.approach_speed[-1], 1e-9)
 

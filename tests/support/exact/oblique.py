@@ -1,4 +1,4 @@
-"""A sphere that hits a fixed plane askew: gross sliding in closed form, sticking springs, and a fine integration of the law.
+"""A sphere that hits a fixed plane obliquely: gross sliding and sticking in closed form, and integration of the law.
 
 Units: mass and radius of the sphere and its normal speed before the impact are one.
 """

@@ -1,7 +1,7 @@
-"""A few spheres in a cavity that the modes of a structure carry, in plain Python, written from the documents alone.
+"""A few spheres in a cavity on the modes of a structure, in plain Python, written from the documentation only.
 
 Motion is integrated by the classical Runge-Kutta method. Begin and end of each contact are located to rounding, and steps
-begin there anew, short ones first, so that the law of restitution and the memory of the contact start where they should.
+begin there anew, short ones first, so that the restitution law and the contact history start at the begin of the contact.
 """
 
 import math
@@ -50,18 +50,18 @@ class Ball:
 
     @property
     def mass(self) -> float:
-        """Of the ball [kg]."""
+        """Mass [kg]."""
         return self.matter.density * 4 / 3 * math.pi * self.radius**3
 
     @property
     def inertia(self) -> float:
-        """About its centre [kg m^2]."""
+        """Moment of inertia about the centre [kg m^2]."""
         return 0.4 * self.mass * self.radius**2
 
 
 @dataclass(frozen=True)
 class Wall:
-    """A plane with this outward normal, or what is `curved` about an axis (zero for a sphere); offset from the centre."""
+    """A plane with its outward normal, or a surface `curved` about an axis (zero for a sphere); distance from the centre."""
 
     axis: Triple
     offset: float
@@ -69,17 +69,17 @@ class Wall:
 
 
 def box(x: float, y: float, z: float) -> list[Wall]:
-    """Return six planes."""
+    """Return the six planes of a box."""
     return [Wall(sign * axis, size / 2) for axis, size in zip(np.eye(3), (x, y, z), strict=True) for sign in (-1, 1)]
 
 
-def can(radius: float, length: float, axis: Triple) -> list[Wall]:
-    """Return the side of a can and its ends."""
+def cylinder(radius: float, length: float, axis: Triple) -> list[Wall]:
+    """Return the side and the ends of a cylinder."""
     along = np.array(axis) / np.linalg.norm(axis)
     return [Wall(along, radius, True), Wall(-along, length / 2), Wall(along, length / 2)]
 
 
-def hollow(radius: float) -> list[Wall]:
+def sphere(radius: float) -> list[Wall]:
     """Return a hollow sphere."""
     return [Wall(np.zeros(3), radius, True)]
 
@@ -96,10 +96,10 @@ class Mode:
 
 @dataclass(frozen=True)
 class Laws:
-    """Of contacts with one partner: Hertz if `stiffness` is None, else linear [N/m].
+    """Laws of the contacts with one partner: Hertz if `stiffness` is None, else linear [N/m].
 
     Restitution is a number, or speeds [m/s] and values between which it is linear. `spring` is the tangential stiffness
-    of friction [N/m], None for Mindlin's. `damping` counts in damping ratios along the normal.
+    of friction [N/m], None for Mindlin's. `damping` is tangential over normal damping ratio.
     """
 
     restitution: float | tuple[Sequence[float], Sequence[float]]
@@ -125,7 +125,7 @@ class Laws:
 
 @dataclass
 class Contact:
-    """Of ball i with ball j, or with a wall; `ratio` is its damping ratio while it is closed."""
+    """A contact of ball i with ball j or with a wall; `ratio` is its damping ratio while it is closed."""
 
     i: int
     j: int
@@ -140,13 +140,13 @@ class Contact:
     ratio: float = 0.0
 
     def stiffnesses(self, d: float) -> tuple[float, float]:
-        """Return those of the tangential and of the rolling spring at an overlap."""
+        """Return the stiffness of the tangential and of the rolling spring at an overlap."""
         k = self.laws.spring if self.laws.spring is not None else self.shear * math.sqrt(self.radius * d)
         return k, self.laws.rolling_stiffness * k * self.radius**2
 
     @property
     def tangential_ratio(self) -> float:
-        """Damping ratio of the normal dashpot in the stiffness that a contact has at its overlap."""
+        """Damping ratio of the normal dashpot for the stiffness at the present overlap."""
         return self.ratio * (math.sqrt(5 / 6) if self.laws.stiffness is None else 1.0)
 
     def normal(self, d: float, rate: float) -> tuple[float, float]:
@@ -334,12 +334,12 @@ class Bodies:
         return y + h / 6 * (one + 2 * two + 2 * three + four)
 
     def sides(self, state: Vector) -> Vector:
-        """Return by how much each contact is on the other side of touching than where it is now: open or closed."""
+        """Return for each contact a number that becomes positive when the contact begins or ends."""
         x, u = self.part(state, "x"), self.part(state, "q") @ self.shape
         return np.array([(-1 if contact.closed else 1) * self.place(contact, x, u)[1] for contact in self.contacts])
 
     def run(self, until: float, step: float, flight: float) -> None:
-        """Move on to a time, in contacts and in flight by at most these steps [s]."""
+        """Advance to a time, with largest steps in contacts and in flight [s]."""
         h = step / 1000
         while self.time < until:
             h = min(1.5 * h, step if any(contact.closed for contact in self.contacts) else flight)
@@ -363,7 +363,7 @@ class Bodies:
                 h = step / 1000
 
     def _turn(self, number: int) -> None:
-        """End a contact, or begin one with the restitution of its speed."""
+        """End a contact, or begin one with the damping ratio for its approach speed."""
         contact = self.contacts[number]
         contact.closed = not contact.closed
         if not contact.closed:
@@ -377,7 +377,7 @@ class Bodies:
         self.touches.append((self.time, contact.i, contact.j, float(speed)))
 
     def _settle(self) -> None:
-        """Keep springs in the plane of contact and within their limits."""
+        """Project springs onto the plane of contact and limit them."""
         x, v, spring, moment = (self.part(self.state, name) for name in ("x", "v", "spring", "moment"))
         u, du = self.part(self.state, "q") @ self.shape, self.part(self.state, "p") @ self.shape
         for number, contact in enumerate(self.contacts):
@@ -389,7 +389,7 @@ class Bodies:
                     held[number] = shortened(held[number] - normal * (held[number] @ normal), limit * N)
 
     def energies(self) -> dict[str, Any]:
-        """Return all that the ledger holds [J], losses among balls and at walls."""
+        """Return the energies of the ledger [J], with losses among balls and at walls."""
         q, p, x, v, w, spring, moment = (
             self.part(self.state, k) for k in ("q", "p", "x", "v", "w", "spring", "moment")
         )

@@ -12,10 +12,10 @@ import rattlebox as rb
 from rattlebox import alpha_of_restitution
 from rattlebox.analysis import shaken_cavity
 
-from ..exact import dashpot, oblique, printed, restitution_laws, shaken
-from ..measures import Line
-from . import cases
-from .cases import Ball
+from . import dem_cases
+from .dem_cases import Ball
+from .exact import dashpot, oblique, printed, restitution_laws, shaken
+from .impact_lines import Line
 
 FINE = 2000
 """Time steps per contact."""
@@ -38,11 +38,11 @@ IMPACTS: dict[str, tuple[Ball, bool, float]] = {
 def elastic_impact(ball: Ball, plane: bool, speed: float) -> tuple[float, float, float]:
     """Return peak force [N], peak overlap [m] and contact time [s] of an elastic impact."""
     other = None if plane else ball
-    time = cases.contact_time(ball, other, speed, "rigid")
+    time = dem_cases.contact_time(ball, other, speed, "rigid")
     dt = time / FINE
     law = rb.Tsuji(restitution=1.0)
-    case = cases.head_on(ball, other, speed, dt=dt, phase=0.5, lasts=1.2 * time, contact=law, wall="rigid")
-    dem, last = cases.dem_of(case)
+    case = dem_cases.head_on(ball, other, speed, dt=dt, phase=0.5, lasts=1.2 * time, contact=law, wall="rigid")
+    dem, last = dem_cases.dem_of(case)
     forces = []
     for step in range(FINE // 2, FINE // 2 + 12):
         dem.run(step)
@@ -60,7 +60,7 @@ def elastic_impacts() -> Iterator[Line]:
     for name, (ball, plane, speed) in IMPACTS.items():
         other = None if plane else ball
         mass = ball.mass if plane else 0.5 * ball.mass
-        stiffness = cases.stiffness(ball, other, "rigid")
+        stiffness = dem_cases.stiffness(ball, other, "rigid")
         overlap = (1.25 * mass * speed**2 / stiffness) ** 0.4
         exact = stiffness * overlap**1.5, overlap, dashpot.HERTZ_TIME * overlap / speed
         for what, a, b in zip(
@@ -73,12 +73,12 @@ def elastic_impacts() -> Iterator[Line]:
 def prescribed_restitution() -> Iterator[Line]:
     """Yield the restitution of impacts with a prescribed restitution."""
     ball = Ball(0.01)
-    time = cases.contact_time(ball, None, 1.0)
+    time = dem_cases.contact_time(ball, None, 1.0)
     for e in (0.1, 0.2, 0.4, 0.6, 0.8, 0.99):
         for ending in ("zero_force", "zero_overlap"):
             law = rb.Tsuji(restitution=e, ending=ending)
-            case = cases.head_on(ball, None, 1.0, dt=time / FINE, phase=0.3, lasts=4 * time, contact=law)
-            got = cases.rebound(cases.run(case))
+            case = dem_cases.head_on(ball, None, 1.0, dt=time / FINE, phase=0.3, lasts=4 * time, contact=law)
+            got = dem_cases.rebound(dem_cases.run(case))
             # Orders and factors: see test_normal.
             allowed = 2.4 * FINE**-2 if ending == "zero_force" else 0.38 * FINE**-1.25
             yield Line("dem", f"e = {e} prescribed, {ending.replace('_', ' ')}", e, got, allowed / e)
@@ -86,7 +86,7 @@ def prescribed_restitution() -> Iterator[Line]:
 
 def contact_end(case: Any, ball: Ball, ending: str, about: float) -> float:
     """Return the time at which the force of a ball on the wall at +x ends [s], to second order; not before `about`."""
-    dem, last = cases.dem_of(case)
+    dem, last = dem_cases.dem_of(case)
     if ending == "zero_overlap":
         dem.run(last)
         now = dem.state().cavities[0]
@@ -105,22 +105,22 @@ def contact_end(case: Any, ball: Ball, ending: str, about: float) -> float:
 def damped() -> Iterator[Line]:
     """Yield contact times of Tsuji's law, and a restitution close to zero."""
     ball = Ball(0.01)
-    elastic = cases.contact_time(ball, None, 1.0)
-    unit = (ball.mass / cases.stiffness(ball)) ** 0.4
+    elastic = dem_cases.contact_time(ball, None, 1.0)
+    unit = (ball.mass / dem_cases.stiffness(ball)) ** 0.4
     for ending in ("zero_force", "zero_overlap"):
         for zeta in (0.1, 0.5):
             exact = dashpot.tsuji_contact_time(zeta, ending) * unit
             law = rb.Tsuji(alpha=zeta * math.sqrt(5), ending=ending)
-            case = cases.head_on(ball, None, 1.0, dt=elastic / FINE, phase=0.5, lasts=1.5 * exact, contact=law)
+            case = dem_cases.head_on(ball, None, 1.0, dt=elastic / FINE, phase=0.5, lasts=1.5 * exact, contact=law)
             time = contact_end(case, ball, ending, 0.99 * exact) - 5.5 * elastic / FINE
             # Order 2; factors measured with steps of 1/500 to 1/4000: up to 7.2, and 2.6 if the end follows from the flight.
             allowed = (8.0 if ending == "zero_force" else 3.2) * FINE**-2
             yield Line("dem", f"zeta = {zeta}, {ending.replace('_', ' ')}: contact time", exact, time, allowed)
     law = rb.Tsuji(alpha=0.9 * math.sqrt(5), ending="zero_overlap")
-    case = cases.head_on(ball, None, 1.0, dt=elastic / FINE, phase=0.5, lasts=30 * elastic, contact=law)
+    case = dem_cases.head_on(ball, None, 1.0, dt=elastic / FINE, phase=0.5, lasts=30 * elastic, contact=law)
     exact = dashpot.restitution(0.9, "zero_overlap")
     allowed = 0.38 * FINE**-1.25 / exact
-    yield Line("dem", "zeta = 0.9, zero overlap: restitution", exact, cases.rebound(cases.run(case)), allowed)
+    yield Line("dem", "zeta = 0.9, zero overlap: restitution", exact, dem_cases.rebound(dem_cases.run(case)), allowed)
 
 
 def yielding() -> Iterator[Line]:
@@ -130,11 +130,15 @@ def yielding() -> Iterator[Line]:
     scale = restitution_laws.thornton_speed(ball.radius, ball.mass, modulus, 1.6 * steel.yield_stress)
     for ratio in printed.THORNTON:
         speed = ratio * scale
-        time = cases.contact_time(ball, None, speed)
-        case = cases.head_on(ball, None, speed, dt=time / FINE, phase=0.3, lasts=4 * time, contact=rb.Thornton())
+        time = dem_cases.contact_time(ball, None, speed)
+        case = dem_cases.head_on(ball, None, speed, dt=time / FINE, phase=0.3, lasts=4 * time, contact=rb.Thornton())
         exact = restitution_laws.thornton(ratio)
         yield Line(
-            "dem", f"Thornton, V/V_y = {ratio}: restitution", exact, cases.rebound(cases.run(case)) / speed, 1e-6
+            "dem",
+            f"Thornton, V/V_y = {ratio}: restitution",
+            exact,
+            dem_cases.rebound(dem_cases.run(case)) / speed,
+            1e-6,
         )
 
 
@@ -146,14 +150,16 @@ def oblique_impact(angle: float, per_contact: int, **options: Any) -> tuple[floa
     """Return tangential and normal velocity, spin, and the run, of an alumina sphere that hits the floor at an angle."""
     radius = ALUMINA.radius
     down, along = OBLIQUE_SPEED * math.cos(angle), OBLIQUE_SPEED * math.sin(angle)
-    dt = cases.contact_time(ALUMINA, None, down) / per_contact
+    dt = dem_cases.contact_time(ALUMINA, None, down) / per_contact
     half = 20 * radius
     spin = options.pop("spin", 0.0)
     start = (0, 0, radius - half + 5.5 * dt * down)
     ball = Ball(radius, start, (along, 0, -down), (0, spin, 0), ALUMINA.material)
     usual = {"contact": rb.Tsuji(restitution=OBLIQUE_E), "friction": rb.Mindlin(OBLIQUE_FRICTION)}
-    case = cases.case([ball], dt=dt, steps=4 * per_contact, cavity=rb.Box(size=(2 * half,) * 3), **{**usual, **options})
-    result = cases.run(case)
+    case = dem_cases.case(
+        [ball], dt=dt, steps=4 * per_contact, cavity=rb.Box(size=(2 * half,) * 3), **{**usual, **options}
+    )
+    result = dem_cases.run(case)
     velocity, turning = result.arrays.particles.velocity[0], result.arrays.particles.spin[0]
     assert velocity[1] == turning[0] == turning[2] == 0
     return float(velocity[0]), float(velocity[2]), float(turning[1]), result
@@ -169,7 +175,7 @@ def oblique_law(
         ratio=oblique.mindlin_ratio(ALUMINA.stuff.poisson),
         friction=OBLIQUE_FRICTION,
         damping=damping,
-        stiffness=cases.stiffness(ALUMINA) * ALUMINA.radius**2.5 / (ALUMINA.mass * down**2),
+        stiffness=dem_cases.stiffness(ALUMINA) * ALUMINA.radius**2.5 / (ALUMINA.mass * down**2),
         keeps=keeps,
     )
     along, spin, up = law.follow(math.tan(angle), steps)
@@ -191,7 +197,7 @@ def oblique_impacts() -> Iterator[Line]:
 
 def ball_that_falls(e: float, height: float, end: float, dt: float) -> Any:
     """Return the case of MFiX's test DEM01."""
-    return cases.case(
+    return dem_cases.case(
         [Ball(0.1, (0, 0, 0.5 - 0.5 * height), material=stuff(1e9, 0.3, 2600))],
         dt=dt,
         steps=round(end / dt),
@@ -203,7 +209,7 @@ def ball_that_falls(e: float, height: float, end: float, dt: float) -> Any:
 
 def first_touch(dt: float = 1e-5) -> float:
     """Return the time of the first step in contact of that test, less half a step [s]."""
-    dem, last = cases.dem_of(ball_that_falls(0.9, 2.0, 0.3, dt))
+    dem, last = dem_cases.dem_of(ball_that_falls(0.9, 2.0, 0.3, dt))
     for step in range(round(0.28 / dt), last):
         dem.run(step)
         if dem.contacts(0).first.size:
@@ -214,7 +220,7 @@ def first_touch(dt: float = 1e-5) -> float:
 def falling(e: float, dt: float = 1e-5) -> tuple[float, float, float]:
     """Return approach and rebound speed [m/s], and duration [s], of the first bounce of that test."""
     height, end = 2.0, 0.45
-    result = cases.run(ball_that_falls(e, height, end, dt))
+    result = dem_cases.run(ball_that_falls(e, height, end, dt))
     arrays = result.arrays
     high, speed = arrays.particles.position[0, 2] + 0.5 * height - 0.1, arrays.particles.velocity[0, 2]
     rebound = math.sqrt(speed**2 + 2 * 9.81 * high)
@@ -260,7 +266,7 @@ def on_floor(
     """Return the run of a ball that starts on a floor, which may slope down along x (its tangent)."""
     radius, dt = 0.02, 1e-5
     angle = math.atan(slope)
-    case = cases.case(
+    case = dem_cases.case(
         [Ball(radius, (-0.5, 0, 0), (velocity, 0, 0), (0, spin, 0), FLOOR)],
         dt=dt,
         steps=round(duration / dt),
@@ -271,7 +277,7 @@ def on_floor(
         rolling=rolling,
         gravity=(GRAVITY * math.sin(angle), 0, -GRAVITY * math.cos(angle)),
     )
-    return cases.run(case)
+    return dem_cases.run(case)
 
 
 def along(result: Any) -> tuple[Any, Any]:
@@ -318,7 +324,7 @@ def shaken_ball(gamma: float, per_contact: int = 400) -> Any:
     amplitude = gamma * GRAVITY / (2 * math.pi * frequency) ** 2
     samples = 400 * cycles
     every = math.ceil(cycles / frequency / samples / (time / per_contact))
-    case = cases.case(
+    case = dem_cases.case(
         [Ball(radius, (0, 0, radius - half))],
         dt=cycles / frequency / samples / every,
         steps=samples * every,
@@ -328,7 +334,7 @@ def shaken_ball(gamma: float, per_contact: int = 400) -> Any:
         gravity=(0, 0, -GRAVITY),
         structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{amplitude!r} m", frequency=frequency, direction="z")),
     )
-    return cases.run(case), frequency, amplitude
+    return dem_cases.run(case), frequency, amplitude
 
 
 def inelastic_ball() -> Iterator[Line]:
@@ -366,7 +372,9 @@ def settled(name: str) -> tuple[Any, float]:
         rolling=rb.Rolling(0.05, damping=0.3),
         packing=rb.Settled(seed=1),
     )
-    arrays = cases.run(rb.Case(structure=rb.Fixed(), damper=damper, duration=0.6, output=rb.Output(rate=100.0))).arrays
+    arrays = dem_cases.run(
+        rb.Case(structure=rb.Fixed(), damper=damper, duration=0.6, output=rb.Output(rate=100.0))
+    ).arrays
     return arrays.cavity_force[-1, 0], float(arrays.particles.mass.sum() * GRAVITY)
 
 
@@ -389,8 +397,8 @@ FLIGHT, PLAY, TIMES = 0.02, 5e-4, 100
 
 def one_ball(law: str, dt: float) -> tuple[Any, Any]:
     """Return displacement of the structure and position of the ball, (T,) each, by the 3-D engine."""
-    result = cases.run(
-        cases.case(
+    result = dem_cases.run(
+        dem_cases.case(
             [Ball(0.01, (0, 0, 0), (1.0, 0, 0))],
             dt=dt,
             steps=round(FLIGHT / dt),

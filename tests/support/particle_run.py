@@ -1,4 +1,4 @@
-"""Particles in two cavities on a structure: a case whose contacts remember much, and a command that runs it."""
+"""A case whose contacts have history, and a program that runs it with a checkpoint every 20 ms."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rattlebox.results import Run
 
 
 def case(**changes: Any) -> rb.Case:
-    """Return two dampers: one settled with friction, rolling and restitutions, one that dents."""
+    """Return a case with a settled bed with friction and rolling resistance, and a damper whose particles yield."""
     steel = rb.Particles(material="steel", diameter="6 mm", count=40)
     settled = rb.ParticleDamper(
         name="settled",
@@ -25,8 +25,8 @@ def case(**changes: Any) -> rb.Case:
         packing=rb.Settled(seed=3),
         softening=100,
     )
-    denting = rb.ParticleDamper(
-        name="denting",
+    yielding = rb.ParticleDamper(
+        name="yielding",
         particles=steel,
         cavity=rb.Cylinder(diameter="35 mm", length="30 mm"),
         contact=rb.Thornton(yield_pressure="1.2 GPa"),
@@ -35,17 +35,17 @@ def case(**changes: Any) -> rb.Case:
         velocity=(0.3, 0.1, 0.0),
         softening=100,
     )
-    usual: dict[str, Any] = {
+    defaults: dict[str, Any] = {
         "structure": rb.SDOF(mass="2 kg", stiffness="80 kN/m", damping="5 N s/m", velocity="50 mm/s"),
-        "dampers": [settled, denting],
+        "dampers": [settled, yielding],
         "duration": "0.05 s",
         "output": rb.Output(rate="2 kHz", snapshots=11),
     }
-    return rb.Case(**{**usual, **changes})
+    return rb.Case(**{**defaults, **changes})
 
 
 def bits(run: Run) -> dict[str, Any]:
-    """Every array and number of a run, to the last bit, but the computing time and the memory that the run took."""
+    """Return all arrays and numbers of a run, without the computing time and the memory that it took."""
     counts = {name: count for name, count in run.counts.items() if name != "memory_bytes"}
     values = vars(run.arrays) | {f"particles.{name}": column for name, column in vars(run.arrays.particles).items()}
     del values["particles"]

@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 
 import rattlebox as rb
 
-from . import cases
+from . import impact_cases
 from .exact import masri_caughey, printed, shaken
-from .measures import Line
+from .impact_lines import Line
 
 Array = NDArray[np.float64]
 Key = tuple[float, float, float]
@@ -56,7 +56,7 @@ def table_thresholds(restitution: float, cycles: int) -> tuple[float, float]:
     begin, double = shaken.table_bounds(restitution, cycles)
 
     def diagram(gamma: float, values: Array, skip: int, direction: Any) -> Any:
-        case = cases.table(shaken.table_orbit(restitution, gamma, cycles), 1)  # gamma is none of the values
+        case = impact_cases.table(shaken.table_orbit(restitution, gamma, cycles), 1)  # gamma is none of the values
         maps = rb.bifurcation(case, AMPLITUDE, values, cycles=(skip, 48), direction=direction, progress=False)
         assert (maps.status == 0).all()
         return maps.isel(direction=0)
@@ -73,7 +73,7 @@ def table_thresholds(restitution: float, cycles: int) -> tuple[float, float]:
 def two_impacts_threshold(restitution: float) -> float:
     """Return the least amplitude with two impacts per cycle in a shaken cavity; above it their speed is exact."""
     down = around(shaken.threshold(restitution), 10, 20)
-    case = cases.shaken_cavity(shaken.two_impacts(restitution, float(down[-1])), 1)
+    case = impact_cases.shaken_cavity(shaken.two_impacts(restitution, float(down[-1])), 1)
     maps = rb.bifurcation(
         case, AMPLITUDE, down, cycles=(500, 48), direction="down", show="impacts", progress=False
     ).isel(direction=0)
@@ -116,7 +116,7 @@ def growth(key: Key, omega: float) -> float:
 def followed(key: Key, omegas: Array, direction: Any, skip: int) -> tuple[Array, Array]:
     """Return the peaks of a response that begins on the orbit, and the orbit's own."""
     first = float(omegas[0] if direction == "up" else omegas[-1])
-    case = cases.impact_damper(orbit(key, first), 1.0)
+    case = impact_cases.impact_damper(orbit(key, first), 1.0)
     response = rb.frequency_response(
         case, omegas / (2 * math.pi), direction=direction, cycles=(skip, 16), samples=SAMPLES, progress=False
     )
@@ -165,7 +165,7 @@ def exponents() -> Iterator[Line]:
     """Yield multipliers of periodic motions, and that of an undamped free oscillator, from Lyapunov exponents."""
     for key in STABLE:
         exact = orbit(key, 1.0)
-        result = rb.lyapunov(cases.impact_damper(exact, 1.0), cycles=(40, 400), progress=False)
+        result = rb.lyapunov(impact_cases.impact_damper(exact, 1.0), cycles=(40, 400), progress=False)
         # The distance of neighbours, 1e-7, is not zero, and rounding is 1e-9 of it.
         multiplier = math.exp(float(result.exponent) * exact.half_period)
         yield Line("maps", f"lyapunov: {_named(key)}: multiplier", math.exp(growth(key, 1.0)), multiplier, 1e-7)
@@ -180,7 +180,7 @@ def designs() -> Iterator[Line]:
     """Yield the best clearance of collect-and-collide, pi times the amplitude, and its loss, found by a search."""
     for seed in (0, 1):
         result = rb.design(
-            cases.sticky_load(1.0, 1.0),
+            impact_cases.sticky_load(1.0, 1.0),
             {"damper.gap": ("0.2 m", "4 m")},
             {"reduced_loss": "max"},
             cycles=(10, 20),

@@ -1,0 +1,1 @@
+"""Helpers of the tests: cases, exact solutions, independent programs, and programs that tests interrupt."""
