@@ -24,8 +24,20 @@ else:
     _ModelType = type(BaseModel)
 
 
-class _CaseErrorMeta(_ModelType):
-    """Metaclass that raises CaseError in place of pydantic's error when a part is constructed directly."""
+class _ReadableSignature:
+    """The signature of a part, in place of the one with all validators that pydantic assigns, which is ignored."""
+
+    def __get__(self, cls: type[Part], _: type) -> Signature:
+        return part_signature(cls)
+
+    def __set__(self, cls: type[Part], value: object) -> None:
+        pass
+
+
+class _PartMeta(_ModelType):
+    """Metaclass of parts: plain types in the signature, and CaseError in place of pydantic's error in direct calls."""
+
+    __signature__ = _ReadableSignature()
 
     def __call__(cls, *args: Any, **values: Any) -> Any:  # noqa: N805
         if args:
@@ -37,15 +49,6 @@ class _CaseErrorMeta(_ModelType):
             return super().__call__(**values)
         except ValidationError as error:
             raise translate(error, cls.__name__, vocabulary(), values) from None
-
-
-class _ReadableSignature:
-    """The signature of a part, in place of the one with all validators that pydantic sets."""
-
-    def __get__(self, part: Part | None, cls: type[Part]) -> Signature:
-        if part is not None:  # only classes are called
-            raise AttributeError("__signature__")
-        return part_signature(cls)
 
 
 _NAMES = frozenset({"name", "title", "point"})
@@ -66,7 +69,7 @@ _SHORT.maxstring = 60
 _SHORT.maxother = 10_000  # parts inside parts shorten themselves
 
 
-class Part(BaseModel, metaclass=_CaseErrorMeta):
+class Part(BaseModel, metaclass=_PartMeta):
     """Immutable part of a case. Invalid values raise CaseError."""
 
     field_names: ClassVar[tuple[str, ...]] = ()  # fields of a case file that hold a part of this class
@@ -82,6 +85,7 @@ class Part(BaseModel, metaclass=_CaseErrorMeta):
         arbitrary_types_allowed=True,
         allow_inf_nan=False,
         ser_json_inf_nan="constants",
+        defer_build=True,  # validators are compiled when a class is first used
     )
 
     @model_validator(mode="after")
@@ -115,11 +119,6 @@ class Part(BaseModel, metaclass=_CaseErrorMeta):
             f"{name}: a {type(self).__name__} cannot be changed",
             'another one, or a new case with other values, case.replaced({"duration": "2 s", "damper.friction": 0.5})',
         )
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        """Show plain types in the signature."""
-        cls.__signature__ = _ReadableSignature()  # type: ignore[assignment]
 
     def __repr_args__(self) -> Iterator[tuple[str, Any]]:
         """Return the fields that are not at their defaults, shortened."""

@@ -20,7 +20,6 @@ from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from pydantic import TypeAdapter
-from scipy.spatial import ConvexHull
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import DataError
@@ -391,6 +390,8 @@ class _Scene:
 
     def show(self, number: int) -> None:
         """Show a frame."""
+        from scipy.spatial import ConvexHull  # takes a fifth of a second to load
+
         frame = self._frames[number]
         colours = self._map(self._norm(_values(frame, self._colour) / self._scale.divisor))[:, :3]
         time = scaled([self._last], "s")
