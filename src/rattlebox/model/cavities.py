@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint
-from .space import Direction, Lengths, unit_vector
+from .space import Direction, Lengths, components_along, unit_vector
 from .units import PositiveLength, radius_of_diameter
 
 WallForm = Literal["plane", "cylinder", "sphere"]
@@ -43,7 +43,7 @@ class Walls:
         """Return the distances of points from the walls, (n, w) [m], positive inside."""
         result = np.empty((len(positions), self.offset.size))
         for k, (axis, offset, form) in enumerate(zip(self.axis, self.offset, self.form, strict=True)):
-            along = positions @ axis
+            along = components_along(positions, axis)
             if form != "plane":
                 square = np.einsum("ij,ij->i", positions, positions)
                 along = np.sqrt(np.maximum(square - along**2, 0.0))
@@ -91,7 +91,7 @@ class Cavity(Part):
 
     def extent(self, direction: Vector) -> float:
         """Return the width of the cavity along a unit vector [m]."""
-        return float(np.abs(self.frame @ direction) @ self.lengths)
+        return float(np.sum(np.abs(components_along(self.frame, direction)) * self.lengths))
 
 
 class Box(Cavity):
@@ -206,7 +206,7 @@ class Cylinder(_Round):
         """Return the width of the cavity along a unit vector [m]."""
         along = unit_vector(self.axis)
         across = np.linalg.norm(np.cross(along, direction))
-        return float(self.length * abs(along @ direction) + 2 * self.radius * across)
+        return float(self.length * abs(np.sum(along * direction)) + 2 * self.radius * across)
 
 
 class SphericalCavity(_Round):

@@ -21,6 +21,7 @@ from .elementwise import Vector
 from .errors import Hint, at, several
 from .files import BINARY, absolute, check_finite, existing, read_arrays
 from .records import read_table
+from .space import to_global
 from .units import SI, Number, Whole, in_si, numbers
 
 TOUCHING = 1e-9  # tolerance for overlaps by rounding, relative to the radius
@@ -299,7 +300,7 @@ class _Grid:
         if self.centred:
             index = index[:, index.sum(axis=0) % 2 == 0]
         local = np.column_stack([axis[i] for axis, i in zip(axes, index, strict=True)])
-        sites = local @ cavity.frame
+        sites = to_global(local, cavity.frame)
         return sites if isinstance(cavity, Box) else sites[cavity.depth(sites) >= cell / 2 * (1 - 1e-12)]
 
     def at_least(self, cavity: AnyCavity, cell: float) -> int:

@@ -80,6 +80,22 @@ def unit_vector(direction: str | Triple) -> Vector:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
+def components_along(vectors: Vector, axis: Vector) -> Vector:
+    """Return the components of vectors along an axis, (n,).
+
+    `@` would call BLAS, whose last bits depend on the processor; packings have the same bits on all of them.
+    """
+    return np.asarray(np.einsum("ij,j->i", vectors, axis))
+
+
+def to_global(coordinates: Vector, frame: Vector) -> Vector:
+    """Return vectors along x, y and z from their coordinates in a frame with one axis in each row, (n, 3).
+
+    Without BLAS; see `components_along`.
+    """
+    return np.asarray(np.einsum("ij,jk->ik", coordinates, frame))
+
+
 Accelerations = Annotated[Triple, *triple("m/s^2", "accelerations", "[0, 0, -9.81]")]
 Velocities = Annotated[Triple, *triple("m/s", "velocities", "[0.1, 0, 0]")]
 Lengths = Annotated[Triple, *triple("m", "lengths", '["40 mm", "40 mm", "60 mm"]')]

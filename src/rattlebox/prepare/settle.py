@@ -13,6 +13,7 @@ from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.model.errors import Hint
 from rattlebox.model.packing import TOUCHING, Crowd, Settled, check_packing, fewer_at_random, overlapping
+from rattlebox.model.space import components_along, to_global
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -121,7 +122,7 @@ def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
     for k in np.unique(octave):  # The largest first, since many small ones would block their way.
         left = new = np.flatnonzero(octave == k)
         for _ in range(1000):
-            places[left] = generator.uniform(-half, half, (left.size, 3)) @ cavity.frame
+            places[left] = to_global(generator.uniform(-half, half, (left.size, 3)), cavity.frame)
             outside = cavity.room(places[left], radii[left]) < 0
             left = left[outside | _overlap(places[left], radii[left], places[there], radii[there])]
             if not left.size:
@@ -205,7 +206,7 @@ def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> 
             :, None
         ]  # The springs of many small ones add up on a large one.
         if np.sum(force * move) > 0:
-            move = (1 - mixing) * move + mixing * force * np.linalg.norm(move) / np.linalg.norm(force)
+            move = (1 - mixing) * move + mixing * force * math.sqrt(np.sum(move**2) / np.sum(force**2))
             downhill += 1
             if downhill > 5:
                 stride, mixing = min(1.1 * stride, 0.8), 0.99 * mixing
@@ -226,7 +227,7 @@ def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
     for k, (axis, form) in enumerate(zip(walls.axis, walls.form, strict=True)):
         deep = np.minimum(depth[:, k], 0.0)[:, None]
         if form != "plane":
-            outward = places - (places @ axis)[:, None] * axis
+            outward = places - components_along(places, axis)[:, None] * axis
             outward /= np.maximum(np.linalg.norm(outward, axis=1), 1e-300)[:, None]
         else:
             outward = np.broadcast_to(axis, places.shape)
@@ -260,7 +261,7 @@ class _SettlingBed:
 
     def fall(self, places: Array, at_rest: float) -> Array:
         """Return the positions of the particles after they have fallen and come to rest."""
-        still = at_rest * float(self._contents.mass @ self._contents.radius) * self._pull
+        still = at_rest * float(np.sum(self._contents.mass * self._contents.radius)) * self._pull
         blocks = max(1, math.ceil(MAX_FALL_TIMES * self._fall / (20 * self._contact_time)))
         for stopped in (False, *STOPS * (True,)):
             quiet, before = 0, 0.0
