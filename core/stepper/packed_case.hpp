@@ -25,11 +25,11 @@ namespace rattlebox {
 
 enum class Engine : std::int64_t { impact = 1, particles = 2 };
 
-// What a stepper needs beside the problem.
+// Data of a stepper in addition to the problem.
 struct Component {
     bool alone = false;                  // a damper alone, driven by the motion of its attachment
     real velocity[3] = {};               // of the attachment at the start, if alone
-    std::vector<std::vector<real>> rows; // displacement of each output per unit of each mode
+    std::vector<std::vector<real>> rows; // displacement of each output for a unit of each mode
 };
 
 template <class Problem> struct PackedCase {

@@ -50,7 +50,7 @@ class PackedComponent:
     axes
         1 for impact dampers, 3 for particle dampers.
     notes
-        What was chosen for the case.
+        Notes on choices that the preparation made, such as the time step.
     prepared
         Preparation of a case with particle dampers.
     """
