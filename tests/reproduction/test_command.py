@@ -17,22 +17,20 @@ ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
 COMMAND = [sys.executable, "-m", "reproduction"]
 
 
-def reproduce(*arguments: object) -> subprocess.CompletedProcess[str]:
-    """Run the command in a subprocess."""
-    return subprocess.run(
-        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False, env=ENVIRONMENT
-    )
-
-
-def test_report_on_chosen_figures(tmp_path: Path) -> None:
+def test_report_on_chosen_figures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """A report on selected figures creates its folder; without a terminal there is no progress bar."""
-    done = reproduce("-o", tmp_path / "new" / "report", "--only", "2", "--only", "5", "--workers", 1)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines() == [
-        f"written to {tmp_path / 'new' / 'report'}: index.html, and each figure as SVG, PNG and CSV with its case files"
+    report = tmp_path / "new" / "report"
+    arguments = ["-o", str(report), "--only", "2", "--only", "5", "--workers", "1"]
+    monkeypatch.setattr(sys, "argv", ["reproduction", *arguments])
+    assert main() == 0
+    printed, errors = capsys.readouterr()
+    assert printed.splitlines() == [
+        f"written to {report}: index.html, and each figure as SVG, PNG and CSV with its case files"
     ]
-    assert done.stderr == ""
-    drawn = {path.name for path in (tmp_path / "new" / "report" / "figures").glob("*.svg")}
+    assert errors == ""
+    drawn = {path.name for path in (report / "figures").glob("*.svg")}
     assert drawn == {"figure_02.svg", "figure_05.svg"}
 
 

@@ -26,7 +26,9 @@ gap = "0.4 mm"
 contact = { kind = "tsuji", restitution = 0.8 }
 """
 
+# A process that has loaded two runs; for each line of input, a child writes their files until it is killed.
 WRITER = """
+import os
 import sys
 from pathlib import Path
 import rattlebox as rb
@@ -35,15 +37,20 @@ pairs = []
 for name in ("first", "second"):
     run = rb.load(folder / f"{name}.nc")
     pairs.append((run, run.plot.motion(), rb.Case.from_toml(run.case_toml)))
-(folder / "ready").write_text("")
-while True:
-    for run, figure, case in pairs:
-        run.to_csv(folder / "out")
-        figure.savefig(folder / "out" / "motion.png")
-        figure.savefig(folder / "out" / "motion.svg")
-        run.save(folder / "out" / "run.nc")
-        run.to_mat(folder / "out" / "run.mat")
-        case.to_file(folder / "out" / "case.toml")
+for _ in sys.stdin:
+    child = os.fork()
+    if child:
+        print(child, flush=True)
+        os.waitpid(child, 0)
+        continue
+    while True:
+        for run, figure, case in pairs:
+            run.to_csv(folder / "out")
+            figure.savefig(folder / "out" / "motion.png")
+            figure.savefig(folder / "out" / "motion.svg")
+            run.save(folder / "out" / "run.nc")
+            run.to_mat(folder / "out" / "run.mat")
+            case.to_file(folder / "out" / "case.toml")
 """
 
 
@@ -83,23 +90,24 @@ def test_killed_while_files_are_written(runs: Path, tmp_path: Path) -> None:
     for name in ("first", "second"):
         os.link(runs / f"{name}.nc", tmp_path / f"{name}.nc")
     (tmp_path / "out").mkdir()
-    for _ in range(6):
-        (tmp_path / "ready").unlink(missing_ok=True)
-        process = subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path)])
-        until = time.monotonic() + 60
-        while not (tmp_path / "ready").exists():
-            assert process.poll() is None and time.monotonic() < until
-            time.sleep(0.01)
-        time.sleep(generator.uniform(0.1, 1.0))
-        process.send_signal(signal.SIGKILL)
-        process.wait()
-        complete += check_complete(tmp_path / "out", runs)
-        unfinished += sum(path.name.startswith(".") for path in (tmp_path / "out").iterdir())
+    command = [sys.executable, "-c", WRITER, str(tmp_path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdin and process.stdout
+        for _ in range(6):
+            process.stdin.write("\n")
+            process.stdin.flush()
+            child = int(process.stdout.readline())
+            time.sleep(generator.uniform(0.1, 0.7))
+            os.kill(child, signal.SIGKILL)
+            complete += check_complete(tmp_path / "out", runs)
+            unfinished += sum(path.name.startswith(".") for path in (tmp_path / "out").iterdir())
     assert complete > 20 and unfinished > 0  # some kills interrupted a write
 
 
 @needs_mounts
-@pytest.mark.parametrize("size", [64, 150, 260, 400])
+@pytest.mark.parametrize(
+    "size", [pytest.param(64, marks=pytest.mark.slow), 150, pytest.param(260, marks=pytest.mark.slow), 400]
+)
 def test_full_disk_leaves_complete_files(size: int, tmp_path: Path) -> None:
     """With little space, the command reports a file with advice, and each existing file is complete."""
     (tmp_path / "case.toml").write_text(CASE % "0.2 s")

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import io
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
-from unittest.mock import patch
 
 import pytest
+from support.command import rattlebox
 
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER
 from rattlebox.cli import folder as folders
 from rattlebox.cli.commands import app
-from rattlebox.cli.main import main
 from rattlebox.results.snapshots import Snapshots
 
 IMPACT = """
@@ -61,19 +58,6 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 OPTIONS = ("-o", "out", "--no-figures")
 
 
-def rattlebox(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run the command in this process."""
-    out, errors = io.StringIO(), io.StringIO()
-    with (
-        patch.object(sys, "argv", ["rattlebox", *arguments]),
-        redirect_stdout(out),
-        redirect_stderr(errors),
-        pytest.raises(SystemExit) as end,
-    ):
-        main()
-    return subprocess.CompletedProcess(arguments, int(end.value.code or 0), out.getvalue(), errors.getvalue())
-
-
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     """Run a case into the folder."""
     return rattlebox("run", *arguments, *OPTIONS)
@@ -107,7 +91,7 @@ def replacement_has_checkpoint() -> bool:
     return any(Path("out").glob("replacement-*/run.checkpoint"))
 
 
-@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("by", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGKILL])
 def test_finished_run_is_kept_until_the_new_one_is_finished(by: int) -> None:
     """Results and snapshots are unchanged after a stop; the same command resumes and replaces them at the end."""
     assert run("first.toml", "--csv").returncode == 0
@@ -133,7 +117,7 @@ def test_finished_run_is_kept_until_the_new_one_is_finished(by: int) -> None:
     assert Snapshots("out/run.vtkhdf").numbers == Snapshots("other.vtkhdf").numbers
 
 
-@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("by", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.slow)])
 def test_checkpoint_is_kept_until_the_new_run_is_finished(by: int) -> None:
     """An interrupted run resumes after another run has begun to replace it and was interrupted."""
     stop("longer.toml", by=signal.SIGINT, once=Path("out/run.checkpoint").is_file)

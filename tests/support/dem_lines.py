@@ -355,7 +355,7 @@ def inelastic_ball() -> Iterator[Line]:
 
 FILLED = {
     "box": rb.Box(size=("30 mm", "30 mm", "60 mm")),
-    "lying can": rb.Cylinder(diameter="40 mm", length="40 mm", axis="x"),
+    "lying cylinder": rb.Cylinder(diameter="40 mm", length="40 mm", axis="x"),
     "sphere": rb.SphericalCavity(diameter="40 mm"),
 }
 

@@ -303,8 +303,9 @@ def test_bad_values_return_an_error(fmi: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fmi", VERSIONS)
-def test_a_thousand_instances_leak_nothing(fmi: int, tmp_path: Path) -> None:
-    """A thousand instances one after the other, and as many states, take no more memory than the first ones."""
+@pytest.mark.parametrize("instances", [250, pytest.param(1000, marks=pytest.mark.slow)])
+def test_instances_leak_nothing(fmi: int, instances: int, tmp_path: Path) -> None:
+    """Instances one after the other, and as many states, take no more memory than the first ones: 4 kB each at most."""
     file = rb.to_fmu(ball(), tmp_path / "damper.fmu", fmi=fmi)
     folder = fmpy.extract(str(file), str(tmp_path / "x"))
     description = fmpy.read_model_description(str(file))
@@ -326,8 +327,9 @@ def test_a_thousand_instances_leak_nothing(fmi: int, tmp_path: Path) -> None:
         return pages * 4096
 
     use(200)
-    before = use(50)
-    assert use(1000) - before < 4e6
+    # Other parts of the process may take memory at any time; a leak is seen in every part of the loop.
+    sizes = [use(instances // 5) for _ in range(6)]
+    assert min(np.diff(sizes)) < 4e3 * instances / 5
 
 
 def test_a_missing_resource_is_an_error(tmp_path: Path) -> None:

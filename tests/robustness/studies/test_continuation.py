@@ -95,7 +95,7 @@ def test_killed_worker(tmp_path: Path) -> None:
         duration="1 s",
         method=rb.Newton(),
     )
-    options: dict[str, Any] = {"levels": ["5 N", "20 N"], "cycles": (400, 8), "samples": 8}
+    options: dict[str, Any] = {"levels": ["5 N", "20 N"], "cycles": (150, 8), "samples": 8}
     frequencies = rb.linspace("28 Hz", "36 Hz", 40)
 
     def kill(done: int, total: int) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -11,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.command import rattlebox
 from support.logistic_study import Logistic
 
 import rattlebox as rb
@@ -82,7 +81,9 @@ def test_folder_of_a_user_is_refused(tmp_path: Path, user_files: Any) -> None:
 
 
 @pytest.mark.parametrize("kind", ["sweep", "command", "bifurcation", "frequency_response", "design"])
-def test_every_study_refuses_a_folder_of_a_user(kind: str, tmp_path: Path, user_files: Any) -> None:
+def test_every_study_refuses_a_folder_of_a_user(
+    kind: str, tmp_path: Path, user_files: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """All functions and the command that take a store refuse a folder with a foreign subfolder called progress."""
     folder = tmp_path / "project"
     user_files(folder, ("thesis/ch1.tex", "progress/plan.txt"))
@@ -91,8 +92,8 @@ def test_every_study_refuses_a_folder_of_a_user(kind: str, tmp_path: Path, user_
         (tmp_path / "case.toml").write_text(CASE)
         text = 'measure = ["impacts"]\ncase = "case.toml"\n[axes]\n"damper.gap" = ["0.3 mm", "0.5 mm"]\n'
         (tmp_path / "study.toml").write_text(text)
-        command = [sys.executable, "-m", "rattlebox.cli", "sweep", "study.toml", "-o", "project"]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        monkeypatch.chdir(tmp_path)
+        done = rattlebox("sweep", "study.toml", "-o", "project")
         assert done.returncode == 2 and "holds other files" in done.stderr
         return
     options: dict[str, Any] = {"store": folder, "progress": False}

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from support.command import rattlebox
 from support.ctrl_c import CtrlC
 from support.logistic_study import variants_in
 from support.waiting import wait_for
@@ -36,7 +37,7 @@ run_work(study.work, store="study.zarr", workers=1, block=100)
 """
 
 
-def test_killed_study_resumes(tmp_path: Path) -> None:
+def test_killed_study_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A study of 2000 runs that is killed resumes by the command and has the bits of one in memory."""
     (tmp_path / "study.toml").write_text(STUDY)
     store = tmp_path / "study.zarr"
@@ -45,9 +46,8 @@ def test_killed_study_resumes(tmp_path: Path) -> None:
     process.kill()
     process.wait()
     assert 0 < progress_of(store).done < 2000
-    command = [sys.executable, "-m", "rattlebox.cli", "sweep", "study.toml"]
-    output = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-    assert output == "2,000 variants: 2,000 finished\nwritten to study.zarr\n"
+    monkeypatch.chdir(tmp_path)
+    assert rattlebox("sweep", "study.toml").stdout == "2,000 variants: 2,000 finished\nwritten to study.zarr\n"
     study = read_study(tmp_path / "study.toml")
     whole = study.run(workers=2)
     result = open_study(store)

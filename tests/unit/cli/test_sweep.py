@@ -1,7 +1,5 @@
 """Tests of `rattlebox sweep` and `rattlebox show` of studies."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -32,25 +30,23 @@ def study(run_cli: RunCli) -> Path:
     return Path("study.toml")
 
 
-def test_sweep_and_show(study: Path) -> None:
+def test_sweep_and_show(study: Path, run_cli: RunCli) -> None:
     """The store is named after the study file and equals single runs; without a terminal no bar is drawn."""
-    command = [sys.executable, "-m", "rattlebox.cli"]
-    done = subprocess.run([*command, "sweep", study, "--workers", "2"], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == "6 variants: 6 finished\nwritten to study.zarr\n"
+    done = run_cli("sweep", study, "--workers", "2")
+    assert done == (0, "6 variants: 6 finished\nwritten to study.zarr\n", "")
     data = open_study("study.zarr")
     assert list(data.data_vars) == ["status", "impacts", "impact_share"]
     case = rb.Case.from_file(EXAMPLE)
     damper = case.dampers[0].model_copy(update={"gap": float(data["damper.gap"][1])})
     run = rb.simulate(case.model_copy(update={"dampers": (damper,)}))
     assert data.impacts.values[1, 0] == len(run.arrays.impacts)
-    shown = subprocess.run([*command, "show", "study.zarr"], capture_output=True, text=True, check=False)
-    assert (shown.returncode, shown.stderr) == (0, "")
-    assert shown.stdout.startswith("study.zarr: 6 variants, complete\n")
-    words = shown.stdout.split()
+    code, shown, error = run_cli("show", "study.zarr")
+    assert (code, error) == (0, "")
+    assert shown.startswith("study.zarr: 6 variants, complete\n")
+    words = shown.split()
     for word in ("damper.gap", "200.0", "µm", "damper.ball.material", "brass", f"{np.max(data.impacts.values):.0f}"):
         assert word in words
-    assert shown.stdout.endswith("6 variants: 6 finished\n")
+    assert shown.endswith("6 variants: 6 finished\n")
 
 
 def test_repeated_and_changed_study(study: Path, run_cli: RunCli) -> None:

@@ -257,7 +257,8 @@ def test_the_command_draws_the_files_of_a_folder(
     """For a folder, the command draws run.nc and films run.vtkhdf; a missing run.vtkhdf is an error."""
     monkeypatch.chdir(tmp_path)
     folder = run[1].parent
-    for file, options in (("run.nc", ["--kind", "energy"]), ("run.vtkhdf", ["--number", 1])):
+    for file, kind in (("run.nc", ["--kind", "energy"]), ("run.vtkhdf", ["--number", 1])):
+        options = [*kind, "--size", "column"]
         for of, name in ((folder, "a.png"), (folder / file, "b.png")):
             assert answer(monkeypatch, capsys, of, *options, "-o", name)[0] == 0
         assert Path("a.png").read_bytes() == Path("b.png").read_bytes()

@@ -91,14 +91,18 @@ def test_clear_refusals(changes: dict[str, Any], amplitudes: Any, message: str) 
         rb.loss_map(shaken(**changes), amplitudes, ["10 Hz"])
 
 
-def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("frequencies", [6, pytest.param(21, marks=pytest.mark.slow)])
+def test_example(frequencies: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In the example, a ball rides along at low frequency; on the ridge it loses what one impact at each end must lose.
 
     The flight of half a cycle between floor and lid gives the phase; 2 gap is 2 mm, e = 0.6 makes (1 + e) / (1 - e) = 4,
     and gravity is up to a tenth of the shaker's acceleration.
     """
     monkeypatch.chdir(tmp_path)
+    spaced = rb.geomspace
+    monkeypatch.setattr(rb, "geomspace", lambda *ends: spaced(*ends[:2], frequencies if ends[2] == 21 else ends[2]))
     result = runpy.run_path(str(EXAMPLE))["result"]
+    assert result.sizes[FREQUENCY] == frequencies
     slow = result.isel({FREQUENCY: 0, AMPLITUDE: -1})
     assert float(slow.effective_mass / slow.particle_mass) == pytest.approx(1, abs=0.02)
     ridge = result.isel(result.reduced_loss.argmax([AMPLITUDE])).sel({FREQUENCY: slice(80, 200)})
