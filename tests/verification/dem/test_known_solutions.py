@@ -77,7 +77,9 @@ def test_ball_without_resistance_rolls_on() -> None:
     assert result.arrays.rolling_loss[-1].sum() == 0
 
 
-@pytest.mark.parametrize("name", ["box", *(pytest.param(n, marks=pytest.mark.slow) for n in ("lying cylinder", "sphere"))])
+@pytest.mark.parametrize(
+    "name", ["box", *(pytest.param(n, marks=pytest.mark.slow) for n in ("lying cylinder", "sphere"))]
+)
 def test_settled_fill_loads_its_cavity_with_its_weight(name: str) -> None:
     """The cavity of a settled fill carries its weight, and the lateral forces cancel."""
     force, weight = dem_lines.settled(name)
