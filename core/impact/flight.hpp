@@ -252,7 +252,7 @@ public:
         return 4 * epsilon * (half + std::fabs(positions(problem_, state.y.data())[ball]));
     }
 
-    // Returns the first touch of the is_watched contacts within the horizon, and the state there.
+    // Returns the first touch of the watched contacts within the horizon, and the state there.
     FirstTouch first_touch(const std::vector<char>& is_watched, State& out) const {
         const auto end = [&](FirstTouch touch) {
             at(touch.time, out);

@@ -1,7 +1,9 @@
-"""What every test may rely on."""
+"""Settings of all tests."""
 
 import os
 import signal
+
+pytest_plugins = ("support.processor_time",)
 
 # The workers of pytest share the cores. More threads of BLAS wait for each other: eigenvalues of a matrix of 900 rows take
 # 1.4 s of processor time with two threads and 0.2 s with one. Read when NumPy loads, also in processes that tests start.
