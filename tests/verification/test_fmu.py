@@ -62,7 +62,6 @@ class Unit:
         self.reference = {variable.name: variable.valueReference for variable in self.description.modelVariables}
         kind = FMU2Slave if self.description.fmiVersion == "2.0" else FMU3Slave
         self.is_2 = kind is FMU2Slave
-        self.said: list[str] = []
         self.fmu = kind(
             guid=self.description.guid,
             unzipDirectory=fmpy.extract(str(file), str(folder)),
@@ -282,22 +281,25 @@ def test_parameters_change_the_case(fmi: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fmi", VERSIONS)
-def test_bad_values_return_an_error(fmi: int, tmp_path: Path) -> None:
-    """NaN, negative steps, steps out of order and unknown variables return an error, and the FMU stays usable."""
+def test_bad_values_return_an_error_and_a_message(fmi: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """NaN, steps that are negative or not in order, and unknown variables return an error; the logger gets the reason."""
     with unit(tmp_path, ball(), fmi) as own:
         own.initialize()
         own.step(0.0, 1e-3, velocity=0.1)
-        for act in (
-            lambda: own.set(velocity=float("nan")),
-            lambda: own.set(gravity=float("inf")),
-            lambda: own.set(input_time=3),
-            lambda: own.step(1e-3, -1e-3),
-            lambda: own.step(1e-3, float("nan")),
-            lambda: own.step(0.0, 1e-3),
-            lambda: (own.fmu.getReal if own.is_2 else own.fmu.getFloat64)([12345]),
+        for act, reason in (
+            (lambda: own.set(velocity=float("nan")), "a value is not finite"),
+            (lambda: own.set(gravity=float("inf")), "a value is not finite"),
+            (lambda: own.set(input_time=3), "input_time is 1 (start) or 2 (end)"),
+            (lambda: own.set(restitution=0.5), "fixed after the initialization"),
+            (lambda: own.step(1e-3, -1e-3), "longer than zero"),
+            (lambda: own.step(1e-3, float("nan")), "longer than zero, and finite"),
+            (lambda: own.step(0.0, 1e-3), "does not begin where the last one ended"),
+            (lambda: (own.fmu.getReal if own.is_2 else own.fmu.getFloat64)([12345]), "no such variable"),
         ):
+            capsys.readouterr()
             with pytest.raises(Exception, match="failed"):
                 act()
+            assert reason in capsys.readouterr().out
         own.step(1e-3, 1e-3, velocity=0.1)
         assert np.isfinite(own.get("force")[0])
 
