@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rattlebox import Case, JacksonGreen, Run, contact_pairs, restitution_of_alpha
-from rattlebox.plots import INK, SERIES_COLOURS, StyledFigure, figure_style, pen
+from rattlebox.plots import INK, StyledFigure, figure_style, pen
 
 from .ensemble import band, ensemble, near
-from .figure import Reproduction
+from .figure import Reproduction, letters
 from .harmonic import BALL, State, harmonic_case
-from .models import CONSTANT_E, MODELS, RIGID, described
+from .models import COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, described
 from .reference import ALPHA, DAMPING, GAP, MASS, STIFFNESS
 from .runs import simulate_many
 from .two_impacts import TwoImpacts, two_impacts
@@ -143,7 +143,7 @@ def draw(data: xr.Dataset) -> Figure:
                 low, median, high = (
                     1e3 * data[f"spread_over_{name}"].sel(model=model).transpose("quantile", name).values
                 )
-                look: dict[str, Any] = {"color": SERIES_COLOURS[0], "zorder": 0.5}
+                look: dict[str, Any] = {"color": COLOURS[model], "zorder": 0.5}
                 axes.fill_between(
                     data[name], low, high, alpha=0.2, lw=0, label="starts within 1 µm, 10 to 90 %", **look
                 )
@@ -155,16 +155,17 @@ def draw(data: xr.Dataset) -> Figure:
                 else:
                     limit = 1e3 * float(data.critical_speed)
                     axes.axhline(
-                        limit, color=SERIES_COLOURS[2], lw=pen(1.2), zorder=0, label="elastic below this speed"
+                        limit, color=INK, ls=(0, (4, 2)), lw=pen(0.8), zorder=0, label="elastic below this speed"
                     )
-            row[0].set_title(model)
+            row[0].set_title(SHORT[model])
             row[0].set_ylabel("Speed at impact (mm/s)")
         panels[0, 0].set_ylim(0, 1050 * float(data.speed_over_amplitude.max()))
         panels[0, 0].set_xlim(float(data.frequency[0]), float(data.frequency[-1]))
         panels[0, 1].set_xlim(float(data.amplitude[0]), float(data.amplitude[-1]))
         panels[-1, 0].set_xlabel(f"Frequency of the load of {float(data.amplitude_at):g} N (Hz)")
         panels[-1, 1].set_xlabel(f"Amplitude of the load at {float(data.frequency_at):g} Hz (N)")
-        lines = {line.get_label(): line for axes in panels[:, 0] for line in axes.get_legend_handles_labels()[0]}
+        letters(figure)
+        lines = {line.get_label(): line for axes in panels[::-1, 0] for line in axes.get_legend_handles_labels()[0]}
         figure.legend(handles=list(lines.values()), loc="outside upper left", ncols=3)
     return figure
 
@@ -174,10 +175,11 @@ def _draw_exact(axes: Axes, data: xr.Dataset, name: str) -> None:
         axes.plot(
             data[name],
             1e3 * data[f"{kind}_over_{name}"],
-            color=SERIES_COLOURS[1],
+            color=INK,
+            alpha=0.45,
             ls=style,
-            lw=pen(2.2),
-            zorder=1.5,
+            lw=pen(2.6),
+            zorder=0.8,
             label=f"exact, two hard impacts a cycle, {kind}",
         )
 
@@ -202,21 +204,14 @@ def caption(data: xr.Dataset) -> str:
     stable = np.isfinite(one.stable_over_frequency)
     off = np.abs(one.speed_over_frequency.mean("hit") / one.stable_over_frequency - 1)
     met = is_settled(one, "frequency") & (off < 0.05)
-    lost = one.frequency.where(~stable & (one.frequency > float(one.frequency.where(stable).min())), drop=True)
     shares = np.concatenate([one[f"alike_over_{name}"] for name in ("frequency", "amplitude")])
-    alike = int(is_settled(one, "frequency").sel(frequency=lost).sum())
     return (
-        f"Relative speeds of the last {data.hit.size} impacts of runs of {DURATION:g} s, over the frequency and over the "
-        f"amplitude of the load: dots of one run that starts at the leading wall, median and band of {MEMBERS} starts "
-        f"within 1 µm of it. A single dot is a motion in which all impacts are "
-        "alike, a few dots are one that repeats after several impacts, a cloud is one without visible order. With "
-        f"constant restitution the exact motion with two impacts a cycle is stable at {int(stable.sum())} of "
-        f"{stable.size} frequencies; at {int(met.sum())} of them the run settles on it, "
-        f"{100 * float(off.where(met).median()):.1f} % off in speed because contacts take time, at the others on another "
-        f"motion. From {float(lost.min()):g} to {float(lost.max()):g} Hz it is unstable; there all impacts are alike in "
-        f"{alike} of {lost.size} runs. Over "
-        f"frequency and amplitude, all starts of the constant model come to impacts all alike at {np.sum(shares == 1)} of "
-        f"{shares.size} loads, none at {np.sum(shares == 0)}, and at the others a micrometre decides which do."
+        "One dot per load means that all impacts are alike. With constant restitution all starts settle so at "
+        f"{np.sum(shares == 1)} of "
+        f"{shares.size} loads and none at {np.sum(shares == 0)}; elsewhere a micrometre decides. Runs settle on the "
+        "exact motion at "
+        f"{int(met.sum())} of the {int(stable.sum())} frequencies at which it is stable. Last {data.hit.size} impacts "
+        f"of {DURATION:g} s."
     )
 
 

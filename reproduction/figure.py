@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from string import ascii_lowercase
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import xarray
@@ -13,21 +14,7 @@ if TYPE_CHECKING:
 
     from rattlebox import Case
 
-Verdict = Literal["reproduced", "reproduced qualitatively", "not reproducible", "misprint"]
-
-
-class Claim(NamedTuple):
-    """Measurable statement of the paper with a verdict."""
-
-    statement: str
-    """Statement of the paper, paraphrased."""
-    where: str
-    """Section, figure or equation of the paper."""
-    ours: str
-    """Our result, with units."""
-    interpretation: str
-    """Interpretation of the paper under which the result holds."""
-    verdict: Verdict
+    from .judge import Claim
 
 
 @dataclass(frozen=True)
@@ -37,7 +24,7 @@ class Reproduction:
     Parameters
     ----------
     number
-        Number in the paper ("4", "7c"), "A1", "A2", ... for additional studies, or "R1" for the interpretations.
+        Number in the paper ("4", "7c"), "R1", ... for figures that judge the paper, "A1", ... for its extensions.
     title
         Title of one line.
     data
@@ -46,11 +33,15 @@ class Reproduction:
     draw
         Function that draws the dataset in the style of `rattlebox.plots`.
     caption
-        Function that describes the figure in one to four sentences with the numbers of the dataset.
+        Function that states the message of the figure first, then its symbols, in at most three lines of the page.
     cases
         Function that returns the cases of the figure by name; all runs of `data` differ from them in numbers only.
     claims
-        Function that returns verdicts on the statements of the paper, based on the dataset.
+        Function that returns the claims of the paper that the dataset tests.
+    lessons
+        Function that returns sentences for the summary of the page.
+    film
+        Function that returns an animation as an SVG element.
     """
 
     number: str
@@ -60,9 +51,18 @@ class Reproduction:
     caption: Callable[[xarray.Dataset], str]
     cases: Callable[[], Mapping[str, Case]] = dict
     claims: Callable[[xarray.Dataset], Sequence[Claim]] = lambda data: ()
+    lessons: Callable[[xarray.Dataset], Sequence[str]] = lambda data: ()
+    film: Callable[[xarray.Dataset], str] = lambda data: ""
 
     @property
     def name(self) -> str:
         """Stem of the file names of the figure: "figure_07c", "figure_07de" for "7d, 7e"."""
         whole, *parts = re.findall(r"^[A-Z]?\d+|[a-z]", self.number)
         return f"figure_{whole.zfill(2)}{''.join(parts)}"
+
+
+def letters(figure: Figure) -> None:
+    """Put a bold letter before the title of each panel of a figure, in the order in which the panels were made."""
+    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    for letter, axes in zip(ascii_lowercase, panels, strict=False):
+        axes.set_title(rf"$\bf{{({letter})}}$ {axes.get_title('left')}".rstrip(), loc="left")

@@ -1,38 +1,85 @@
-"""Contact models of the paper, the second in two interpretations, with their colours in figures."""
+"""Contact models of the paper, the second in three interpretations, with their colours in figures."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from rattlebox import Tsuji
+from rattlebox import Case, Run, Tsuji
 from rattlebox.plots import SERIES_COLOURS, SERIES_STYLES
 
-from .reference import CONSTANT, PLASTIC, PLASTIC_RIGID
+from .ensemble import ensemble, near
+from .reference import CONSTANT, PLASTIC, PLASTIC_RIGID, START, paper_case
 
 CONSTANT_E, STEEL, RIGID = "constant restitution", "elasto-plastic, steel wall", "elasto-plastic, rigid wall"
-
-MODELS: Mapping[str, Tsuji] = {CONSTANT_E: CONSTANT, STEEL: PLASTIC, RIGID: PLASTIC_RIGID}
-"""Contact law by the name of the model."""
-
-COLOURS: Mapping[str, str] = dict(zip(MODELS, SERIES_COLOURS, strict=False))
-STYLES: Mapping[str, Any] = dict(zip(MODELS, SERIES_STYLES, strict=False))
+STIFF = "elasto-plastic, rigid wall, also in stiffness"
 
 
-def by_model(texts: Mapping[str, str]) -> str:
-    """Return a text with the results of each model.
+class Model(NamedTuple):
+    """Contact law and wall of a model."""
+
+    contact: Tsuji
+    wall: Literal["rigid"] | None = None
+
+
+ALL_MODELS: Mapping[str, Model] = {
+    CONSTANT_E: Model(CONSTANT),
+    STEEL: Model(PLASTIC),
+    RIGID: Model(PLASTIC_RIGID),
+    STIFF: Model(PLASTIC_RIGID, "rigid"),
+}
+"""Every model by its name. `RIGID` is the one that the paper states: a rigid wall in its section on yield, equation "
+"(6) for A."""
+
+MODELS: Mapping[str, Tsuji] = {name: ALL_MODELS[name].contact for name in (CONSTANT_E, STEEL, RIGID)}
+"""Contact law by model, for the figures, where the last model would repeat the third."""
+
+SHORT: Mapping[str, str] = dict(
+    zip(ALL_MODELS, ("constant e", "steel wall", "rigid wall", "rigid in A too"), strict=True)
+)
+COLOURS: Mapping[str, str] = dict(zip(ALL_MODELS, SERIES_COLOURS, strict=False))
+STYLES: Mapping[str, Any] = dict(zip(ALL_MODELS, SERIES_STYLES, strict=False))
+
+
+def model_case(model: str, *, start: float = 0.0, **options: Any) -> Case:
+    """Return the paper's case with a model, and other options of `paper_case`."""
+    contact, wall = ALL_MODELS[model]
+    return paper_case(contact, start=start, wall=wall, **options)
+
+
+def model_runs(model: str, case: int, members: int, **options: Any) -> list[Run]:
+    """Simulate an ensemble of starts within a micrometre of a case of the paper.
 
     Parameters
     ----------
-    texts
-        Result by model, such as "5 %".
+    model
+        Name of the model.
+    case
+        Case of the paper, 1 to 3.
+    members
+        Number of runs.
+    **options
+        Options of `paper_case`.
     """
-    return (
-        f"{texts[CONSTANT_E]} with constant restitution; with the elasto-plastic model {texts[STEEL]} (steel wall) or "
-        f"{texts[RIGID]} (rigid wall)"
-    )
+    return ensemble(lambda offset: model_case(model, start=near(START[case], offset), **options), members)
+
+
+def by_model(of: Callable[[str], str]) -> str:
+    """Return a text with the results of the models of the figures.
+
+    Parameters
+    ----------
+    of
+        Function of the model that returns its result, such as "5 %".
+    """
+    return ", ".join(f"{of(model)} ({SHORT[model]})" for model in MODELS)
+
+
+def two(value: Any) -> str:
+    """Return a number with two significant digits, trailing zeros included."""
+    return f"{float(value):#.2g}".rstrip(".")
 
 
 def described(dims: Any, values: Any, units: str, long_name: str) -> tuple[Any, ...]:

@@ -14,12 +14,19 @@ from typing import NamedTuple, get_args
 
 from markupsafe import Markup, escape
 
-from .figure import Claim, Verdict
+from .judge import RULE, Claim, Verdict, fit
+from .matrix import MARKS, best_fit, place, row
+from .models import COLOURS, SHORT
+from .reading import EQUATIONS, INTERPRETATIONS, MISPRINTS, PROVENANCE
 from .runs import Files
 
 GENERATOR = '<meta name="generator" content="Rattlebox">'
 """Mark by which pages of this program are recognised."""
 PAPER = "Energy Dissipation in Particle-based Impact Damper Systems: Investigation based on Elasto-plastic impact model"
+
+
+FIRST = "figure_01"
+"""Figure that opens the page, with the system."""
 
 
 class Column(NamedTuple):
@@ -45,7 +52,7 @@ class FigureFiles:
 
     Attributes
     ----------
-    number, title, name, caption, claims
+    number, title, name, caption, claims, lessons, film
         Fields of `Reproduction`, evaluated for the data.
     picture
         Data URL of the drawing.
@@ -62,6 +69,8 @@ class FigureFiles:
     name: str
     caption: str
     claims: tuple[Claim, ...]
+    lessons: tuple[str, ...]
+    film: str
     picture: str
     svg: str
     png: str
@@ -101,8 +110,11 @@ def render(
 
     from rattlebox import EventDriven, __version__
 
-    claims = sorted(((claim, figure) for figure in figures for claim in figure.claims), key=lambda x: place(x[0].where))
-    counts = Counter(claim.verdict for claim, _ in claims)
+    pairs = sorted(((claim, figure) for figure in figures for claim in figure.claims), key=lambda x: place(x[0].where))
+    claims = [claim for claim, _ in pairs]
+    anchors = {number: one for one in figures for number in (one.number, *_parts(one.number))}
+    rows = [(row(claim), anchors.get(claim.see, figure)) for claim, figure in pairs]
+    counts = Counter(each.verdict for each, _ in rows)
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).with_name("templates")),
         autoescape=True,
@@ -118,12 +130,27 @@ def render(
         figures=figures,
         missing=missing,
         groups=(
-            ("Figures of the paper", [figure for figure in figures if figure.number[0].isdigit()]),
-            ("Interpretations of the paper", [f for f in figures if f.number.startswith("R")]),
-            ("Additional studies", [figure for figure in figures if figure.number.startswith("A")]),
+            (
+                "Figures of the paper",
+                [figure for figure in figures if figure.number[0].isdigit() and figure.name != FIRST],
+            ),
+            ("Interpretations, ensembles and gap", [f for f in figures if f.number.startswith("R")]),
+            ("Extensions", [figure for figure in figures if figure.number.startswith("A")]),
         ),
-        claims=claims,
-        counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict)],
+        first=[figure for figure in figures if figure.name == FIRST],
+        rows=rows,
+        counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict) if counts[verdict]],
+        lessons=[lesson for figure in figures for lesson in figure.lessons],
+        film="".join(figure.film for figure in figures),
+        fits=[(SHORT[wall], order, found) for (wall, order), found in fit(claims).items()],
+        best=best_fit(claims),
+        marks=MARKS,
+        models=[(SHORT[model], colour) for model, colour in COLOURS.items()],
+        rule=RULE,
+        provenance=PROVENANCE,
+        equations=EQUATIONS,
+        interpretations=INTERPRETATIONS,
+        misprints=MISPRINTS,
         system=system(),
         version=__version__,
         platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
@@ -133,6 +160,11 @@ def render(
         tolerance=EventDriven().tolerance,
         seconds=seconds,
     )
+
+
+def _parts(number: str) -> list[str]:
+    """Return the single numbers of a figure, such as "7d" and "7e" for "7d, 7e"."""
+    return number.split(", ")
 
 
 def _power(found: re.Match[str]) -> str:
@@ -148,6 +180,7 @@ _TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bsqrt\b", "√"),
     (r"\blog10\b", "log<sub>10</sub>"),
     (r"(?<![\w)])-(?=[\dα-ω])", "−"),
+    (r"\*\*(.+?)\*\*", r"<strong>\1</strong>"),
 )
 
 
@@ -163,34 +196,6 @@ def typeset(text: str) -> Markup:
     for pattern, printed in _TYPESET:
         html = re.sub(pattern, printed, html)
     return Markup(html)
-
-
-_SECTION_OF = {
-    "figure": {1: 3.0, 2: 3.1, 3: 4.1, 4: 4.2, 5: 4.3, 6: 5.0, 7: 5.1},
-    "equation": {1: 3.0, 8: 3.1, 11: 3.2, 17: 5.1},
-    "table": {1: 4.25},
-    "conclusion": {1: 6.0},
-}
-"""Section of the paper's numbered items; items between two entries belong to the section of the first."""
-
-
-def place(where: str) -> tuple[float, ...]:
-    """Return a key that sorts the locations of claims by section, then by figure.
-
-    Parameters
-    ----------
-    where
-        Text of `Claim.where`, such as "section 5.1, figure 7c", "equation (5)", "table 1" or "conclusion 3".
-    """
-    where = where.lower()
-    section = re.search(r"sections? (\d+(?:\.\d+)?)", where)
-    things = re.search(r"(fig|equation|table|conclusion)(?:ure)?s?\.? \(?(\d+)([a-z]?)", where)
-    if things is None:
-        return (float(section[1]) if section else float("abstract" not in where) * 9.0,)
-    kind, number, part = things.groups()
-    starts = _SECTION_OF[{"fig": "figure"}.get(kind, kind)]
-    found = starts[max(start for start in starts if start <= int(number))]
-    return float(section[1]) if section else found, float(number), float(ord(part or "a"))
 
 
 class Quantity(NamedTuple):

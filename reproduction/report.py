@@ -24,19 +24,20 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FIGURES = (
+    "figure_01",
     "figure_02",
     "figure_04",
     "figure_05",
     "figure_06",
     "figure_07a",
-    "figure_07b",
     "figure_07c",
     "figure_07de",
     "figure_09a",
-    "figure_09b",
     "figure_10",
     "figure_11",
     "interpretations",
+    "evidence",
+    "gap_study",
     "hundred_times",
     "contacts_per_cycle",
     "bifurcation",
@@ -219,6 +220,8 @@ def _compute(module: str, folder: Path) -> FigureFiles:
             name=figure.name,
             caption=figure.caption(data),
             claims=tuple(figure.claims(data)),
+            lessons=tuple(figure.lessons(data)),
+            film=figure.film(data),
             picture="data:image/svg+xml;base64," + base64.b64encode(svg.read_bytes()).decode(),
             svg=svg.relative_to(folder).as_posix(),
             png=png.relative_to(folder).as_posix(),
@@ -241,10 +244,15 @@ def _draw(figure: Reproduction, data: xr.Dataset, folder: Path) -> tuple[Path, P
 
     drawing = figure.draw(data)
     png, svg = folder / f"{figure.name}.png", folder / f"{figure.name}.svg"
-    drawing.savefig(png)
+    drawing.savefig(png, dpi=200)
     # Outlined letters look the same on every machine; ids are the same in every run.
     with figure_style("page"), mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": figure.name}):
-        Figure.savefig(drawing, svg, metadata={"Date": None})
+        Figure.savefig(drawing, svg, metadata={"Date": None}, dpi=160)
+    # Hundredths of a point are invisible, and further digits would make the page half as large again.
+    text = re.sub(
+        r'(?<= d=")[^"]+', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path[0]), svg.read_text(encoding="utf-8")
+    )
+    svg.write_text(text, encoding="utf-8")
     return png, svg
 
 
