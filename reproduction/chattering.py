@@ -232,14 +232,14 @@ def _draw_in_time(panels: Sequence[Axes], one: xr.Dataset, colour: str) -> None:
     for axes, name in ((displacements, "displacement"), (place, "place")):
         low, median, high = 1e3 * one[f"{name}_spread"].transpose("quantile", "time").values
         text = f"{MEMBERS} starts within 1 µm, 10 to 90 %"
-        axes.fill_between(time, low, high, alpha=0.4, lw=0, zorder=1, label=text, **_BESIDE)
-        axes.plot(time, median, lw=pen(0.5), zorder=1.5, label="their median", **_BESIDE)
-    displacements.plot(time, 1e3 * one.displacement, color=INK)
-    place.plot(time, 1e3 * one.place, color=colour, lw=pen(0.6))
+        axes.fill_between(time, low, high, alpha=0.4, lw=0, zorder=1, rasterized=True, label=text, **_BESIDE)
+        axes.plot(time, median, lw=pen(0.5), zorder=1.5, rasterized=True, label="their median", **_BESIDE)
+    displacements.plot(time[::10], 1e3 * one.displacement[::10], color=INK)
+    place.plot(time, 1e3 * one.place, color=colour, lw=pen(0.6), rasterized=True)
     for side in 1e3 * one.wall_place.values:
         place.axhline(side, color=INK, lw=pen(0.6))
     others = 1e3 * one.other_hit_time.values.ravel(), one.other_approach_speed.values.ravel()
-    speed.semilogy(*others, "o", ms=1.5, mew=0, alpha=0.5, label="their impacts", **_BESIDE)
+    speed.semilogy(*others, "o", ms=1.5, mew=0, alpha=0.5, rasterized=True, label="their impacts", **_BESIDE)
     speed.semilogy(1e3 * one.hit_time, one.approach_speed, "o", ms=2.0, mew=0, color=colour)
     for begin, end in zip(one.hit_time.values[one.lasting], one.hit_end.values[one.lasting], strict=True):
         for axes in (place, speed):

@@ -94,7 +94,7 @@ def _begin(axes: Axes, data: xr.Dataset, colour: str) -> None:
     for part in data.part.values:
         low, _, high = data.begin_spread.sel(part=part).values / scale.divisor
         energy = data.begin_energy.sel(part=part) / scale.divisor
-        axes.fill_between(data.begin, low, high, color=colour, alpha=0.25, lw=0)
+        axes.fill_between(data.begin, low, high, color=colour, alpha=0.25, lw=0, rasterized=True)
         axes.plot(data.begin, energy, color=colour, lw=pen(0.7))
         axes.text(0.4, float(energy.max()) * (0.95 if part == "structure" else 1.25), part, color=colour)
     axes.set(xlim=(0, _BEGIN), ylim=(0, None))

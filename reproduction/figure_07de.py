@@ -161,7 +161,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             "variation of the loss over amplitudes to 5 kN, case 2 over the least of the others",
             cells,
             accept=(0, 1 - HEDGED),
-            partly=(0, 1),
+            partly=(0, 1 - 1e-6),
             scope="both",
             note=f"“most” is read as at least {100 * HEDGED:.0f} % less; the amplitudes are ours; with the steel wall "
             "one of the cases loses "

@@ -79,9 +79,9 @@ def data() -> xr.Dataset:
             "its cavity"),
             "structure": described(("model", "quantile", "frequency"), spectra["structure"], "m", "amplitude of the "
             "structure"),
-            "near": described(("model", "quantile", "close"), spectra["near"], "m", "amplitude of the structure"),
+            "near": described(("model", "quantile", "fine"), spectra["near"], "m", "amplitude of the structure"),
             "without": described("frequency", without.values, "m", "amplitude of the structure without damper"),
-            "near_without": described("close", close.values, "m", "amplitude of the structure without damper"),
+            "near_without": described("fine", close.values, "m", "amplitude of the structure without damper"),
             "peak": described(("model", "member"), peaks, "rad/s", "highest peak of the structure"),
             "trips": described(("model", "quantile"), trips, "rad/s", "rate of round trips between the walls"),
             "riding": described((), np.sqrt(STIFFNESS / together), "rad/s", "sqrt(K/(M+m))"),
@@ -90,7 +90,7 @@ def data() -> xr.Dataset:
         {
             "model": described("model", list(ALL_MODELS), "", "model"),
             "frequency": described("frequency", without.frequency.values, "rad/s", "angular frequency"),
-            "close": described("close", close.frequency.values, "rad/s", "angular frequency about the resonance"),
+            "fine": described("fine", close.frequency.values, "rad/s", "angular frequency about the resonance"),
             "member": described("member", np.arange(MEMBERS), "", "number of the start within a micrometre"),
             "quantile": described("quantile", [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
         },
@@ -106,7 +106,7 @@ def draw(data: xr.Dataset) -> Figure:
         for column, model in zip(grid.T, MODELS, strict=True):
             one, colour = data.sel(model=model), COLOURS[model]
             for axes, name in zip(column, _PARTS, strict=True):
-                at = data["close" if name == "near" else "frequency"].values
+                at = data["fine" if name == "near" else "frequency"].values
                 low, median, high = one[name].values
                 axes.fill_between(at, low, high, color=colour, alpha=0.35, lw=0, rasterized=True)
                 axes.plot(at, median, color=colour, lw=pen(0.4), rasterized=name != "near")

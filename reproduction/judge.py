@@ -258,9 +258,10 @@ def fit(claims: Sequence[Claim]) -> dict[Place, dict[Grade, int]]:
     Parameters
     ----------
     claims
-        Claims of all kinds; those that do not depend on the wall are left out.
+        Claims of all kinds; those that do not depend on the wall are left out, and those without a value for each wall.
     """
-    tested = [c for c in claims if c.kind == "test" and c.scope in ("elasto-plastic", "both")]
+    kinds = [c for c in claims if c.kind == "test" and c.scope in ("elasto-plastic", "both")]
+    tested = [c for c in kinds if {wall for wall, _ in c.cells} >= set(WALLS)]
     counts: dict[Place, dict[Grade, int]] = {}
     for wall, order in product(WALLS, (AS_READ, SWAPPED)):
         results = [grades.get((wall, order), grades.get((wall, ""), "")) for grades in map(interpreted, tested)]

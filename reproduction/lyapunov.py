@@ -301,7 +301,7 @@ def _draw_separations(axes: Axes, one: xr.Dataset, colour: str) -> None:
     for k, case in enumerate(one.case.values):
         part = one.sel(case=case)
         low, _, high = part.spread.values
-        axes.fill_between(one.time, low, high, color=colour, alpha=0.15, lw=0)
+        axes.fill_between(one.time, low, high, color=colour, alpha=0.15, lw=0, rasterized=True)
         axes.semilogy(one.time, part.separation, color=colour, ls=SERIES_STYLES[k])
     for case in one.case.values[one.chaotic]:
         axes.semilogy(one.time, one.fit.sel(case=case), **_FIT)

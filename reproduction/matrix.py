@@ -29,6 +29,7 @@ from .judge import (
     where_it_holds,
 )
 from .models import ALL_MODELS, SHORT, STEEL
+from .reading import INTERPRETATIONS, MISPRINTS
 
 TEXTS = dict(zip(WALLS, ("a steel wall", "a rigid wall", "a wall that is rigid in the stiffness too"), strict=True))
 MARKS: dict[Grade, str] = {"holds": "✓", "partly": "≈", "fails": "✗", "undecided": "?", "": ""}
@@ -72,7 +73,7 @@ def number(value: float) -> str:
 def criterion(wanted: Range) -> str:
     """Return a range as text; limits that only exclude rounding errors are zero."""
     low, high = (0.0 if abs(value) < 1e-8 else value for value in wanted)
-    if low == high:
+    if number(low) == number(high):
         return f"= {number(low)}"
     if high == inf:
         return f"{'≥' if low else '>'} {number(low)}"
@@ -137,36 +138,52 @@ def best_fit(claims: Sequence[Claim]) -> str:
     )
 
 
-def tables(claims: Sequence[Claim]) -> str:
-    """Return the matrix and the fit of each interpretation as Markdown tables, for the documentation."""
-    names = list(SHORT.values())
+def documentation(claims: Sequence[Claim]) -> str:
+    """Return the matrix, the fit of each interpretation, the interpretations and the misprints as a Markdown page.
+
+    Parameters
+    ----------
+    claims
+        All claims, in any order.
+    """
+    claims = sorted(claims, key=lambda claim: place(claim.where))
     lines = [
-        f"| no. | the paper says | test and criterion | {' | '.join(names)} | verdict |",
-        f"|{'---|' * (len(names) + 4)}",
+        "<!-- `python -m reproduction` writes this file as figures/figure_claims.md. -->",
+        "### Claims\n",
+        *_header("no.", "the paper says", "test: criterion", *SHORT.values(), "verdict"),
     ]
     for k, each in enumerate(map(row, claims), 1):
-        spread = [cell for cell in each.cells for _ in range(cell.columns)]
-        marks = [_markdown(cell) if cell.columns == 1 or i == 0 else "" for i, cell in enumerate(spread)]
-        test = each.test + (f": {each.criterion}" if each.criterion else "")
-        restriction = f" ({each.restriction})" if each.restriction else ""
-        lines.append(
-            f"| {k} | {each.claim.statement} {_located(each.claim)} | {test} | {' | '.join(marks)} | "
-            f"{each.verdict}{restriction} |"
+        marks = [text for cell in each.cells for text in (_entries(cell), *[""] * (cell.columns - 1))]
+        test = (
+            each.test
+            + (f": {each.criterion}" if each.criterion else "")
+            + (f"; {each.claim.note}" if each.claim.note else "")
         )
-    lines += ["", "| interpretation | holds | qualitatively | undecided | fails |", "|---|---|---|---|---|"]
-    for (wall, order), found in fit(claims).items():
-        lines.append(f"| {SHORT[wall]}, cases {order} | {' | '.join(str(n) for n in found.values())} |")
-    return "\n".join(lines).replace("E*", "E\\*").replace("R*", "R\\*") + "\n"
+        restriction = f" ({each.restriction})" if each.restriction else ""
+        printed = f"; printed {each.claim.printed}" if each.claim.printed else ""
+        said = f"{each.claim.statement} ({each.claim.where}{printed})"
+        lines.append(_line(str(k), said, test, *marks, each.verdict + restriction))
+    lines += ["\n### Claims met under each interpretation\n"]
+    lines += _header("wall", "cases 2 and 3", "met", "in part", "undecided", "not met")
+    lines += [_line(SHORT[wall], order, *map(str, found.values())) for (wall, order), found in fit(claims).items()]
+    lines += [f"\n{best_fit(claims)}", "\n### Interpretations\n", *_header("printed", "read as", "reason")]
+    lines += [_line(*each) for each in INTERPRETATIONS]
+    lines += ["\n### Misprints\n", *_header("printed", "should be", "shown by"), *[_line(*each) for each in MISPRINTS]]
+    return "\n".join(lines) + "\n"
 
 
-def _located(claim: Claim) -> str:
-    return f"*({claim.where}{f'; printed {claim.printed}' if claim.printed else ''})*"
+def _header(*names: str) -> list[str]:
+    return [_line(*names), f"|{'---|' * len(names)}"]
 
 
-def _markdown(cell: Cell) -> str:
+def _line(*texts: str) -> str:
+    return f"| {' | '.join(text.replace('*', chr(92) + '*') for text in texts)} |"
+
+
+def _entries(cell: Cell) -> str:
     return "; ".join(
-        f"{MARKS[e.grade]} {f'{e.label}: ' if e.label else ''}{e.text}{'†' if e.dagger else ''}".strip()
-        for e in cell.entries
+        " ".join(filter(None, (MARKS[entry.grade], entry.label, entry.text + "†" * entry.dagger)))
+        for entry in cell.entries
     )
 
 

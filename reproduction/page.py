@@ -55,7 +55,7 @@ class FigureFiles:
     number, title, name, caption, claims, lessons, film
         Fields of `Reproduction`, evaluated for the data.
     picture
-        Data URL of the drawing.
+        Data URL of the drawing, escaped for an attribute in double quotes.
     svg, png, tables
         Paths of the files.
     cases
@@ -91,7 +91,13 @@ class FigureFiles:
 
 
 def render(
-    figures: Sequence[FigureFiles], *, missing: Sequence[str] = (), cores: int, workers: int, seconds: float
+    figures: Sequence[FigureFiles],
+    *,
+    table: str,
+    missing: Sequence[str] = (),
+    cores: int,
+    workers: int,
+    seconds: float,
 ) -> str:
     """Return the page as self-contained HTML.
 
@@ -99,6 +105,8 @@ def render(
     ----------
     figures
         Figures in the order of the page.
+    table
+        Path of the matrix as a Markdown file.
     missing
         Numbers of the figures that were not computed.
     cores, workers
@@ -129,6 +137,7 @@ def render(
         paper=PAPER,
         figures=figures,
         missing=missing,
+        table=table,
         groups=(
             (
                 "Figures of the paper",

@@ -14,7 +14,7 @@ from reproduction.figure import Reproduction
 from reproduction.report import FIGURES, load_figure
 from reproduction.runs import record_cases
 
-HEAVY = {"contacts_per_cycle", "bifurcation", "chattering", "lyapunov"}
+HEAVY = {"contacts_per_cycle", "bifurcation", "chattering", "lyapunov", "evidence", "gap_study", "figure_07de"}
 """Modules whose data take several seconds."""
 
 

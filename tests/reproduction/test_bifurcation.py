@@ -56,4 +56,4 @@ def test_figure_and_caption(data):
     """The figure has a row for each model; the caption counts its frequencies."""
     figure = bifurcation.FIGURE
     assert len(figure.draw(data).axes) == 4
-    assert "of 4 frequencies" in figure.caption(data)
+    assert "of 7 loads" in figure.caption(data)

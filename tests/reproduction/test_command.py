@@ -37,7 +37,7 @@ def test_report_on_chosen_figures(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--only", "99"), "--only 99: unknown figure; the figures are 2, "),
+        (("--only", "99"), "--only 99: unknown figure; the figures are 1, 8, 2, "),
         (("--workers", "0"), "workers"),
         (("-o", "full"), "contains other files; choose a new folder"),
         (("-o", "full/notes.txt"), "is a file; a report needs a folder"),

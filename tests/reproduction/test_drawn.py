@@ -8,6 +8,7 @@ from itertools import permutations, product
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -204,6 +205,8 @@ def _paired(mark: Mark, x: np.ndarray, first: list[xr.DataArray], y: np.ndarray,
 
 def test_all_drawn_numbers_are_in_the_dataset(every):
     """Each point of each line, bar, area and map is a row of the figure's tables, apart from the unit of the axis."""
+    if every.module == "figure_01":
+        pytest.skip("a schematic shows no numbers")
     assert unknown_marks(every.figure.draw(every.data), every.data) == []
 
 

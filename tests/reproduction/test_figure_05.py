@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from reproduction.figure_05 import FIGURE
+from reproduction.judge import verdict
+from reproduction.models import RIGID
 
 
 @pytest.fixture
@@ -17,34 +19,23 @@ def test_elastic_limits(data):
     np.testing.assert_allclose(data.critical_speed, [0.1694607, 0.0423652], atol=6e-8)
 
 
-def test_marks_are_on_the_jackson_green_law(data):
-    """At 1, 10, 60, 100 and 1000 times the elastic limit the law has its published values on both walls."""
+def test_curves_are_the_published_laws(data):
+    """Jackson and Green's law has its published values at 10 and 30 V_c, and Thornton's tail its power law."""
     for wall in data.wall.values:
-        np.testing.assert_allclose(
-            data.marked_restitution.sel(wall=wall), [1.0, 0.8282785, 0.5905655, 0.5317981, 0.2542389], atol=6e-8
-        )
-
-
-def test_curves_are_reduced_by_the_elastic_limit(data):
-    """Thornton's curve falls below 1 at its yield speed, and its tail falls with the fourth root of the speed."""
-    tail = data.restitution.sel(law="Thornton", wall="rigid").where(data.speed > 100, drop=True)
-    slope = np.polyfit(np.log(tail.speed), np.log(tail), 1)[0]
-    assert slope == pytest.approx(-0.25, abs=2e-3)
-    beyond = data.restitution.sel(law="Jackson-Green").where(data.speed > 1000 * data.critical_speed)
-    assert bool(beyond.isnull().all())
+        at = float(data.critical_speed.sel(wall=wall)) * np.array([10.0, 30.0])
+        law = data.restitution.sel(law="Jackson-Green", wall=wall)
+        np.testing.assert_allclose(np.interp(at, data.speed, law), [0.8282785, 0.6955521], atol=2e-4)
+    tail = data.restitution.sel(law="Thornton", wall=RIGID).where(data.speed > 10, drop=True)
+    assert np.polyfit(np.log(tail.speed), np.log(tail), 1)[0] == pytest.approx(-0.25, abs=3e-3)
 
 
 def test_impacts_stay_slow(data):
     """The pulse of 5 kN gives the structure 0.159 m/s, and no impact comes much faster than that."""
     assert 0.159 < float(data.largest_speed.max()) < 1.25 * 0.1591549
-    assert np.all(np.diff(data.faster, axis=-1) <= 0)
-    assert bool((data.faster.where(data.speed > data.largest_speed, 0.0) == 0).all())
+    np.testing.assert_array_less(data.share.sum("class"), 1 + 1e-12)
 
 
-def test_verdicts_follow_the_data(data):
-    """A restitution below the constant one is found on the rigid wall only, and the verdict says so."""
-    elastic, low = FIGURE.claims(data)
-    assert elastic.verdict == "reproduced"
-    assert low.verdict == "reproduced qualitatively"
-    assert FIGURE.claims(data.assign(constant=0.5))[1].verdict == "not reproducible"
-    assert FIGURE.claims(data.assign(constant=1.0))[1].verdict == "reproduced"
+def test_claim_follows_the_data(data):
+    """That slow impacts lose nothing follows from the law, unless the data say otherwise."""
+    assert verdict(FIGURE.claims(data)[0]) == "follows from the equations"
+    assert verdict(FIGURE.claims(data.assign(restitution=0.99 * data.restitution))[0]) == "not reproducible"

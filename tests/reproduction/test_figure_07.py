@@ -3,16 +3,17 @@
 import pytest
 
 import rattlebox as rb
-from reproduction import figure_07a, figure_07de
+from reproduction import figure_07de
+from reproduction.judge import verdict
 from reproduction.reference import DAMPING, MASS, PLASTIC_RIGID, paper_case
 
 PULSE_WORK = 0.2532  # J, of 5000 N
 
 
-@pytest.fixture(params=["figure_07a", "figure_07b"])
-def energies(request, computed):
+@pytest.fixture
+def energies(computed):
     """Return the data of figures 7a and 7b."""
-    return computed(request.param).data
+    return computed("figure_07a").data
 
 
 def test_pulse_gives_the_structure_its_work(energies):
@@ -33,16 +34,6 @@ def test_band_of_energies_is_ordered_and_falls(energies):
     assert (structure.isel(window=-1) < 0.1 * structure.isel(window=0)).all()
 
 
-def test_smoothness_is_judged_by_the_data(computed):
-    """The verdict follows the numbers: with rises below those of constant restitution it turns."""
-    data = computed("figure_07a").data
-    (claim,) = figure_07a.FIGURE.claims(data)
-    assert claim.verdict == "not reproducible"
-    smooth = data.assign(rises=data.rises.where(data.judged == "constant restitution", 0.0))
-    (claim,) = figure_07a.FIGURE.claims(smooth)
-    assert claim.verdict == "reproduced"
-
-
 @pytest.fixture
 def losses(computed):
     """Return the data of figure 7c."""
@@ -59,7 +50,7 @@ def losses(computed):
 )
 def test_shares_of_the_centred_ball(losses, model, share, scatter):
     """The damper takes the known part of the pulse's work, in each interpretation."""
-    lost = losses.lost.sel(model=model, quantile=0.5).isel(time=-1) / losses.work.sel(model=model)
+    lost = losses.lost.sel(model=model, quantile=0.5).isel(time=-1) / losses.work
     assert float(lost) == pytest.approx(share, abs=scatter)
 
 
@@ -77,10 +68,12 @@ def test_first_contact_has_the_ratio_of_the_two_laws(losses):
     assert float(ratio) == pytest.approx((1 - e**2) / (1 - 0.991170**2), rel=1e-3)
 
 
-@pytest.fixture
-def shares(computed):
-    """Return the data of figures 7d and 7e."""
-    return computed("figure_07de").data
+@pytest.fixture(scope="module")
+def shares():
+    """Return the data of figures 7d and 7e for fewer starts."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(figure_07de, "MEMBERS", 8)
+        yield figure_07de.data()
 
 
 @pytest.mark.parametrize(
@@ -88,7 +81,8 @@ def shares(computed):
     [
         ("constant restitution", (0.054, 0.015, 0.052)),
         ("elasto-plastic, steel wall", (0.0032, 0.0, 0.0022)),
-        ("elasto-plastic, rigid wall", (0.069, 0.027, 0.070)),
+        ("elasto-plastic, rigid wall", (0.069, 0.029, 0.071)),
+        ("elasto-plastic, rigid wall, also in stiffness", (0.073, 0.030, 0.068)),
     ],
 )
 def test_shares_of_three_starts_at_the_printed_pulse(shares, model, expected):
@@ -97,24 +91,16 @@ def test_shares_of_three_starts_at_the_printed_pulse(shares, model, expected):
     assert lost.sel(quantile=0.5).values == pytest.approx(expected, rel=0.08, abs=1e-4)
 
 
-def test_centred_ball_rests_under_the_small_pulse(shares):
-    """At 100 N the structure moves by 0.0503 mm, less than the gap: only the centred ball is never touched."""
-    contacts = shares.contacts_single.sel(amplitude=100.0)
-    assert (contacts.sel(start=1) == 0).all()
-    assert (contacts.sel(start=[2, 3]) > 0).all()
-
-
 def test_shares_never_exceed_the_work(shares):
     """Impacts and viscous damping together take no more than the work of the pulse."""
     assert (shares.impact_single + shares.viscous_single <= 1 + 1e-12).all()
 
 
-def test_claims_of_the_start_positions(shares):
-    """Each verdict follows the data: it turns when the data do."""
-    half, sensitive, consistent = figure_07de.FIGURE.claims(shares)
-    assert half.verdict == "reproduced qualitatively"
-    assert sensitive.interpretation == "elasto-plastic, steel wall"
-    assert consistent.verdict == "not reproducible"
-    like = shares.where(shares.start != 2, 0.5 * shares.sel(start=1, drop=True))
-    half, *_ = figure_07de.FIGURE.claims(like)
-    assert half.verdict == "reproduced"
+def test_consistency_follows_the_data(shares):
+    """Case 2 is not the most consistent, and would be if its losses were the same at all amplitudes."""
+    (claim,) = figure_07de.claims(shares)
+    assert verdict(claim) == "not reproducible"
+    (claim,) = figure_07de.claims(shares.assign(impacts=shares.impacts.where(shares.start != 2, 0.05)))
+    assert verdict(claim) == "under one interpretation only"
+    (claim,) = figure_07de.claims(shares.assign(impacts=shares.impacts.where(shares.start == 1, 0.05)))
+    assert verdict(claim) == "not reproducible"  # both orders alike: neither is the most consistent

@@ -1,6 +1,5 @@
 """Tests of the report: figures, files and page."""
 
-import base64
 import csv
 import html.parser
 import os
@@ -15,8 +14,9 @@ import pytest
 import xarray as xr
 
 from reproduction import write_report
-from reproduction.figure import Claim
-from reproduction.page import GENERATOR, FigureFiles, place, render, system, typeset
+from reproduction.judge import SYSTEM, Claim, exact
+from reproduction.matrix import place
+from reproduction.page import GENERATOR, FigureFiles, render, system, typeset
 from reproduction.report import FIGURES, choose, load_figure
 from reproduction.tables import write_tables
 
@@ -87,13 +87,16 @@ def test_data_of_a_figure_reads_back_from_csv(every, tmp_path):
 
 
 def test_captions_and_claims_are_complete(every):
-    """Captions and claims contain no "nan"; claims are short and have a location and an interpretation."""
+    """Captions fill at most three lines, and no text contains "nan"; claims have a location and a test."""
     claims = every.figure.claims(every.data)
-    for text in (every.figure.caption(every.data), *(text for claim in claims for text in claim)):
-        assert text.strip()
+    caption = every.figure.caption(every.data)
+    assert 0 < len(caption) <= 300
+    texts = [text for c in claims for text in (c.statement, c.where, c.quantity, c.printed, c.note)]
+    for text in (caption, *texts, *every.figure.lessons(every.data)):
         assert not re.search(r"\b(nan|inf|None|True|False)\b|[{}\[\]]", text), text
     for claim in claims:
-        assert len(claim.statement) < 130 and len(claim.ours) < 230 and len(claim.interpretation) < 130, claim
+        assert len(claim.statement) < 115 and len(claim.quantity) < 115 and len(claim.note) < 240, claim
+        assert claim.kind == "unchecked" or claim.cells
 
 
 def test_numbers_and_file_names_are_unique():
@@ -146,7 +149,7 @@ def test_page_is_self_contained(report):
     text = page.read_text(encoding="utf-8")
     assert not re.search(r"""(?:src|href|url\()\s*=?\s*["']?(?:https?:)?//""", text)
     for picture in Page(text).pictures:
-        svg = base64.b64decode(picture["src"].partition("base64,")[2])
+        svg = unquote(picture["src"].partition(",")[2])
         drawn = ElementTree.fromstring(svg)
         links = [value for node in drawn.iter() for key, value in node.items() if key.endswith("href")]
         assert all(link.startswith(("#", "data:")) for link in links)
@@ -163,7 +166,13 @@ def test_every_file_is_written_and_linked(report):
     written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} - {"index.html"}
     linked = {address for address in Page(page.read_text(encoding="utf-8")).addresses if address[0].isalpha()}
     assert written == {address for address in linked if not address.startswith("data:")}
-    assert {Path(name).suffix for name in written} == {".svg", ".png", ".csv", ".toml"}
+    assert {Path(name).suffix for name in written} == {".svg", ".png", ".csv", ".toml", ".md"}
+
+
+def test_page_is_small(report):
+    """The page stays below 4 MB with all figures in it."""
+    page, *_ = report
+    assert page.stat().st_size < 4e6
 
 
 def test_progress(report):
@@ -241,26 +250,27 @@ def test_order_of_claims(earlier, later):
 
 
 def test_page_escapes_and_counts():
-    """Text from figures is escaped, and the summary counts each verdict."""
-    verdicts = ["reproduced", "reproduced qualitatively", "misprint", "misprint"]
-    claims = tuple(Claim(f"x < {k} & y", "section 1", "z > 1", "<b>", verdict) for k, verdict in enumerate(verdicts))
-    made = FigureFiles("A9", "<i>", "figure_A9", "a < b", claims, "data:,", "a.svg", "a.png", (), {}, 1.0, 2.0)
-    text = render([made], cores=3, workers=2, seconds=4.25)
+    """Text from figures is escaped, and the summary counts each verdict that occurs."""
+    values = (1.0, 1.0, 0.0)
+    claims = tuple(
+        Claim(f"x < {k} & y", "section 1", "<b>", {SYSTEM: exact(value)}, accept=(0.5, 2), scope="system", note="z > 1")
+        for k, value in enumerate(values)
+    )
+    made = FigureFiles(
+        "A9", "<i>", "figure_A9", "a < b", claims, ("**c** < d",), "", "data:,", "a.svg", "a.png", (), {}, 1.0, 2.0
+    )
+    text = render([made], table="t.md", cores=3, workers=2, seconds=4.25)
     Page(text)
     assert GENERATOR in text
-    assert "x &lt; 3 &amp; y" in text and "<i>" not in text and "<b>" not in re.sub(r"<b>\d+</b>", "", text)
+    assert (
+        "x &lt; 2 &amp; y" in text and "<i>" not in text and "&lt;b&gt;" in text and "<strong>c</strong> &lt; d" in text
+    )
     counts = re.findall(r"<b>(\d+)</b><span aria-hidden=\"true\">.</span> ([a-z ]+)<", text)
-    assert counts == [
-        ("1", "reproduced"),
-        ("1", "reproduced qualitatively"),
-        ("0", "not reproducible"),
-        ("2", "misprint"),
-    ]
+    assert counts == [("2", "reproduced"), ("1", "not reproducible")]
     assert "4.2 s" in text and "3 cores, 2 processes" in text
     assert "Not computed" not in text
-    assert "Not computed for this page: 7d, 7e; A1." in render(
-        [made], missing=["7d, 7e", "A1"], cores=1, workers=1, seconds=1
-    )
+    missing = render([made], table="t.md", missing=["7d, 7e", "A1"], cores=1, workers=1, seconds=1)
+    assert "Not computed for this page: 7d, 7e; A1." in missing
 
 
 @pytest.mark.parametrize(
