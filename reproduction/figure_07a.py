@@ -78,7 +78,7 @@ def draw(data: xr.Dataset) -> Figure:
             row[0].set_title(SHORT[model])
         proxies = [
             Line2D([], [], color=FAINT, lw=pen(0.5), label="one run"),
-            Patch(color=FAINT, lw=0),
+            Patch(color=FAINT, lw=0, label="10 to 90 %"),
             *(Line2D([], [], color=INK, ls=line, label=f"{part}, median") for part, (line, _) in _LOOKS.items()),
         ]
         figure.legend(handles=proxies, loc="outside lower center", ncols=4)

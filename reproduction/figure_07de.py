@@ -129,9 +129,9 @@ def caption(data: xr.Dataset) -> str:
     """Return the caption."""
     lost = 100 * data.impact.sel(quantile=0.5, amplitude=PRINTED)
     return (
-        "The start matters at every load, but in no fixed order. Lines and bands: median and 10 to 90 % of "
-        f"{MEMBERS} starts within 1 µm; marks: one run, touching its wall exactly in cases 2 and 3. At 5 kN (grey) "
-        "cases 1, 2 and 3 "
+        f"The start matters at every load, but in no fixed order. Median and 10 to 90 % of {MEMBERS} starts within 1 "
+        "µm; marks: one "
+        "run, touching its wall exactly in cases 2 and 3. At 5 kN (grey) cases 1, 2 and 3 "
         f"lose {by_model(lambda m: ', '.join(two(x) for x in lost.sel(model=m)) + ' %')}."
     )
 

@@ -149,7 +149,7 @@ def documentation(claims: Sequence[Claim]) -> str:
     claims = sorted(claims, key=lambda claim: place(claim.where))
     lines = [
         "<!-- `python -m reproduction` writes this file as figures/figure_claims.md. -->",
-        "### Claims\n",
+        "### The matrix\n",
         *_header("no.", "the paper says", "test: criterion", *SHORT.values(), "verdict"),
     ]
     for k, each in enumerate(map(row, claims), 1):

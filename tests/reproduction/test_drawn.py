@@ -130,12 +130,12 @@ def unknown_marks(figure: Figure, data: xr.Dataset) -> list[str]:
             continue
         scales = [scale(axes, which, units) for which in "xy"]
         for mark in marks(axes):
-            if not _known(mark, scales, numbers):
+            if not _known(mark, scales, numbers, data):
                 result.append(f"axes {place}: {mark.name}")
     return result
 
 
-def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray]) -> bool:
+def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray], data: xr.Dataset) -> bool:
     def column(which: int, points: np.ndarray) -> tuple[np.ndarray, list[xr.DataArray]] | None:
         axis = scales[which]
         if axis is None or not np.isfinite(points[:, which]).any():
@@ -149,16 +149,16 @@ def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray]) 
         points = mark.points[complete]
         x, y = column(0, points), column(1, points)
         if mark.map and x is not None and y is not None:
-            return any(_mapped(x[0], y[0], mark.values, variable) for variable in numbers)
+            return any(_mapped(x[0], y[0], mark.values, data[variable.name]) for variable in numbers)
         if x is not None and y is not None:
             return _paired(mark, *x, *y)
         only = x or y
         parts = only[0] if only is not None and mark.area else [only[0] if only is not None else ()]
         return only is None or all(any(_within(part, variable) for variable in only[1]) for part in parts)
     for which in range(2):
-        data = column(which, mark.points)
-        for value in np.unique(data[0][np.isfinite(data[0])]) if data else ():
-            if value not in (0.0, 1.0) and not any(_within(value, variable) for variable in data[1]):
+        found = column(which, mark.points)
+        for value in np.unique(found[0][np.isfinite(found[0])]) if found else ():
+            if value not in (0.0, 1.0) and not any(_within(value, variable) for variable in found[1]):
                 return False
     return True
 
