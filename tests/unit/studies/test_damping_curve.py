@@ -226,3 +226,27 @@ def test_the_interval_covers_random_starts() -> None:
         few = rb.damping_curve(ball_case(seed=seed), levels, packings=4)
         inside += [*((few.lower < many.damping_ratio) & (many.damping_ratio < few.upper)).values]
     assert np.mean(inside) > 0.75
+
+
+def test_shaking_is_the_damping_of_a_forced_vibration() -> None:
+    """A structure under a steady harmonic force loses what the ratio of "shaking" at its amplitude gives."""
+    frequency, mass = 49.6, 3.0
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="11 mm", material="steel"), gap="0.5 mm", start=0.9, contact=rb.Tsuji(restitution=0.5)
+    )
+    structure = rb.SDOF(mass=mass, frequency=50, damping_ratio=0.03)
+    omega = 2 * math.pi * frequency
+    load = rb.Harmonic(amplitude=2 * 0.038 * mass * omega**2 * 3e-4, frequency=frequency)
+    run = rb.simulate(
+        rb.Case(structure=structure, damper=damper, load=load, duration="3 s", output=rb.Output(rate=4000))
+    )
+    late = run.motion.time >= 2.0
+    motion = run.motion.displacement.sel(point="mass").values[late]
+    amplitude = abs(2 * np.mean((motion * np.exp(-1j * omega * run.motion.time.values[late]))[:-1]))
+    lost = float(np.ptp(run.energy.losses.values[late])) / frequency
+    curve = rb.damping_curve(
+        rb.Case(structure=structure, damper=damper, duration="1 s"), np.array([0.97, 1.03]) * amplitude, way="shaking"
+    )
+    assert amplitude > 2.6e-4
+    viscous = 2 * math.pi * mass * (2 * math.pi * 50) * omega * amplitude**2  # loss in a cycle of a dashpot of ratio 1
+    assert lost / viscous == pytest.approx(float(curve.damping_ratio.mean()), rel=0.006)
