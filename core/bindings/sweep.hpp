@@ -16,8 +16,8 @@ namespace rattlebox::bindings {
 using Progress = std::optional<nb::typed<nb::callable, nb::object(std::size_t)>>;
 
 struct WindowNumbers : Node {
-    Number start, period;
-    Vector shape;
+    Number start, period, base, residual_mass;
+    Vector shape, participation;
     int samples = 0;
 };
 
@@ -38,6 +38,10 @@ struct Worker {
         if (components > problem.modes.size())
             throw std::invalid_argument("the window has more mode shapes than the problem has modes");
         fill.vector(window.shape, given.shape, components);
+        if (given.participation.ndim() > 0 && given.participation.shape(0) > 0)
+            fill.vector(window.participation, given.participation, problem.modes.size());
+        fill.number(window.base, given.base);
+        fill.number(window.residual_mass, given.residual_mass);
         window.samples = given.samples;
         problem.settings.peaks = std::any_of(request.measures.begin(), request.measures.end(),
                                              [](int m) { return measures[m].peaks; });
@@ -130,9 +134,12 @@ inline void add_sweep(nb::module_& module) {
     define<W>(
         module, "Window",
         "Equally spaced samples of each run from `start` to its end, in cycles of `period`, at a point with "
-        "these mode shapes.",
+        "these mode shapes, which moves with the base if `base` is 1; the participation and the residual "
+        "mass "
+        "give the force on the base.",
         field("start", &W::start), field("period", &W::period), field("shape", &W::shape),
-        field("samples", &W::samples));
+        field("base", &W::base), field("participation", &W::participation),
+        field("residual_mass", &W::residual_mass), field("samples", &W::samples));
     using B = Block;
     define<B>(module, "Block", "Output of the variants of a batch, one row for each.",
               field("status", &B::status), field("measures", &B::measures), field("batches", &B::batches),

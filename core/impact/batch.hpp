@@ -41,7 +41,10 @@ struct Batch {
 struct Window {
     real from = 0, period = not_a_number;
     int samples = 2;
-    std::vector<real> shape; // mode shapes at the observed point
+    std::vector<real> shape; // mode shapes at the observed point, or their difference between two points
+    real base = 1;           // 1 if the point moves with the base, 0 for a difference and for a mode
+    std::vector<real> participation; // of the modes in the motion of the base; empty if unknown
+    real residual_mass = 0;          // of the truncated modes, which follow the base
 
     void place(Problem& problem) const {
         const real to = problem.settings.duration;

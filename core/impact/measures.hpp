@@ -6,6 +6,7 @@
 
 #include "impact/batch.hpp"
 #include "impact/result.hpp"
+#include "structure/coupled_modes.hpp"
 
 namespace rattlebox {
 
@@ -79,19 +80,77 @@ public:
         return z;
     }
 
-    // Absolute acceleration of the point, mean over the interval before sample i. Samples of the acceleration
-    // itself would miss most of the short pulses of contacts.
-    real mean_acceleration(std::size_t i) const {
+    // Acceleration of the base, mean over the interval before sample i.
+    real mean_base_acceleration(std::size_t i) const {
         real base = 0;
         for (const Load& load : problem_.loads)
             if (load.base) base += load.signal.mean(time(i - 1), time(i));
-        return (point(i).p - point(i - 1).p) / (time(i) - time(i - 1)) + base;
+        return base;
+    }
+
+    // Acceleration of the point relative to the base, mean over the interval before sample i. Samples of the
+    // acceleration itself would miss most of the short pulses of contacts.
+    real mean_relative_acceleration(std::size_t i) const {
+        return (point(i).p - point(i - 1).p) / (time(i) - time(i - 1));
+    }
+
+    real mean_acceleration(std::size_t i) const {
+        return mean_relative_acceleration(i) + window_.base * mean_base_acceleration(i);
+    }
+
+    // Force of all balls on their cavities, mean over the interval before sample i: what their momentum
+    // lacks.
+    real mean_damper_force(std::size_t i) const {
+        const real *v0 = velocities(problem_, state(i - 1)), *v1 = velocities(problem_, state(i));
+        const real base = mean_base_acceleration(i), step = time(i) - time(i - 1);
+        real force = 0;
+        for (std::size_t b = 0; b < balls(); ++b) {
+            const auto damper = static_cast<std::size_t>(problem_.ball_damper[b]);
+            force -=
+                problem_.ball_mass[b] * ((v1[b] - v0[b]) / step + base - problem_.dampers[damper].gravity);
+        }
+        return force;
+    }
+
+    // Force of the structure on the base at sample i, in springs and dashpots and by the residual mass. NaN
+    // if the participation is unknown or nothing moves.
+    real interface_force(std::size_t i) const {
+        const std::size_t m = problem_.modes.size();
+        if (window_.participation.empty() || m == 0) return not_a_number;
+        const real* y = state(i);
+        real force = 0;
+        const auto speed = [&](std::size_t k) { return y[2 * k + 1]; };
+        for (std::size_t k = 0; k < m; ++k)
+            force += window_.participation[k] *
+                     (2 * problem_.modes[k].decay * speed(k) + problem_.modes[k].stiffness * y[2 * k]);
+        couple(problem_.coupling, m, speed,
+               [&](std::size_t k, real sum) { force -= window_.participation[k] * sum; });
+        for (const Load& load : problem_.loads) {
+            if (!load.base) continue;
+            real value[1] = {0};
+            load.signal.piece(time(i)).add_taylor(time(i), 1, 0, value);
+            force -= window_.residual_mass * value[0];
+        }
+        return force;
     }
 
     template <class F> real peak(F&& f) const {
         real most = 0;
         for (std::size_t i = 0; i < count(); ++i) most = std::fmax(most, std::fabs(f(i)));
         return most;
+    }
+
+    // The same for means over the intervals between samples.
+    template <class F> real peak_of_means(F&& f) const {
+        real most = 0;
+        for (std::size_t i = 1; i < count(); ++i) most = std::fmax(most, std::fabs(f(i)));
+        return most;
+    }
+
+    template <class F> real rms_of_means(F&& f) const {
+        real total = 0;
+        for (std::size_t i = 1; i < count(); ++i) total += square(f(i));
+        return std::sqrt(total / static_cast<real>(last()));
     }
 
     template <class F> real rms(F&& f) const { // trapezoids
@@ -376,17 +435,28 @@ inline constexpr Measure measures[] = {
      [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).p; }); }},
     {"peak_acceleration", true, false,
      [](const Observer& o) {
-         real most = 0;
-         for (std::size_t i = 1; i < o.count(); ++i)
-             most = std::fmax(most, std::fabs(o.mean_acceleration(i)));
-         return most;
+         return o.peak_of_means([&](std::size_t i) { return o.mean_acceleration(i); });
      }},
     {"rms_acceleration", true, false,
+     [](const Observer& o) { return o.rms_of_means([&](std::size_t i) { return o.mean_acceleration(i); }); }},
+    {"peak_relative_acceleration", true, false,
      [](const Observer& o) {
-         real total = 0;
-         for (std::size_t i = 1; i < o.count(); ++i) total += square(o.mean_acceleration(i));
-         return std::sqrt(total / static_cast<real>(o.last()));
+         return o.peak_of_means([&](std::size_t i) { return o.mean_relative_acceleration(i); });
      }},
+    {"rms_relative_acceleration", true, false,
+     [](const Observer& o) {
+         return o.rms_of_means([&](std::size_t i) { return o.mean_relative_acceleration(i); });
+     }},
+    {"peak_damper_force", true, false,
+     [](const Observer& o) {
+         return o.peak_of_means([&](std::size_t i) { return o.mean_damper_force(i); });
+     }},
+    {"rms_damper_force", true, false,
+     [](const Observer& o) { return o.rms_of_means([&](std::size_t i) { return o.mean_damper_force(i); }); }},
+    {"peak_interface_force", true, false,
+     [](const Observer& o) { return o.peak([&](std::size_t i) { return o.interface_force(i); }); }},
+    {"rms_interface_force", true, false,
+     [](const Observer& o) { return o.rms([&](std::size_t i) { return o.interface_force(i); }); }},
     {"settling_time", true, false, [](const Observer& o) { return o.settling(0.05); }},
     {"loss_per_cycle", false, false, [](const Observer& o) { return o.impact(o.last()) / o.cycles(); }},
     {"reduced_loss", true, false, [](const Observer& o) { return o.reduced_loss(); }},

@@ -733,10 +733,10 @@ class Result(Node):
 
 class Window(Node):
     """
-    Equally spaced samples of each run from `start` to its end, in cycles of `period`, at a point with these mode shapes.
+    Equally spaced samples of each run from `start` to its end, in cycles of `period`, at a point with these mode shapes, which moves with the base if `base` is 1; the participation and the residual mass give the force on the base.
     """
 
-    def __init__(self, *, start: float | numpy.typing.NDArray[numpy.float64], period: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], samples: int) -> None: ...
+    def __init__(self, *, start: float | numpy.typing.NDArray[numpy.float64], period: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], base: float | numpy.typing.NDArray[numpy.float64], participation: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], residual_mass: float | numpy.typing.NDArray[numpy.float64], samples: int) -> None: ...
 
     @property
     def start(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
@@ -746,6 +746,15 @@ class Window(Node):
 
     @property
     def shape(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def base(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def participation(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def residual_mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
 
     @property
     def samples(self) -> int: ...

@@ -22,6 +22,10 @@ class BlockOutput:
         Names of measures (see `rattlebox.studies.measures`).
     shape
         Mode shapes at the observed point [kg^-1/2]: (m,), or (m, ...) over the grid.
+    base
+        1 if the point moves with the base, 0 for the difference of two points and for a mode.
+    participation, residual_mass
+        Participation of the modes (m, ...) [kg^1/2] and residual mass [kg], for the force on the base; empty if unknown.
     start, period
         Time from which measures are evaluated [s] and length of a cycle [s]; numbers, or arrays that broadcast over the
         grid.
@@ -39,6 +43,9 @@ class BlockOutput:
 
     measures: Sequence[str] = ()
     shape: Any = field(default_factory=lambda: np.zeros(0))
+    base: float = 1.0
+    participation: Any = field(default_factory=lambda: np.zeros(0))
+    residual_mass: Any = 0.0
     start: Any = 0.0
     period: Any = float("nan")
     samples: int = 2
@@ -90,6 +97,9 @@ def run_block(
         start=_number(output.start, grid),
         period=_number(output.period, grid),
         shape=np.asarray(output.shape, dtype=float),
+        base=output.base,
+        participation=np.asarray(output.participation, dtype=float),
+        residual_mass=_number(output.residual_mass, grid),
         samples=output.samples,
     )
     block = _core.sweep(

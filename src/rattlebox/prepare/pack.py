@@ -87,13 +87,17 @@ class Batch:
         Indices along each dimension of the whole grid, ascending.
     points
         Mode shapes at each point of the structure, (m, ...) over the grid.
+    inertia
+        Participation of the modes in the motion of the base, (m, ...) [kg^1/2], and "residual_mass" (1, ...) [kg] of the
+        truncated modes; empty if unknown.
     obstacle
         The reason why the batch is only a part of the grid; None for the whole grid.
     """
 
     packed: _core.Problem
     indices: tuple[NDArray[np.intp], ...]
-    points: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    points: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    inertia: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     obstacle: NotMergeable | None = None
 
     @property
@@ -176,6 +180,7 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
                 one = variant(case, given, index)
                 compare(_problem(one), part.packed, local)
                 compare(_points(one), part.points, local)
+                compare(_inertia(one), part.inertia, local)
     return parts
 
 
@@ -184,8 +189,8 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
     whole = tuple(np.arange(n) for n in shape)
     path = next((path for path, values in columns.items() if not is_number(case, path, values)), None)
     if path is None:
-        problem, points = _broadcast(case, columns, len(shape), fixed)
-        return [Batch(problem, whole, points)]
+        problem, points, inertia = _broadcast(case, columns, len(shape), fixed)
+        return [Batch(problem, whole, points, inertia)]
     values = columns[path]
     rest = {other: column for other, column in columns.items() if other != path}
     axis = next((k for k, n in enumerate(values.shape) if n > 1), None)
@@ -204,7 +209,10 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
         try:
             merger = Merger(path, groups, axis, shape)
             problem = merger.merge([part.packed for (part,) in batches])
-            return [Batch(problem, whole, merger.merge_points([part.points for (part,) in batches]))]
+            points, inertia = (
+                merger.merge_points([getattr(part, name) for (part,) in batches]) for name in ("points", "inertia")
+            )
+            return [Batch(problem, whole, points, inertia)]
         except NotMergeable as error:
             obstacle = error
     return [
@@ -212,6 +220,7 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
             part.packed,
             (*part.indices[:axis], group[part.indices[axis]], *part.indices[axis + 1 :]),
             part.points,
+            part.inertia,
             obstacle,
         )
         for group, parts in zip(groups, batches, strict=True)
@@ -221,8 +230,8 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
 
 def _broadcast(
     case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]
-) -> tuple[_core.Problem, dict[str, NDArray[np.float64]]]:
-    """Pack the variants over columns of numbers; return the problem and the mode shapes at the points."""
+) -> tuple[_core.Problem, dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]]]:
+    """Pack the variants over columns of numbers; return the problem, the mode shapes at the points and the inertia."""
     # A case with the first value of each column has a field for every array.
     first = {path: values.flat[0].item() for path, values in columns.items()}
     batch = replaced(case, {**fixed, **first})
@@ -241,7 +250,7 @@ def _broadcast(
     for place, length in cavities.items():
         batch = with_value(batch, (*place, "gap"), (length - part_at(batch, place).row) / 2)
     try:
-        return _problem(batch, axes), _points(batch, axes)
+        return _problem(batch, axes), _points(batch, axes), _inertia(batch, axes)
     except (TypeError, ValueError) as error:
         if not isinstance(error, CaseError):
             error.add_note("A formula of the model does not accept arrays; see rattlebox.model.elementwise.")
@@ -250,6 +259,17 @@ def _broadcast(
 
 def _points(case: Case, axes: int = 0) -> dict[str, NDArray[np.float64]]:
     return {name: _vector(shape, axes) for name, shape in case.modes.lines().items()}
+
+
+def _inertia(case: Case, axes: int = 0) -> dict[str, NDArray[np.float64]]:
+    modes = case.modes
+    if modes.participation is None or modes.spatial:
+        return {}
+    participation = _vector(modes.participation, axes)
+    effective = np.square(participation).sum(axis=0)
+    total = effective if modes.total_mass is None else modes.total_mass
+    residual = np.where(np.abs(total - effective) > 1e-9 * np.abs(total), total - effective, 0.0)
+    return {"participation": participation, "residual_mass": _vector(residual[None], axes)}
 
 
 def _problem(case: Case, axes: int = 0) -> _core.Problem:

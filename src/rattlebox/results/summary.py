@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
 from rattlebox._util.batch_means import mean_interval
+from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.html import bullets, paragraph, table
 
+from .damper_force import mean_damper_force
 from .free_decay import free_decay
 from .quantities import MISSING, digits, quantity
 from .schema import PARTNERS
@@ -69,6 +72,8 @@ class _Row:
         if isinstance(value, float):
             if self.unit == "order":
                 return f"{value:.1e}" if value else "0"
+            if self.unit == "kg^0.5 m":  # has no prefixes
+                return f"{digits(value, 4)} {self.unit}"
             if self.unit == "million":
                 return MISSING if math.isnan(value) else f"{digits(1e-6 * value, 3)} million"
             if self.unit == "1" and math.isinf(value):
@@ -103,16 +108,15 @@ def _main_results(run: Record) -> dict[str, Value]:
             x = arrays.displacement[:, k]
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
             values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
-            values[f"rms_acceleration[{point}]"] = _rms_derivative(arrays.time, arrays.velocity[:, k] + base[:, k])
+            values |= _accelerations(arrays, point, arrays.velocity[:, k], base[:, k])
         values |= _storey_drifts(arrays)
+        values |= _modal_motion(arrays)
         if is_driven(arrays):
             values |= _steady_results(run, base)
         elif (decay := free_decay(arrays)) is not None:
             values["equivalent_damping_ratio"] = decay.damping_ratio
             values["damping_amplitude"] = decay.amplitude
-    force = arrays.interface_force.reshape(arrays.time.size, -1)
-    if np.isfinite(force).all() and force.any():
-        values["rms_interface_force"] = _rms(arrays.time, np.linalg.norm(force, axis=1))
+    values |= _forces(run)
     values["computing_time"] = run.wall_time
     return values
 
@@ -163,12 +167,54 @@ def _rms(time: Any, x: Any) -> float:
         return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
 
 
-def _rms_derivative(time: Any, velocity: Any) -> float:
-    """Return the root mean square of the acceleration, averaged over each output step."""
-    if time.size < 2:
-        return float("nan")
+def _peak_and_rms(of: str, time: Any, means: Any) -> dict[str, Value]:
+    """Return the largest value and the root mean square of means over each output step, (T - 1,)."""
     with np.errstate(over="ignore"):
-        return float(np.sqrt(np.sum(np.diff(velocity) ** 2 / np.diff(time)) / (time[-1] - time[0])))
+        rms = math.sqrt(np.sum(means**2 * np.diff(time)) / (time[-1] - time[0])) if means.size else math.nan
+    return {f"peak_{of}": _largest(np.abs(means)), f"rms_{of}": rms}
+
+
+def _accelerations(arrays: RunArrays, point: str, velocity: Any, base: Any) -> dict[str, Value]:
+    """Return peak and RMS of the absolute acceleration of a point, and of that relative to a moving base."""
+    time = arrays.time
+    with np.errstate(over="ignore"):
+        step = np.diff(time)
+        values = _peak_and_rms(f"acceleration[{point}]", time, np.diff(velocity + base) / step)
+        if base.any():
+            values |= _peak_and_rms(f"relative_acceleration[{point}]", time, np.diff(velocity) / step)
+    return values
+
+
+def _modal_motion(arrays: RunArrays) -> dict[str, Value]:
+    """Return peak and RMS of the coordinate of each mode, if there are several."""
+    values: dict[str, Value] = {}
+    count = arrays.mode_frequency.size
+    for k in range(count if count > 1 else 0):
+        motion = arrays.modal_displacement[:, k]
+        values[f"peak_modal_displacement[mode {k + 1}]"] = _largest(np.abs(motion))
+        values[f"rms_modal_displacement[mode {k + 1}]"] = _rms(arrays.time, motion)
+    return values
+
+
+def _forces(run: Record) -> dict[str, Value]:
+    """Return peak and RMS of loads, of the acceleration of the base, and of the forces of dampers and on the base."""
+    arrays = run.arrays
+    time = arrays.time
+    values: dict[str, Value] = {}
+    for name, load in zip(arrays.loads, arrays.load.T, strict=True):
+        values |= {f"peak_load[{name}]": _largest(np.abs(load)), f"rms_load[{name}]": _rms(time, load)}
+    base = np.linalg.norm(arrays.base_acceleration.reshape(time.size, -1), axis=1)
+    if base.any():
+        values |= {"peak_base_acceleration": _largest(base), "rms_base_acceleration": _rms(time, base)}
+    with suppress(RattleboxError):  # of the case of a run from a file, which may name files that are gone
+        mean = mean_damper_force(arrays, run.case)
+        for index, name in enumerate(arrays.dampers):
+            force = mean[:, index].reshape(time.size - 1, -1)
+            values |= _peak_and_rms(f"damper_force[{name}]", time, np.linalg.norm(force, axis=1))
+    force = np.linalg.norm(arrays.interface_force.reshape(time.size, -1), axis=1)
+    if np.isfinite(force).all() and force.any():
+        values |= {"peak_interface_force": _largest(force), "rms_interface_force": _rms(time, force)}
+    return values
 
 
 def _base_velocity(arrays: RunArrays) -> Any:
@@ -297,12 +343,23 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
             continue
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
         rows.append(_steady_row(f"steady_rms_displacement[{point}]", f"RMS displacement, second half{where}", "m"))
+        rows.append(_Row(f"peak_acceleration[{point}]", f"peak acceleration{where}", "m/s^2"))
         rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
         rows.append(_steady_row(f"steady_rms_acceleration[{point}]", f"RMS acceleration, second half{where}", "m/s^2"))
+        relative = f"RMS acceleration relative to the base{where}"
+        rows.append(_Row(f"rms_relative_acceleration[{point}]", relative, "m/s^2"))
         rows.append(_Row(f"peak_reduction[{point}]", f"reduction of the peak{where}", "%"))
         rows.append(_Row(f"rms_reduction[{point}]", f"reduction of the RMS{where}", "%"))
     rows += [_Row(key, f"peak drift, {name}", "m") for key, name in _largest_of("peak_drift", all_values)]
+    of_modes = _largest_of("peak_modal_displacement", all_values)
+    rows += [_Row(key, f"peak modal displacement, {name}", "kg^0.5 m") for key, name in of_modes]
     rows.append(_Row("equivalent_damping_ratio", "equivalent damping ratio", "%", at="damping_amplitude"))
+    rows += [_Row(key, f"peak load, {name}", "N") for key, name in _largest_of("peak_load", all_values)]
+    rows.append(_Row("peak_base_acceleration", "peak acceleration of the base", "m/s^2"))
+    for kind, word in (("peak", "peak"), ("rms", "RMS")):
+        of_dampers = _largest_of(f"{kind}_damper_force", all_values)
+        rows += [_Row(key, f"{word} force of {name}", "N") for key, name in of_dampers]
+    rows.append(_Row("peak_interface_force", "peak force on the base", "N"))
     rows.append(_Row("rms_interface_force", "RMS force on the base", "N"))
     rows.append(_steady_row("steady_rms_interface_force", "RMS force on the base, second half", "N"))
     rows.append(_steady_row("steady_loss_power", "mean power lost, second half", "W"))
@@ -432,7 +489,10 @@ class Summary(_Report):
         Numbers in SI units: `status`, `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
         `share_normal`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `energy_residual`,
         `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`, `rms_displacement[point]`,
-        `rms_acceleration[point]` (absolute, mean over each output step), `rms_interface_force`, `computing_time`. For runs
+        `peak_acceleration[point]` and `rms_acceleration[point]` (absolute, mean over each output step), the same for
+        `relative_acceleration[point]` if the base moves, `damper_force[damper]` (mean over each output step),
+        `interface_force`, `base_acceleration`, `load[load]` and, with several modes, `modal_displacement[mode 1]`;
+        `peak_drift[storey 2]` of shear buildings, `computing_time`. For runs
         that are driven to their end `steady_rms_displacement[point]` over the second half, and
         `steady_rms_displacement_error[point]`, half of its 95 % interval by batch means (NaN: the run is too short). For
         runs that end in a free decay `equivalent_damping_ratio` of the mode with the largest energy, and

@@ -18,6 +18,7 @@ from rattlebox.model.random_vibration import Random
 from .case_digest import describe_case
 from .fingerprint import fingerprint
 from .measures import INTERVAL, MEASURES, name_of
+from .observed import Observed
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -49,7 +50,8 @@ class CaseWork:
     samples
         Number of samples of the evaluated window; None for as many as the measures need.
     point
-        Name of the observed point of the structure; default that of the first damper.
+        Observed motion: name of a point of the structure, "upper - lower" for that of a point relative to another one, or
+        "mode 2"; default the point of the first damper.
     intervals
         Whether to compute the 95 % intervals of measures of steady motion.
     """
@@ -94,16 +96,44 @@ class CaseWork:
         }
         for name in self.measure_names:
             measure = MEASURES[name]
-            outputs[name] = ((), "float64", {"units": measure.units, "long_name": measure.long_name})
+            attributes = {"units": self._units(name), "long_name": measure.long_name}
+            outputs[name] = ((), "float64", attributes)
         for name in self.averages:
             attributes = {
-                "units": MEASURES[name].units,
+                "units": self._units(name),
                 "long_name": f"half of the 95 % interval, {MEASURES[name].long_name}",
             }
             outputs[name + INTERVAL] = ((), "float64", attributes)
         for name in self.functions:
             outputs[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
         return outputs
+
+    @property
+    def _observed(self) -> Observed | None:
+        """The observed motion, if it is named."""
+        return None if self.point is None else Observed.of(self.case.modes, self.point)
+
+    def _units(self, name: str) -> str:
+        observed = self._observed
+        units = MEASURES[name].units
+        return observed.units(units) if observed and MEASURES[name].samples else units
+
+    def require_interface_force(self) -> None:
+        """Raise if the force on the base is requested and the participation of the modes is unknown.
+
+        Raises
+        ------
+        CaseError
+            If it is.
+        """
+        asked = [name for name in self.measure_names if name.endswith("interface_force")]
+        modes = self.case.modes
+        if not asked:
+            return
+        if not modes.decay.size:
+            raise Hint(f"{asked[0]} needs a structure that moves", "peak_damper_force, the force on the cavity")
+        if modes.participation is None:
+            raise Hint(f"{asked[0]} needs the participation of the modes", "participation = [...] of the structure")
 
     def describe(self) -> dict[str, Any]:
         """Return a description of everything except the grid, in JSON types."""

@@ -241,9 +241,10 @@ class _Step:
         self._variants = gather_variants(work.packed, shape, members)
 
         def each(number: Any) -> Any:
-            return gather_values(number, shape, members)
+            return gather_values(number, shape, members) if np.size(number) else number
 
-        self.output = replace(output, shape=each(output.shape), start=each(output.start), period=each(output.period))
+        names = ("shape", "participation", "residual_mass", "start", "period")
+        self.output = replace(output, **{name: each(getattr(output, name)) for name in names})
         self.period = np.asarray(self.output.period)
         self._packed = self._variants if before is None else self._start_from(before)
 
@@ -331,7 +332,8 @@ class _Step:
             Chains with a closed contact in the final state, (chains,).
         """
         settings, waiting = self._packed.settings, closed
-        only_state = replace(self.output, measures=(), batched=(), start=0.0, samples=2, motion=False, last=0)
+        nothing: dict[str, Any] = {"participation": np.zeros(0), "residual_mass": 0.0, "measures": (), "batched": ()}
+        only_state = replace(self.output, **nothing, start=0.0, samples=2, motion=False, last=0)
         for lead in _LEADS:
             if not waiting.any():
                 break

@@ -20,6 +20,7 @@ from rattlebox.prepare.pack import Batch, pack_parts
 
 from .case_work import CaseWork, Extra
 from .measures import INTERVAL, MEASURES, interval_of
+from .observed import Observed
 from .work import Values
 
 
@@ -232,6 +233,8 @@ class ImpactWork(CaseWork):
         """Return a batch with its duration, and the quantities to return."""
         packed = part.packed
         settings = packed.settings
+        self.require_interface_force()
+        observed = self._observed or Observed.of(self.case.modes, self._point)
         period = _period(packed)
         if self.cycles is not None:
             if period is None:
@@ -263,7 +266,10 @@ class ImpactWork(CaseWork):
                 )
         output = BlockOutput(
             measures=self.measure_names,
-            shape=part.points[self._point],
+            shape=observed.shape(part.points, len(packed.mode_decay)),
+            base=float(observed.moves_with_base),
+            participation=part.inertia.get("participation", np.zeros(0)),
+            residual_mass=part.inertia.get("residual_mass", np.zeros(1))[0],
             start=start,
             period=np.nan if period is None else period,
             samples=self.samples or (usual if dense else ends),
@@ -280,9 +286,7 @@ class ImpactWork(CaseWork):
 
     @property
     def _point(self) -> str:
-        if self.point is None and self.case.dampers:
-            return self.case.modes.point(self.case.dampers[0].point)
-        return self.case.modes.point(self.point)
+        return self.case.modes.point(self.case.dampers[0].point if self.case.dampers else None)
 
 
 def with_intervals(values: Values, output: BlockOutput) -> dict[str, NDArray[Any]]:

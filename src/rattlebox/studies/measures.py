@@ -78,6 +78,21 @@ _MEASURES: dict[str, Measure] = {
     "rms_acceleration": Measure(
         "m/s^2", "RMS absolute acceleration, mean over a sample step", samples=True, average="root mean square"
     ),
+    "peak_relative_acceleration": Measure(
+        "m/s^2", "peak acceleration relative to the base, mean over a sample step", samples=True
+    ),
+    "rms_relative_acceleration": Measure(
+        "m/s^2",
+        "RMS acceleration relative to the base, mean over a sample step",
+        samples=True,
+        average="root mean square",
+    ),
+    "peak_damper_force": Measure("N", "peak force of all dampers, mean over a sample step", samples=True),
+    "rms_damper_force": Measure(
+        "N", "RMS force of all dampers, mean over a sample step", samples=True, average="root mean square"
+    ),
+    "peak_interface_force": Measure("N", "peak force on the base", samples=True),
+    "rms_interface_force": Measure("N", "RMS force on the base", samples=True, average="root mean square"),
     "settling_time": Measure("s", "settling time to 5 % of the peak", samples=True),
     "loss_per_cycle": Measure("J", "loss in the damper per cycle", cyclic=True, average="mean"),
     "reduced_loss": Measure("1", "loss a cycle over m V^2", samples=True, cyclic=True, average="mean"),

@@ -26,6 +26,7 @@ from rattlebox.model.space import unit_vector
 from rattlebox.prepare.particles import refusal_reason, settle_all
 from rattlebox.prepare.time_step import WARNINGS, exceeded_limits
 from rattlebox.results import Run
+from rattlebox.results.damper_force import mean_damper_force
 from rattlebox.results.schema import variables
 
 from .case_work import CaseWork, Extra
@@ -94,6 +95,22 @@ class Window:
         return np.diff(self.velocity + self.base_velocity) / np.diff(self.run.arrays.time)
 
     @property
+    def relative_acceleration(self) -> NDArray[np.float64]:
+        """Acceleration of the point relative to the base, averaged between samples [m/s^2]."""
+        return np.diff(self.velocity) / np.diff(self.run.arrays.time)
+
+    @property
+    def damper_force(self) -> NDArray[np.float64]:
+        """Force of all particles on their cavities, averaged between samples [N]: what their momentum lacks."""
+        force = mean_damper_force(self.run.arrays, self.run.case).sum(axis=1)
+        return np.asarray(np.linalg.norm(force, axis=1))
+
+    @property
+    def interface_force(self) -> NDArray[np.float64]:
+        """Magnitude of the force on the base [N]."""
+        return np.asarray(np.linalg.norm(self.run.arrays.interface_force, axis=1))
+
+    @property
     def settling_time(self) -> float:
         """Time after which the displacement stays within 5 % of its peak [s]."""
         times = self.run.arrays.time
@@ -134,6 +151,12 @@ _FORMULAS: dict[str, Callable[[Window], float]] = {
     "rms_velocity": lambda w: w.rms(w.velocity),
     "peak_acceleration": lambda w: np.abs(w.acceleration).max(),
     "rms_acceleration": lambda w: math.sqrt(np.mean(w.acceleration**2)),
+    "peak_relative_acceleration": lambda w: np.abs(w.relative_acceleration).max(),
+    "rms_relative_acceleration": lambda w: math.sqrt(np.mean(w.relative_acceleration**2)),
+    "peak_damper_force": lambda w: w.damper_force.max(),
+    "rms_damper_force": lambda w: math.sqrt(np.mean(w.damper_force**2)),
+    "peak_interface_force": lambda w: w.interface_force.max(),
+    "rms_interface_force": lambda w: w.rms(w.interface_force),
     "settling_time": lambda w: w.settling_time,
     "loss_per_cycle": lambda w: w.loss / (w.length * w.frequency),
     "reduced_loss": lambda w: (
@@ -191,9 +214,8 @@ class ParticleWork(CaseWork):
                 f"skip = {self.skip:.6g} s leaves less than the one cycle that {cyclic[0]} requires",
                 "a longer duration",
             )
-        points = self.case.modes.lines()
-        if self.point is not None and self.point not in points:
-            raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])
+        self.require_interface_force()
+        _ = self._observed  # raises if there is no such point
 
     def coords(self) -> dict[str, Any]:
         """Return the coordinates of the dimensions beyond the grid: none."""
@@ -344,7 +366,8 @@ class ParticleWork(CaseWork):
         if (driver := _driver(case)) and driver.amplitude == 0:
             frequency = math.nan
         arrays = part.arrays
-        if self.point is None:
+        observed = self._observed
+        if observed is None:
             along = unit_vector(case.particle_dampers[0].direction)
             return Window(
                 part,
@@ -355,9 +378,14 @@ class ParticleWork(CaseWork):
                 arrays.base_velocity @ along,
                 frequency,
             )
-        column = arrays.points.index(self.point)
-        base = base_at_points(case, arrays.base_velocity)[:, column]
-        return Window(part, run, start, arrays.displacement[:, column], arrays.velocity[:, column], base, frequency)
+        base = base_at_points(case, arrays.base_velocity)
+        modes = arrays.modal_displacement, arrays.modal_velocity
+        displacement, velocity = (
+            observed.column(arrays.points, own, mode)
+            for own, mode in zip((arrays.displacement, arrays.velocity), modes, strict=True)
+        )
+        own_base = observed.column(arrays.points, base, np.zeros_like(modes[0]))
+        return Window(part, run, start, displacement, velocity, own_base, frequency)
 
 
 def cut_before(run: Run, start: float) -> Run:

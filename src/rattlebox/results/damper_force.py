@@ -1,0 +1,49 @@
+"""Force of the balls and particles on their cavities, averaged over each output step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+    from .arrays import RunArrays
+
+
+def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
+    """Return the force on each cavity, averaged between output times: what the momentum of its balls lacks.
+
+    Samples of `cavity_force` miss most of the short contacts.
+
+    Parameters
+    ----------
+    arrays
+        Arrays of the run, of T output times.
+    case
+        Case of the run, which has the masses and the gravity.
+
+    Returns
+    -------
+    (T - 1, D) or (T - 1, D, 3) float
+        Force on each of D cavities [N]; three components in a 3-D run.
+
+    Notes
+    -----
+    F = -dP/dt - m (a - g) with the momentum P relative to the base, the acceleration a of the base and gravity g.
+    """
+    step = np.diff(arrays.time)
+    base = np.diff(arrays.base_velocity, axis=0)
+    if arrays.engine == "dem":
+        gravity = np.array([damper.gravity for damper in case.particle_dampers]).reshape(-1, 3)
+        inertia = np.diff(arrays.momentum, axis=0) + arrays.particle_mass[:, None] * base[:, None]
+        return np.asarray(arrays.particle_mass[:, None] * gravity - inertia / step[:, None, None])
+    force = np.zeros((step.size, len(arrays.dampers)))
+    for index, damper in enumerate(case.impact_dampers):
+        own = arrays.ball_damper == index
+        masses = np.asarray(damper.masses, dtype=float)
+        inertia = (np.diff(arrays.ball_velocity[:, own], axis=0) + base[:, None]) @ masses
+        force[:, index] = masses.sum() * damper.gravity - inertia / step
+    return force
