@@ -198,8 +198,8 @@ def plot(
     kind: Annotated[
         str | None,
         typer.Option(
-            help="Run: motion, energy, impacts, particles, or case. Study: map, lines, or the kind in the study file. "
-            "Default: motion, or the figure of the study's kind; for a sweep, a map if both axes have more than "
+            help="Run: motion, energy, impacts, particles, responses, or case. Study: map, lines, or the kind in the study "
+            "file. Default: motion, or the figure of the study's kind; for a sweep, a map if both axes have more than "
             "six values, otherwise lines."
         ),
     ] = None,

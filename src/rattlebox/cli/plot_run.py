@@ -155,7 +155,7 @@ def _write_film(run: Any, out: Path, options: dict[str, Any]) -> None:
 
 
 def _draw(run: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
-    kinds: tuple[str, ...] = ("particles",) if isinstance(run, Snapshots) else (*run.groups, "case")
+    kinds: tuple[str, ...] = ("particles",) if isinstance(run, Snapshots) else (*run.groups, "responses", "case")
     if (kind or kinds[0]) not in kinds:
         raise CaseError(f"--kind {kind}: this run has no such figure\n  {nearest(str(kind), kinds)}")
     if isinstance(run, Snapshots):

@@ -13,6 +13,7 @@ from .motion import plot_motion
 from .particles import film_particles, plot_particles
 from .phase import plot_phase_portrait
 from .response import plot_frequency_response
+from .responses import plot_responses
 from .style import (
     CHANNEL_COLOURS,
     FAINT,
@@ -54,5 +55,6 @@ __all__ = [
     "plot_particles",
     "plot_phase_portrait",
     "plot_response_from_map",
+    "plot_responses",
     "scaled",
 ]

@@ -62,7 +62,7 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
         If no output time lies within `between`, or the size is unknown.
     """
     arrays = run.arrays
-    window = _time_window(arrays, between)
+    window = time_window(arrays, between)
     with_particles = "particles" in run.groups
     filled = [d for d in range(len(arrays.dampers)) if with_particles or np.any(arrays.ball_damper == d)]
     moving = arrays.mode_frequency.size > 0 or not filled
@@ -116,7 +116,21 @@ def _line(axes: Axes, x: Any, y: Any, series: int, name: str | None) -> None:
     axes.plot(x, y, label=name, **style)
 
 
-def _time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
+def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
+    """Return the output times between two times; all if `between` is None.
+
+    Parameters
+    ----------
+    arrays
+        Arrays of the run.
+    between
+        First and last time [s].
+
+    Raises
+    ------
+    ValueError
+        If no output time lies within `between`.
+    """
     if between is None:
         return slice(0, arrays.time.size)
     first, last = np.searchsorted(arrays.time, between[0]), np.searchsorted(arrays.time, between[1], "right")

@@ -207,8 +207,8 @@ def _forces(run: Record) -> dict[str, Value]:
     if base.any():
         values |= {"peak_base_acceleration": _largest(base), "rms_base_acceleration": _rms(time, base)}
     with suppress(RattleboxError):  # of the case of a run from a file, which may name files that are gone
-        mean = mean_damper_force(arrays, run.case)
-        for index, name in enumerate(arrays.dampers):
+        mean = mean_damper_force(arrays, run.case) if run.source else np.zeros((0, 0))
+        for index, name in enumerate(arrays.dampers if mean.size else ()):
             force = mean[:, index].reshape(time.size - 1, -1)
             values |= _peak_and_rms(f"damper_force[{name}]", time, np.linalg.norm(force, axis=1))
     force = np.linalg.norm(arrays.interface_force.reshape(time.size, -1), axis=1)

@@ -113,10 +113,13 @@ class CaseWork:
         """The observed motion, if it is named."""
         return None if self.point is None else Observed.of(self.case.modes, self.point)
 
-    def _units(self, name: str) -> str:
+    def units_of(self, units: str) -> str:
+        """Return the unit of the observed motion for that of a point."""
         observed = self._observed
-        units = MEASURES[name].units
-        return observed.units(units) if observed and MEASURES[name].samples else units
+        return observed.units(units) if observed else units
+
+    def _units(self, name: str) -> str:
+        return self.units_of(MEASURES[name].units) if MEASURES[name].samples else MEASURES[name].units
 
     def require_interface_force(self) -> None:
         """Raise if the force on the base is requested and the participation of the modes is unknown.

@@ -60,8 +60,8 @@ class ImpactWork(CaseWork):
         balls = self._balls
         if self.motion:
             time: Extra = (("instant", self.output.samples),)
-            found["displacement"] = (time, "float64", {"units": "m", "long_name": "displacement"})
-            found["velocity"] = (time, "float64", {"units": "m/s", "long_name": "velocity"})
+            found["displacement"] = (time, "float64", {"units": self.units_of("m"), "long_name": "displacement"})
+            found["velocity"] = (time, "float64", {"units": self.units_of("m/s"), "long_name": "velocity"})
             ball: Extra = (*time, ("ball", balls))
             place = "ball position from its place in the packed, centred row"
             found["relative_position"] = (ball, "float64", {"units": "m", "long_name": place})

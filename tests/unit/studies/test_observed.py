@@ -162,3 +162,11 @@ def test_studies_over_masses() -> None:
             )
             expected = float(abs(rb.simulate(one).motion.interface_force).max())
             assert float(result.peak_interface_force[i, j]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_frequency_response_of_a_mode_has_its_unit() -> None:
+    """The amplitude of a mode is in kg^0.5 m, and agrees with the closed form without damper."""
+    case = impact_case().model_copy(update={"dampers": (), "tuned_masses": ()})
+    result = rb.frequency_response(case, [2.0, 2.5], point="mode 1", cycles=(60, 8))
+    assert result.amplitude.attrs["units"] == result.bare_amplitude.attrs["units"] == "kg^0.5 m"
+    np.testing.assert_allclose(result.amplitude.sel(direction="up"), result.bare_amplitude, rtol=1e-3)

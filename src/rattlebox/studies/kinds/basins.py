@@ -58,7 +58,7 @@ class Basins(Study):
     apart
         Largest difference between states of one attractor, in the same units.
     point
-        Observed point of the structure; default that of the first damper.
+        Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     workers, backend, store, progress
         Execution and storage; see `rattlebox.studies.study.Study`.
 

@@ -69,7 +69,7 @@ class Bifurcation(Study):
         Largest difference between states one period apart, over the gap (positions) and over gap times angular frequency
         (velocities).
     point
-        Observed point of the structure; default that of the first damper.
+        Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     workers, backend, store, progress
         Execution and storage; see `rattlebox.studies.study.Study`.
 

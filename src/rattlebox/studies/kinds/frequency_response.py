@@ -62,7 +62,7 @@ class FrequencyResponse(Study):
     measure
         Names of further measures (`rb.MEASURES`).
     point
-        Observed point of the structure; default that of the first damper.
+        Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     samples
         Number of samples per cycle. The relative error of `peak` is (pi/samples)^2/2, 0.12 % for 64.
     tolerance
@@ -157,7 +157,12 @@ class FrequencyResponse(Study):
         runs = runs.expand_dims(direction=["fresh"]) if self.direction == "fresh" else without_states(runs)
         runs = runs.rename({f"{place}.frequency": "frequency", f"{place}.amplitude": "level"}).load()
         found = _steady(runs, driver.phase, self.samples, self.tolerance)
-        found["bare_amplitude"] = ("level", "frequency"), bare, {"units": "m", "long_name": "amplitude without dampers"}
+        units = found.amplitude.attrs["units"]
+        found["bare_amplitude"] = (
+            ("level", "frequency"),
+            bare,
+            {"units": units, "long_name": "amplitude without dampers"},
+        )
         found.frequency.attrs["long_name"] = "frequency"
         load = "load" if place.startswith("load") else "base"
         found.level.attrs["long_name"] = f"amplitude of the {load}"
@@ -215,9 +220,9 @@ def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) 
         strobes = parts[..., ::samples, :] / np.ptp(parts, axis=-2).max(axis=-1)[..., None, None]
         period, _ = period_of(strobes, tolerance)
         spread = np.abs(np.diff(strobes, axis=-2)).max(axis=(-2, -1))
-    over = maps.status.dims
+    over, units = maps.status.dims, maps.displacement.attrs["units"]
     return maps.drop_dims(["instant", "ball"]).assign(
-        amplitude=(over, np.abs(harmonic), {"units": "m", "long_name": "amplitude of the first harmonic"}),
+        amplitude=(over, np.abs(harmonic), {"units": units, "long_name": "amplitude of the first harmonic"}),
         phase=(over, np.angle(harmonic), {"units": "rad", "long_name": "phase to the load"}),
         spread=(over, spread, {"units": "1", "long_name": "spread of strobes over the range of motion"}),
         period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),

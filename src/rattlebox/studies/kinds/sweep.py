@@ -58,7 +58,7 @@ class Sweep(Study):
         and a measure of the first harmonic is requested. For particle dampers with `cycles` the number per cycle is
         rounded up.
     point
-        Observed point of the structure; default that of the first damper.
+        Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     motion
         Whether to return the samples of the motion of each variant; impact dampers only.
     last

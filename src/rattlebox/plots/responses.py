@@ -1,0 +1,176 @@
+"""Figure of responses over time: accelerations, drifts, modal coordinates, forces of dampers and on the base, loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise, permutations
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..results import Run, RunArrays
+from ..results.figures import run_figure
+from ..results.schema import AXES
+from ..results.summary import largest_points
+from .motion import MAX_SERIES, time_window
+from .style import (
+    FAINT,
+    SERIES_COLOURS,
+    SERIES_STYLES,
+    Scale,
+    Size,
+    StyledFigure,
+    figure_style,
+    label,
+    legend_above,
+    pen,
+    scaled,
+    time_axis,
+)
+
+QUANTITIES = {
+    "displacement": ("Displacement", "m"),
+    "velocity": ("Velocity", "m/s"),
+    "acceleration": ("Acceleration relative to base", "m/s²"),
+    "absolute_acceleration": ("Absolute acceleration", "m/s²"),
+    "modal_displacement": ("Modal displacement", "kg$^{0.5}$ m"),
+    "modal_velocity": ("Modal velocity", "kg$^{0.5}$ m/s"),
+    "cavity_force": ("Force of damper", "N"),
+    "interface_force": ("Force on base", "N"),
+    "base_displacement": ("Displacement of base", "m"),
+    "base_velocity": ("Velocity of base", "m/s"),
+    "base_acceleration": ("Acceleration of base", "m/s²"),
+    "load": ("Load", "N"),
+}
+"""Labels and units of the variables that can be drawn."""
+
+
+class _Panel(NamedTuple):
+    """Lines of one panel: values (T, N) [SI] and their names, label and unit of the axis."""
+
+    values: Any
+    names: list[str]
+    text: str
+    unit: str
+
+
+@run_figure("responses")
+def plot_responses(
+    run: Run,
+    *,
+    of: str | Iterable[str] | None = None,
+    size: Size = "column",
+    between: tuple[float, float] | None = None,
+) -> Figure:
+    """Draw responses over time, one panel for each.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    of
+        Variables of the motion, such as "absolute_acceleration", "modal_displacement", "cavity_force" and
+        "interface_force", and drifts such as "storey 2 - storey 1" and "storey 1 - base". Default: absolute acceleration,
+        drifts of storeys, forces of dampers and on the base, loads and acceleration of the base, unless they are zero.
+    size
+        Width of the figure: "column", "page" or "slide".
+    between
+        First and last time to draw [s]; default the whole run.
+
+    Returns
+    -------
+    Figure
+        Figure with one panel for each variable and one for all drifts; of many lines those with the largest values.
+
+    Raises
+    ------
+    ValueError
+        If the run has no such variable or points, no output time lies within `between`, or the size is unknown.
+    """
+    arrays = run.arrays
+    window = time_window(arrays, between)
+    chosen = _default(arrays) if of is None else [of] if isinstance(of, str) else list(of)
+    drifts = [name for name in chosen if " - " in name]
+    variables = [name for name in chosen if name not in drifts]
+    panels = [_variable(arrays, name) for name in variables]
+    if drifts:
+        panels.insert(min(1, len(panels)), _drifts(arrays, drifts))
+    if not panels:
+        raise ValueError("of is empty\n  try: " + ", ".join(QUANTITIES))
+    with figure_style(size):
+        count = len(panels)
+        figure = StyledFigure(size, 0.14 + 0.36 * count if size == "column" else 0.1 + 0.2 * count)
+        axes = list(np.ravel(figure.subplots(count, 1, sharex=True)))
+        time = scaled(arrays.time[window], "s")
+        for axis, panel in zip(axes, panels, strict=True):
+            values = panel.values[window]
+            scale = scaled(values, panel.unit) if panel.unit in ("m", "m/s", "N") else Scale(1.0, panel.unit)
+            axis.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
+            for k, line in enumerate(largest_points(np.abs(values).max(axis=0), MAX_SERIES)):
+                axis.plot(
+                    arrays.time[window] / time.divisor,
+                    values[:, line] / scale.divisor,
+                    color=SERIES_COLOURS[k],
+                    linestyle=SERIES_STYLES[k],
+                    linewidth=pen(),
+                    label=panel.names[line] if len(panel.names) > 1 else None,
+                )
+            label(axis, "y", panel.text, scale.unit)
+            legend_above(axis)
+        time_axis(axes[-1], arrays.time[window], time)
+        figure.align_ylabels(axes)
+    return figure
+
+
+def _default(arrays: RunArrays) -> list[str]:
+    """Return the responses that are not zero."""
+    storeys = [f"storey {k}" for k in range(1, len(arrays.points) + 1) if f"storey {k}" in arrays.points]
+    chosen = ["absolute_acceleration"] if arrays.points else []
+    chosen += [f"{upper} - {lower}" for lower, upper in pairwise(["base", *storeys])]
+    for name in ("cavity_force", "interface_force", "load", "base_acceleration"):
+        values = getattr(arrays, name)
+        if values.size and np.isfinite(values).all() and values.any():
+            chosen.append(name)
+    return chosen or ["base_acceleration"]
+
+
+def _variable(arrays: RunArrays, name: str) -> _Panel:
+    """Return the lines of a variable: one for each point, mode, load or damper, with axis in a 3-D run."""
+    if name not in QUANTITIES:
+        raise ValueError(
+            f"of = {name!r} is not a response\n  try: {', '.join(QUANTITIES)}, or 'upper point - lower point'"
+        )
+    values = np.asarray(getattr(arrays, name), dtype=float)
+    first: list[str] = [""]
+    if name in ("displacement", "velocity", "acceleration", "absolute_acceleration"):
+        first = list(arrays.points)
+    elif name.startswith("modal"):
+        first = [f"mode {k + 1}" for k in range(arrays.mode_frequency.size)]
+    elif name == "cavity_force":
+        first = list(arrays.dampers)
+    elif name == "load":
+        first = list(arrays.loads)
+    values = values.reshape(arrays.time.size, len(first), -1) if first else np.zeros((arrays.time.size, 0, 1))
+    if not values.size:
+        raise ValueError(
+            f"of = {name!r}: this run has no {QUANTITIES[name][0].lower()}\n  try: {', '.join(QUANTITIES)}"
+        )
+    if values.shape[2] == len(AXES):
+        several = len(first) > 1
+        names = [f"{one} {axis}" if several else f"along {axis}" for one in first for axis in AXES]
+    else:
+        names = first
+    return _Panel(values.reshape(arrays.time.size, -1), names, *QUANTITIES[name])
+
+
+def _drifts(arrays: RunArrays, names: list[str]) -> _Panel:
+    """Return the displacements of points relative to others or to the base."""
+    motion = dict(zip(arrays.points, arrays.displacement.T, strict=True)) | {"base": np.zeros(arrays.time.size)}
+    columns = []
+    for name in names:
+        pair = next((pair for pair in permutations(motion, 2) if name == " - ".join(pair)), None)
+        if pair is None:
+            raise ValueError(f"of = {name!r} is not a drift between two of {', '.join(motion)}")
+        columns.append(motion[pair[0]] - motion[pair[1]])
+    return _Panel(np.stack(columns, axis=1), names, "Drift", "m")
