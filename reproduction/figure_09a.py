@@ -100,11 +100,11 @@ def draw(data: xr.Dataset) -> Figure:
         figure = StyledFigure("page", 1.05)
         grid = figure.subplots(4, len(START))
         rows = list(product(data.body.values, SHOWN))
-        for row, axes in enumerate(grid.flat):
-            first = grid[row // len(START) // 2 * 2, 0]
-            if axes is not first:
-                axes.sharex(first)
-                axes.sharey(first)
+        for index, panel in enumerate(grid.flat):
+            first = grid[index // len(START) // 2 * 2, 0]
+            if panel is not first:
+                panel.sharex(first)
+                panel.sharey(first)
         line = None
         for (row, (body, model)), (column, case) in product(enumerate(rows), enumerate(data.case.values)):
             axes: Axes = grid[row, column]
