@@ -161,6 +161,11 @@ public:
         simulation_->restore(reader);
     }
 
+    void continue_from(const State& bytes, double dt) {
+        Reader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
+        simulation_->continue_from(reader, dt);
+    }
+
     Status status() const { return simulation_->status(); }
     int threads() const { return threads_; }
     void set_threads(int n) {
@@ -188,6 +193,8 @@ void add_dem(nb::module_& module) {
         .def("stopped", &Dem::stopped, "Return where the run stopped.")
         .def("save", &Dem::save, "Return all that a bitwise restart needs.")
         .def("restore", &Dem::restore, nb::arg("bytes"), "Continue from a saved state.")
+        .def("continue_from", &Dem::continue_from, nb::arg("bytes"), nb::arg("dt"),
+             "Start from the last sample of a run with the same particles and structure; dt is the step of that run.")
         .def_prop_ro("status", &Dem::status)
         .def_prop_ro("step", &Dem::step, "The next step.")
         .def_prop_ro("serial_steps", &Dem::serial_steps,

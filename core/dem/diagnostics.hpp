@@ -50,6 +50,14 @@ struct alignas(64) Diagnostics {
     // Energy lost by the time of the sample, less half of the loss of the step.
     long contacts[2]{};
 
+    // Counts and extremes, and losses of enduring contacts, count from now on.
+    void reset_extremes() {
+        for (int p = 0; p < 2; ++p) enduring[p] = Lanes{}, first_touches[p] = 0;
+        extrapolated = scans = 0;
+        largest_overlap = LargestOverlap{};
+        largest_approach_speed = 0;
+    }
+
     void begin_sample() {
         stored = Lanes{};
         for (int p = 0; p < 2; ++p) sliding_correction[p] = rolling_correction[p] = Lanes{}, contacts[p] = 0;

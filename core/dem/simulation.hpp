@@ -177,6 +177,30 @@ class Simulation {
         s.add_loads();
     }
 
+    // ---- saved states
+
+    static void require(bool holds) {
+        if (!holds) throw std::invalid_argument("the state is damaged");
+    }
+
+    template <class Reader> void read(Reader& reader) {
+        const std::vector<RestartCheck> fixed(beds_.begin(), beds_.end());
+        serialize(reader);
+        if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
+        require(step_ >= 0 && steps_since_ >= 0);
+        require(stopped_cavity_ >= 0 && stopped_cavity_ < static_cast<int>(beds_.size()));
+        const Bed& where = at(beds_, stopped_cavity_);
+        require(RestartCheck::is_possible(status_) &&
+                RestartCheck::is_possible(stop_reason_, static_cast<int>(where.position.size()),
+                                          static_cast<int>(where.cavity->walls.size())));
+        for (const std::size_t size :
+             {modes_.size(), output_modes_.size(), modal_force_.size(), viscous_.size()})
+            require(size == problem_.modes.size());
+        require(load_work_.size() == signals_.size() && base_work_.size() == signals_.size());
+        for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], has_contact_forces());
+        for (Bed& bed : beds_) update_cavity_motion(bed);
+    }
+
     // ---- neighbours
 
     Chunk& chunk(ChunkIndex p) { return at(at(beds_, p.bed).chunks, p.chunk); }
@@ -334,6 +358,25 @@ class Simulation {
         ++steps_since_;
     }
 
+    // Predicts the next step, which was predicted with another time step and other inputs, from the state at the
+    // last step.
+    void predict_again(real dt_before) {
+        modes_ = output_modes_;
+        --step_, --steps_since_;
+        structure().load_values(now());
+        compute_modal_force();
+        Row momentum{};
+        for (const Bed& bed : beds_) momentum += momentum_of(bed);
+        structure().work_on_particles(momentum);
+        const Row body = structure().body_acceleration();
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            for (Chunk& c : beds_[b].chunks) integrators_[b].predict_again(c, dt_before, body_before_, body);
+            beds_[b].motion.displacement = beds_[b].output_displacement;
+        }
+        body_before_ = body;
+        advance_structure();
+    }
+
     // Computes the data of the next step that all workers need. Called by one worker.
     void prepare_step() {
         structure().load_values(now());
@@ -469,20 +512,7 @@ public:
         for (ContactLoop& loop : contact_loops_) loop.update_step();
         if (!began) return;
         load_work_ = work.load, base_work_ = work.base, viscous_ = work.viscous;
-        modes_ = output_modes_;
-        --step_, --steps_since_;
-        structure().load_values(now());
-        compute_modal_force();
-        Row momentum{};
-        for (const Bed& bed : beds_) momentum += momentum_of(bed);
-        structure().work_on_particles(momentum);
-        const Row body = structure().body_acceleration();
-        for (std::size_t b = 0; b < beds_.size(); ++b) {
-            for (Chunk& c : beds_[b].chunks) integrators_[b].predict_again(c, dt_before, body_before_, body);
-            beds_[b].motion.displacement = beds_[b].output_displacement;
-        }
-        body_before_ = body;
-        advance_structure();
+        predict_again(dt_before);
     }
 
     // Writes or reads all that the next step needs, in a fixed order.
@@ -506,24 +536,21 @@ public:
 
     // Reads a saved state. Throws if it is not a state of this case; the object must not be used after that.
     template <class Reader> void restore(Reader& reader) {
-        const std::vector<RestartCheck> fixed(beds_.begin(), beds_.end());
-        serialize(reader);
-        if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
-        const auto require = [](bool holds) {
-            if (!holds) throw std::invalid_argument("the state is damaged");
-        };
-        require(step_ >= 0 && step_ <= problem_.steps + 1 && steps_since_ >= 0);
-        require(stopped_cavity_ >= 0 && stopped_cavity_ < static_cast<int>(beds_.size()));
-        const Bed& where = at(beds_, stopped_cavity_);
-        require(RestartCheck::is_possible(status_) &&
-                RestartCheck::is_possible(stop_reason_, static_cast<int>(where.position.size()),
-                                          static_cast<int>(where.cavity->walls.size())));
-        for (const std::size_t size :
-             {modes_.size(), output_modes_.size(), modal_force_.size(), viscous_.size()})
-            require(size == problem_.modes.size());
-        require(load_work_.size() == signals_.size() && base_work_.size() == signals_.size());
-        for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], has_contact_forces());
-        for (Bed& bed : beds_) update_cavity_motion(bed);
+        read(reader);
+        require(step_ <= problem_.steps + 1);
+    }
+
+    // Reads the state at the last sample of a run with the same particles and structure, but another time step
+    // or other signals, and makes that sample the begin of this run: time, work and extremes count from there.
+    // Losses continue.
+    template <class Reader> void continue_from(Reader& reader, real dt_before) {
+        read(reader);
+        require(step_ > 0 && status_ == Status::finished && dt_before > 0 && dt_before < infinity);
+        step_ = 1, forces_known_at_ = -1, rebuilds_ = 0;
+        for (auto* sums : {&load_work_, &base_work_, &viscous_}) sums->assign(sums->size(), 0);
+        for (Bed& bed : beds_)
+            for (Chunk& c : bed.chunks) c.diagnostics.reset_extremes();
+        predict_again(dt_before);
     }
 
     // Whether the contact forces of the last step are stored; they are at the step where a call of run()

@@ -1293,6 +1293,11 @@ class Dem:
     def restore(self, bytes: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
         """Continue from a saved state."""
 
+    def continue_from(self, bytes: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], dt: float) -> None:
+        """
+        Start from the last sample of a run with the same particles and structure; dt is the step of that run.
+        """
+
     @property
     def status(self) -> Status: ...
 

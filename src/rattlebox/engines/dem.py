@@ -17,6 +17,7 @@ from rattlebox.core._core import Partner, Status
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.dem_run import DemRun
 from rattlebox.engines.dem_snapshots import plan_snapshots
+from rattlebox.engines.end_state import EndState, losses_from_zero
 from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolation_notes, particle_notes, table_notes
 from rattlebox.engines.status import describe, final_status
@@ -94,6 +95,46 @@ def simulate_dem(
         return _simulate(case, threads, progress, file, snapshots)
 
 
+def continue_dem(
+    case: Case, before: EndState | None, *, threads: int | None = None, progress: Progress | None = None
+) -> tuple[Run, EndState]:
+    """Run a case with particle dampers from the end of another run.
+
+    Particles, contacts with their history and the structure continue, and so does a harmonic load if the run before lasted
+    whole cycles. Time, work and losses count from the begin.
+
+    Parameters
+    ----------
+    case
+        Case with the particles, structure and contacts of the run before.
+    before
+        State at the end of the run before; None to start from the initial state of the case.
+    threads, progress
+        See `simulate_dem`.
+
+    Returns
+    -------
+    tuple of Run and EndState
+        The run, and its state at the end.
+
+    Raises
+    ------
+    CaseError
+        If the time step is too long, or the particles do not settle.
+    """
+    method = instance(case.method, Dem)
+    prepared = prepare(case, None if before is None else before.positions)
+    packed = pack_particles(prepared)
+    dem = _core.Dem(packed)
+    dem.threads = threads or method.threads or default_threads(packed)
+    active = DemRun(dem, packed, None, method)
+    if before is not None:
+        active.continue_from(before)
+    status = active.run(progress)
+    run = _result(case, prepared, packed, dem, status, active, continued=before is not None)
+    return run, EndState.of(dem, packed, active.records())
+
+
 def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
     """Raise if a file cannot be written, or both are the same."""
     if checkpoint is not None and checkpoint.is_dir():
@@ -145,9 +186,13 @@ def _result(
     dem: _core.Dem,
     status: Status,
     active: DemRun,
+    *,
+    continued: bool = False,
 ) -> Run:
     resolved_case, step = prepared.case, prepared.step
     raw, totals = active.records(), dem.counts()
+    if continued:
+        raw = losses_from_zero(raw)
     arrays = _arrays(resolved_case, packed, raw, dem)
     overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
     losses = (raw.normal_loss, raw.plastic_loss, raw.sliding_loss, raw.rolling_loss)

@@ -10,6 +10,7 @@ from rattlebox._util.exceptions import DataError
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.checkpoint import Checkpoint, CheckpointData, concatenate
+from rattlebox.engines.end_state import EndState
 from rattlebox.model.methods import Dem
 from rattlebox.results.snapshots import SnapshotFile
 
@@ -62,6 +63,11 @@ class DemRun:
             ) from None
         self._pieces = [data.records]
         self._earlier_seconds = data.seconds
+
+    def continue_from(self, end: EndState) -> None:
+        """Start from the end of another run, whose last sample is the first one of this run."""
+        self._dem.continue_from(end.state, end.dt)
+        self._pieces = [end.sample()]
 
     def add_snapshots(self, snapshots: SnapshotFile, steps: Sequence[int]) -> None:
         """Take snapshots at the given steps. Those before a resumed checkpoint must already be in the file.

@@ -26,22 +26,23 @@ _DISPLACEMENTS = "amplitude", "peak", "rms", "bare_amplitude"
 
 def plot_frequency_response(
     response: xarray.Dataset,
-    of: str | Sequence[str] = ("amplitude", "impacts_per_cycle"),
+    of: str | Sequence[str] | None = None,
     *,
     per_level: bool = False,
     size: Size = "column",
 ) -> Figure:
     """Draw measures of the steady motion over frequency, one colour per level and one panel per measure.
 
-    Upward sweeps are solid lines and downward sweeps dashed; the area between two coexisting motions is shaded. Crosses mark
-    motions that are not periodic.
+    Upward sweeps are solid lines and downward sweeps dashed; the area between two coexisting motions is shaded, and so are
+    the 95 % intervals. Crosses mark motions of impact dampers that are not periodic.
 
     Parameters
     ----------
     response
         Dataset from `rattlebox.frequency_response`.
     of
-        Measures: "amplitude", "peak", "rms", "phase", "impacts_per_cycle", or another measure of the dataset.
+        Measures: "amplitude", "peak", "rms", "phase", "impacts_per_cycle", or another measure of the dataset; default
+        "amplitude" and "impacts_per_cycle", or "phase" for particle dampers.
     per_level
         Whether to divide displacements by the level, so that the curves of a linear structure coincide.
     size
@@ -59,6 +60,8 @@ def plot_frequency_response(
     ValueError
         If the size is unknown.
     """
+    if of is None:
+        of = "amplitude", "impacts_per_cycle" if "impacts_per_cycle" in response else "phase"
     names = [of] if isinstance(of, str) else list(of)
     for name in names:
         if name not in response or response[name].dims != ("direction", "level", "frequency"):
@@ -97,8 +100,13 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
         for direction in response.direction.values:
             line = lines.sel(direction=direction)
             axes.plot(frequency, line, color=colour, ls=_STYLES[str(direction)])
-            irregular = line.where(response.period.sel(level=level, direction=direction) == 0)
-            axes.plot(frequency, irregular, "x", ms=pen(2.5), mew=pen(0.5), color=colour)
+            if f"{name}_interval" in response:
+                half = response[f"{name}_interval"].sel(level=level, direction=direction) / divisor
+                half = half / level if per_level else half
+                axes.fill_between(frequency, line - half, line + half, color=colour, alpha=0.4, lw=0)
+            if _has_impacts(response):
+                irregular = line.where(response.period.sel(level=level, direction=direction) == 0)
+                axes.plot(frequency, irregular, "x", ms=pen(2.5), mew=pen(0.5), color=colour)
     text = str(response[name].attrs["long_name"])
     label(axes, "y", text[0].upper() + text[1:] + " over level" * per_level, prefixed)
 
@@ -119,5 +127,11 @@ def _line_handles(response: xarray.Dataset) -> list[Line2D | Patch]:
     ]
     if {"up", "down"} <= set(directions):
         handles.append(Patch(color=INK, alpha=0.25, lw=0, label="coexisting"))
-    handles.append(Line2D([], [], color=INK, ls="", marker="x", ms=pen(2.5), mew=pen(0.5), label="irregular"))
+    if _has_impacts(response):
+        handles.append(Line2D([], [], color=INK, ls="", marker="x", ms=pen(2.5), mew=pen(0.5), label="irregular"))
     return [*handles, Line2D([], [], color=FAINT, lw=pen(0.8), label="no damper")]
+
+
+def _has_impacts(response: xarray.Dataset) -> bool:
+    """Return whether motions may repeat: those of particles do not."""
+    return "impacts_per_cycle" in response

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -16,7 +16,7 @@ from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
 
-from .blocks import Blocks
+from .along_last import AlongLast
 from .case_work import Extra
 from .gather_variants import gather_values, gather_variants
 from .grid import Grid
@@ -52,19 +52,12 @@ def without_states(runs: xarray.Dataset) -> xarray.Dataset:
 
 
 @dataclass
-class ContinuationWork(ImpactWork):
+class ContinuationWork(AlongLast, ImpactWork):
     """Variants along the last dimension of a grid, each of which starts from the final state of its predecessor.
 
     A slow sweep thus stays on its attractor until the attractor disappears, as in an experiment. The load continues without
     a break: each variant lasts whole cycles. The first variant starts from the initial state of the case. A variant that
     does not finish leaves the state unchanged.
-
-    Attributes
-    ----------
-    directions
-        Directions of the first dimension: "up" runs the variants in their order, "down" in reverse.
-    turn_back
-        Whether the second direction starts from the final state of the first one.
 
     Notes
     -----
@@ -73,34 +66,10 @@ class ContinuationWork(ImpactWork):
     If there is no such time, balls are moved to the wall that they touch.
     """
 
-    directions: tuple[str, ...] = ("up",)
-    turn_back: bool = False
-
     @classmethod
-    def along(
-        cls, case: Case, grid: Grid, *, directions: Sequence[str], turn_back: bool = False, **options: Any
-    ) -> Self:
-        """Return the continuation along the last dimension of a grid.
-
-        Parameters
-        ----------
-        case
-            Base case.
-        grid
-            Grid of the variants, to which the dimension "direction" is added.
-        directions, turn_back
-            See `ContinuationWork`.
-        **options
-            Further attributes, see `ImpactWork`.
-        """
-        coordinate = "direction", np.array(directions), {"long_name": "direction"}
-        full_grid = Grid(
-            ("direction", *grid.dims),
-            (len(directions), *grid.shape),
-            {path: column[None] for path, column in grid.columns.items()},
-            {"direction": coordinate, **grid.coords()},
-        )
-        return cls(case, full_grid, state=True, directions=tuple(directions), turn_back=turn_back, **options)
+    def along(cls, case: Case, grid: Grid, **options: Any) -> Self:
+        """Return the continuation along the last dimension of a grid; see `AlongLast.along`."""
+        return super().along(case, grid, **options, state=True)
 
     @property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
@@ -110,8 +79,7 @@ class ContinuationWork(ImpactWork):
 
     def describe(self) -> dict[str, Any]:
         """Return a description of everything except the grid, in JSON types."""
-        options = {"directions": list(self.directions), "turn_back": self.turn_back}
-        return {"study": "continuation", **super().describe(), **options}
+        return {"study": "continuation", **super().describe()}
 
     def validate(self) -> None:
         """Raise if the loads are not periodic with the first one, or an argument is not valid.
@@ -143,10 +111,6 @@ class ContinuationWork(ImpactWork):
                     "harmonics without start and stop, the slowest one first, the others at multiples of its frequency",
                 )
 
-    def direction(self, index: int) -> str:
-        """Return the direction of a variant."""
-        return self.directions[index * len(self.directions) // self.size]
-
     def step(self, before: _States | None, members: Members, cancelled: Callable[[], bool] | None) -> Values | None:
         """Run one variant of each chain.
 
@@ -176,18 +140,6 @@ class ContinuationWork(ImpactWork):
         closed = finished & step.has_closed_contact(after.state)
         after = step.open_states(after, closed)
         return {**values, "state": after.state, "lead": after.lead}
-
-    def chains(self, blocks: Blocks) -> list[list[int]]:
-        """Return the numbers of the blocks of each chain in order of execution."""
-        rows = np.arange(len(blocks)).reshape(len(self.directions), -1, blocks.counts[-1])
-        chains = [row if way == "up" else row[:, ::-1] for way, row in zip(self.directions, rows, strict=True)]
-        if self.turn_back:
-            chains = [np.concatenate(chains, axis=1)]
-        return [chain.tolist() for rows in chains for chain in rows]
-
-    def order(self, start: int, stop: int) -> range:
-        """Return the variants of a block in order of execution."""
-        return range(start, stop) if self.direction(start) == "up" else range(stop - 1, start - 1, -1)
 
     def run(
         self,

@@ -284,11 +284,11 @@ class ParticleWork(CaseWork):
 
     def columns(self, rows: Mapping[int, Mapping[str, Any]], start: int, stop: int) -> Values:
         """Return each output of a range of variants; those without a row have the status "refused"."""
-        missing = {"status": Status.refused, "warnings": 0}
 
         def column(name: str) -> NDArray[Any]:
             extra, kind, _ = self.outputs[name]
-            empty = np.full([length for _, length in extra], missing.get(name, np.nan))
+            missing = Status.refused if name == "status" else 0 if np.dtype(kind).kind == "i" else np.nan
+            empty = np.full([length for _, length in extra], missing)
             return np.array([rows.get(index, {}).get(name, empty) for index in range(start, stop)], kind)
 
         return {name: column(name) for name in self.outputs}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
@@ -120,7 +120,15 @@ class MemoryResult:
     def __exit__(self, *_: object) -> None:
         pass
 
-    def write(self, block: int, values: Mapping[str, NDArray[Any]]) -> None:
+    def has_state(self, block: int) -> bool:
+        """Return whether the state at the end of a block is stored; never in memory, where no study resumes."""
+        return False
+
+    def state(self, block: int) -> dict[str, NDArray[Any]]:
+        """Return the state at the end of a block: none."""
+        return {}
+
+    def write(self, block: int, values: Mapping[str, NDArray[Any]], stale: Sequence[int] = ()) -> None:
         """Store the outputs of a block."""
         region, sides = self.blocks.region(block), self.blocks.sides(block)
         for name, array in self._arrays.items():

@@ -19,7 +19,7 @@ from .backends import make_backend, wait_for
 from .blocks import Blocks
 from .plan import MemoryResult, Plan
 from .store import RESERVED, Store
-from .work import Chain, ChainedWork, Values, Work, make_chains
+from .work import Block, Chain, ChainedWork, Values, Work, make_chains
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -105,13 +105,14 @@ def run_work(
             writer = stack.enter_context(ThreadPoolExecutor(1))
             report.advance(result.done, work.size)
             chains = [
-                Chain(left, None if variant is None else _values_of(result, plan, variant))
-                for left, variant in make_chains(work, result.blocks, result.finished)
+                Chain(left, None if before is None else _values_after(work, result, plan, before))
+                for left, before in make_chains(work, result.blocks, result.finished, result.has_state)
             ]
+            stale = _stale_states(work, result.blocks)
             finished = executor.run(work, chains)
             stack.callback(finished.close)
             for done, values in finished:
-                wait_for(writer.submit(result.write, done.number, values))
+                wait_for(writer.submit(result.write, done.number, values, stale.get(done.number, ())))
                 report.advance(result.done, work.size)
             return result.result()
     except KeyboardInterrupt:
@@ -126,11 +127,25 @@ def _partition(work: Work, plan: Plan, block: int | None) -> Blocks:
     return Blocks.of(plan.shape, min(size, plan.shape[-1]) if isinstance(work, ChainedWork) else size)
 
 
-def _values_of(result: MemoryResult | Store, plan: Plan, variant: int) -> Values:
-    """Return the outputs of a variant, with a dimension of length one for it."""
-    place = map(int, np.unravel_index(variant, plan.shape))
+def _values_after(work: Work, result: MemoryResult | Store, plan: Plan, block: Block) -> Values:
+    """Return the outputs and states of the last variant of a block, with a dimension of length one for it."""
+    last = work.order(block.start, block.stop)[-1] if isinstance(work, ChainedWork) else block.stop - 1
+    place = map(int, np.unravel_index(last, plan.shape))
     data = result.result().isel(dict(zip(plan.dims, place, strict=True)))
-    return {str(name): values.values[None] for name, values in data.data_vars.items()}
+    outputs = {str(name): values.values[None] for name, values in data.data_vars.items()}
+    return {**outputs, **result.state(block.number)}
+
+
+def _stale_states(work: Work, blocks: Blocks) -> dict[int, list[int]]:
+    """Return the blocks whose states are no longer needed when a block is written, by its number.
+
+    The state before the last one remains: if the process is killed while a block is written, it starts from there.
+    """
+    stale: dict[int, list[int]] = {}
+    for chain in work.chains(blocks) if isinstance(work, ChainedWork) and work.has_states else ():
+        stale |= {block: [before] for before, block in zip(chain, chain[2:], strict=False)}
+        stale[chain[-1]] = chain[-3:]
+    return stale
 
 
 def _core() -> str:

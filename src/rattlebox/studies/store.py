@@ -7,7 +7,9 @@ import os
 import re
 import socket
 import warnings
-from collections.abc import Iterator, Mapping
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import DataError, ResourceError, StoreError
 from rattlebox._util.owned_folder import (
     MARKER,
@@ -92,8 +95,32 @@ class Store:
     def __exit__(self, *_: object) -> None:
         self._lock.close()
 
-    def write(self, block: int, values: Mapping[str, NDArray[Any]]) -> None:
-        """Write the outputs of a block to the disk.
+    def has_state(self, block: int) -> bool:
+        """Return whether the state at the end of a block is on disk, undamaged."""
+        return bool(self.state(block))
+
+    def state(self, block: int) -> dict[str, NDArray[Any]]:
+        """Return the arrays of a block that are not outputs; empty if they are missing or damaged."""
+        try:
+            with self._state_file(block).open("rb") as content, np.load(content, allow_pickle=False) as file:
+                return {name: file[name] for name in file.files}
+        except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error):
+            return {}
+
+    def _state_file(self, block: int) -> Path:
+        return self.path / _PROGRESS / f"state-{block}.npz"
+
+    def write(self, block: int, values: Mapping[str, NDArray[Any]], stale: Sequence[int] = ()) -> None:
+        """Write the outputs of a block to the disk, and before them its further arrays, the state at its end.
+
+        Parameters
+        ----------
+        block
+            Number of the block.
+        values
+            Its outputs and further arrays.
+        stale
+            Blocks whose states are then removed.
 
         Raises
         ------
@@ -106,11 +133,16 @@ class Store:
         with _explain_disk_errors(self.path):
             if not (self.path / MARKER).is_file():
                 raise StoreError(f"{self.path} was removed while the study ran", "the same command again")
+            if state := {name: values[name] for name in values if name not in self._arrays}:
+                with atomic_write(self._state_file(block)) as temporary, temporary.open("wb") as file:
+                    np.savez(file, allow_pickle=False, **state)
             for name, array in self._arrays.items():
                 # Without this, Zarr would read a chunk that may be damaged.
                 (self.path / self._chunks.key(name, block)).unlink(missing_ok=True)
                 array[region] = values[name].reshape((*sides, *values[name].shape[1:]))
         self.finished[block] = True
+        for other in stale:
+            self._state_file(other).unlink(missing_ok=True)
 
     @property
     def done(self) -> int:

@@ -70,7 +70,15 @@ class Work(Protocol):
 
 @runtime_checkable
 class ChainedWork(Work, Protocol):
-    """Work in which a variant starts from the final state of another one, along the last dimension."""
+    """Work in which a variant starts from the final state of another one, along the last dimension.
+
+    `run` may return arrays that are not outputs, variants first: states of any size, which a store holds only until the
+    next variant is finished.
+    """
+
+    @property
+    def has_states(self) -> bool:
+        """Whether `run` returns and needs arrays that are not outputs."""
 
     def chains(self, blocks: Blocks) -> list[list[int]]:
         """Return the numbers of the blocks of each chain in their order; chains are independent of each other."""
@@ -130,7 +138,9 @@ def last_values(work: Work, block: Block, values: Values) -> Values | None:
     return {name: array[last : last + 1] for name, array in values.items()}
 
 
-def make_chains(work: Work, blocks: Blocks, finished: NDArray[np.bool_]) -> list[tuple[list[Block], int | None]]:
+def make_chains(
+    work: Work, blocks: Blocks, finished: NDArray[np.bool_], has_state: Callable[[int], bool]
+) -> list[tuple[list[Block], Block | None]]:
     """Return the blocks that remain to be computed, by chain.
 
     Parameters
@@ -141,20 +151,26 @@ def make_chains(work: Work, blocks: Blocks, finished: NDArray[np.bool_]) -> list
         Its blocks.
     finished
         Whether each block is finished, (len(blocks),).
+    has_state
+        Function that returns whether the state at the end of a block is known, by the number of the block. Chains that
+        need an unknown state run again from their begin, or from the last known one.
 
     Returns
     -------
     list of tuple
-        Blocks of each chain that has some left, in order, and the number of the variant that precedes the first of them, or
-        None at the beginning of the chain.
+        Blocks of each chain that has some left, in order, and the block that precedes the first of them, or None at the
+        begin of the chain.
     """
     numbers = work.chains(blocks) if isinstance(work, ChainedWork) else [[number] for number in range(len(blocks))]
-    chains: list[tuple[list[Block], int | None]] = []
+    chains: list[tuple[list[Block], Block | None]] = []
     for chain in numbers:
         done = int(np.argmin([*finished[chain], False]))
-        before = None
-        if isinstance(work, ChainedWork) and done:
-            before = work.order(*blocks.range(chain[done - 1]))[-1]
-        if done < len(chain):
-            chains.append(([Block(number, *blocks.range(number)) for number in chain[done:]], before))
+        if done == len(chain):
+            continue
+        if isinstance(work, ChainedWork) and work.has_states:
+            while done and not has_state(chain[done - 1]):
+                done -= 1
+        left = [Block(number, *blocks.range(number)) for number in chain]
+        before = left[done - 1] if isinstance(work, ChainedWork) and done else None
+        chains.append((left[done:], before))
     return chains

@@ -100,6 +100,20 @@ def test_particle_runs(local: Client) -> None:
     assert (here.status == 0).all()
 
 
+def test_stepped_sines_of_particles(local: Client) -> None:
+    """The state of the particles travels from one frequency to the next between workers, with the bits of this process."""
+    case = rb.Case.from_file(EXAMPLE.with_name("steel_balls_in_a_box.toml")).model_copy(
+        update={"loads": (rb.Harmonic(amplitude="500 N", frequency="10 Hz", unit="N"),), "output": rb.Output()}
+    )
+    options: dict[str, Any] = {"cycles": (0, 1), "samples": 16, "progress": False}
+    here, there = (
+        rb.frequency_response(case, [10.0, 12.0], direction="up", backend=backend, **options)
+        for backend in ("threads", local)
+    )
+    assert bits(here.drop_vars("direction")) == bits(there.drop_vars("direction"))
+    assert (here.status == 0).all()
+
+
 def spin_energy(run: rb.Run) -> float:
     """Return the rotational energy of all particles at the end [J]."""
     return float(run.arrays.rotation_energy[-1].sum())  # type: ignore[attr-defined]

@@ -10,6 +10,7 @@ import time
 import weakref
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support import logistic_study
@@ -131,3 +132,52 @@ def test_two_processes_on_one_store(tmp_path: Path) -> None:
     process.kill()
     process.communicate()
     assert bits(run_work(Logistic(), store=store)) == bits(run_work(Logistic()))
+
+
+PARTICLES = """
+import sys
+import rattlebox as rb
+
+case = rb.Case(
+    structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping="20 N s/m"),
+    damper=rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="6 mm", count=12),
+        cavity=rb.Box(size=("20 mm", "20 mm", "24 mm")),
+        contact=rb.Tsuji(restitution=0.7),
+        direction="z",
+        packing=rb.Settled(seed=1),
+        softening=1000,
+    ),
+    load=rb.Harmonic(amplitude="10 N", frequency="30 Hz"),
+    duration="1 s",
+)
+
+
+def response(store, progress):
+    return rb.frequency_response(
+        case, rb.linspace("26 Hz", "32 Hz", 10), cycles=(5, 5), samples=16, workers=2, store=store, progress=progress
+    )
+
+
+if __name__ == "__main__":
+    response(sys.argv[1], False)
+"""
+
+
+def test_a_killed_sweep_with_particles_continues_within_it(tmp_path: Path) -> None:
+    """Stepped sines killed twice continue from their last frequencies, with the bits of those that ran through."""
+    script, store = tmp_path / "response.py", tmp_path / "response.zarr"
+    script.write_text(PARTICLES)
+    done = 0
+    for _ in range(2):
+        with subprocess.Popen([sys.executable, str(script), str(store)]) as process:
+            wait_for(has_begun(store, done + 3))
+            process.kill()
+        before, done = done, progress_of(store).done
+        assert before < done < 20
+    names: dict[str, Any] = {}
+    exec(PARTICLES.replace("__main__", "never"), names)
+    steps: list[int] = []
+    resumed = names["response"](store, lambda n, _: steps.append(n))
+    assert steps[0] == done
+    assert bits(resumed) == bits(names["response"](None, False))

@@ -11,17 +11,21 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
+from rattlebox.model.particle_case import direction_of_base, inertia_along
+from rattlebox.model.space import unit_vector
 from rattlebox.model.units import Whole
+from rattlebox.prepare.particles import resolve_softening
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.continuation import ContinuationWork, without_states
 from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.kinds.sweep import result_notes
 from rattlebox.studies.measures import interval_warning, with_required
-from rattlebox.studies.orbits import period_of
+from rattlebox.studies.observed import Observed
+from rattlebox.studies.response_work import QUANTITIES, ParticleContinuation, ParticleResponse, steady_motion
 from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
@@ -36,7 +40,7 @@ from rattlebox.studies.study import (
 if TYPE_CHECKING:
     import xarray
 
-_MEASURES = "peak", "rms", "impacts_per_cycle"
+_MEASURES = "peak", "rms"
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -44,8 +48,8 @@ class FrequencyResponse(Study):
     """Compute the steady motion under a harmonic load over frequency, at one or several levels of the load.
 
     If two steady motions coexist at a frequency, an upward and a downward sweep often reach both: each sweep starts from the
-    initial state of the case, and each further frequency from the final state of the one before. A sweep stays on its
-    motion until this disappears, and then jumps to the other one.
+    initial state of the case, and each further frequency from the final state of the one before, with all particles and
+    contacts. A sweep stays on its motion until this disappears, and then jumps to the other one.
 
     Parameters
     ----------
@@ -60,13 +64,15 @@ class FrequencyResponse(Study):
     cycles
         Numbers of cycles of each frequency to skip until the motion is steady, and to evaluate.
     measure
-        Names of further measures (`rb.MEASURES`).
+        Names of further measures (`rb.MEASURES`). Measures of single impacts do not exist for particle dampers.
     point
-        Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
+        Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper,
+        for particle dampers in its direction.
     samples
         Number of samples per cycle. The relative error of `peak` is (pi/samples)^2/2, 0.12 % for 64.
     tolerance
-        Largest difference between positions of structure and balls one period apart, over their range.
+        Largest difference between positions of the structure and of the balls of impact dampers one period apart, over
+        their range.
     workers, backend, store, progress
         Execution and storage; see `rattlebox.studies.study.Study`.
 
@@ -74,10 +80,13 @@ class FrequencyResponse(Study):
     -------
     xarray.Dataset
         Over `direction`, `level` and `frequency` [Hz]: `status`; `peak` and `rms` [m]; `amplitude` [m] and `phase` [rad] of
-        the first harmonic, amplitude sin(2 pi f t + phase of the load + phase); `impacts_per_cycle`; `spread`, the largest
-        difference of positions one cycle apart, over their range; `period` in cycles, 0 if it exceeds half of the
-        evaluated cycles or does not exist; the requested measures. Over level and frequency: `bare_amplitude` [m] of the
-        structure without dampers.
+        the first harmonic, amplitude sin(2 pi f t + phase of the load + phase); `impacts_per_cycle` (impact dampers only);
+        `spread`, the largest difference of positions one cycle apart, over their range; `period` in cycles, 0 if it exceeds
+        half of the evaluated cycles or does not exist; the requested measures. Averages have a companion such as
+        `amplitude_interval`, half of the width of their 95 % interval; if the cycles are too few it is NaN, and
+        `attrs["too_short"]` names them. With particle dampers also `warnings`, the exceeded validity limits of each run
+        (`flag_meanings`); see `rb.sweep` for frequencies that cannot run. Over level and frequency: `bare_amplitude` [m] of
+        the structure without dampers.
 
     Raises
     ------
@@ -127,20 +136,28 @@ class FrequencyResponse(Study):
         return read_axes(self.case, axes, source="frequency_response")
 
     @cached_property
-    def work(self) -> ImpactWork:
-        """Runs of all frequencies and levels, with samples of their motion."""
+    def work(self) -> ImpactWork | ParticleResponse:
+        """Runs of all frequencies and levels."""
+        particles = bool(self.case.particle_dampers)
         options: dict[str, Any] = {
-            "measures": with_required(_MEASURES, self.measure),
+            "measures": with_required((*_MEASURES, *["impacts_per_cycle"] * (not particles)), self.measure),
             "cycles": self.cycles,
             "samples": self.samples * self.cycles[1] + 1,
             "point": self.point,
-            "motion": True,
             "intervals": True,
         }
+        if particles:
+            options |= {"phase": self._driver[1].phase, "tolerance": self.tolerance}
+        else:
+            options["motion"] = True
         if self.direction == "fresh":
-            return ImpactWork(self.case, self.grid, **options)
+            return (ParticleResponse if particles else ImpactWork)(self.case, self.grid, **options)
         directions = ("up", "down") if self.direction == "both" else (self.direction,)
-        return ContinuationWork.along(self.case, self.grid, directions=directions, **options)
+        continuation: type[ParticleContinuation | ContinuationWork] = (
+            ParticleContinuation if particles else ContinuationWork
+        )
+        case = _same_softening(self.case, self.grid) if particles else self.case
+        return continuation.along(case, self.grid, directions=directions, **options)
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
@@ -152,12 +169,17 @@ class FrequencyResponse(Study):
     def compute(self) -> xarray.Dataset:
         """Run all frequencies and evaluate their steady motion; see `Study.compute`."""
         place, driver = self._driver
-        bare = _bare(ImpactWork(self.case, self.grid, cycles=(0, 1), point=self.point))
         runs = self.run_work(self.work)
-        runs = runs.expand_dims(direction=["fresh"]) if self.direction == "fresh" else without_states(runs)
-        runs = runs.rename({f"{place}.frequency": "frequency", f"{place}.amplitude": "level"}).load()
-        found = _steady(runs, driver.phase, self.samples, self.tolerance)
-        units = found.amplitude.attrs["units"]
+        notes = result_notes(self.work, runs)
+        units = self.work.units_of("m")
+        if self.direction == "fresh":
+            runs = runs.expand_dims(direction=["fresh"])
+        elif isinstance(self.work, ContinuationWork):
+            runs = without_states(runs)
+        found = runs.rename({f"{place}.frequency": "frequency", f"{place}.amplitude": "level"}).load()
+        if not self.case.particle_dampers:
+            found = _steady(found, driver.phase, self.samples, self.tolerance, units)
+        bare = _bare(self.case, driver, found.frequency.values, found.level.values, self.point)
         found["bare_amplitude"] = (
             ("level", "frequency"),
             bare,
@@ -167,7 +189,7 @@ class FrequencyResponse(Study):
         load = "load" if place.startswith("load") else "base"
         found.level.attrs["long_name"] = f"amplitude of the {load}"
         about = {"title": "Frequency response", "case": self.case.to_toml(), "cycles": list(self.cycles)}
-        found.attrs = about | interval_warning(found)
+        found.attrs = about | notes | interval_warning(found)
         return save_result(found, self.kind, self.store)
 
 
@@ -190,40 +212,54 @@ def _driver(case: Case) -> tuple[str, Harmonic]:
     return harmonics[0]
 
 
-def _bare(task: ImpactWork) -> NDArray[np.float64]:
+def _same_softening(case: Case, grid: Grid) -> Case:
+    """Return a case with the smallest value of each softening "auto" at all levels and frequencies.
+
+    Contacts would otherwise change their stiffness between two frequencies.
+    """
+    if all(damper.softening != "auto" for damper in case.particle_dampers):
+        return case
+    values = []
+    for index in range(grid.size):
+        resolved, _ = resolve_softening(grid.case_at(case, index))
+        values.append([damper.softening_factor for damper in resolved.particle_dampers])
+    dampers = [
+        damper.model_copy(update={"softening": float(value)})
+        for damper, value in zip(case.particle_dampers, np.min(values, axis=0), strict=True)
+    ]
+    return case.model_copy(update={"dampers": tuple(dampers)})
+
+
+def _bare(
+    case: Case, driver: Harmonic, frequency: NDArray[np.float64], level: NDArray[np.float64], point: str | None
+) -> NDArray[np.float64]:
     """Return the amplitude of the structure without dampers, (levels, frequencies) [m]."""
-    packed = task.packed
-    load, signal = next((load, load.signal) for load in packed.loads if isinstance(load.signal, _core.Harmonic))
-    omega = signal.frequency
-    dynamic: NDArray[np.complex128] = packed.mode_stiffness - omega**2 + 2j * packed.mode_decay * omega
-    coupling = task.case.modes.coupling
-    if coupling is None:
-        motion = load.shape / dynamic
+    modes = case.modes
+    if driver in case.loads:
+        force = modes.shape(driver.point, driver.direction)
+    elif case.particle_dampers:
+        force = -inertia_along(case, direction_of_base(case, driver))
     else:
-        matrix = np.moveaxis(1j * np.asarray(omega) * coupling[..., None, None], (0, 1), (-2, -1))
-        matrix = matrix + np.moveaxis(dynamic, 0, -1)[..., None] * np.eye(len(coupling))
-        force = np.broadcast_to(np.moveaxis(load.shape, 0, -1), matrix.shape[:-1])
-        solution = np.linalg.solve(matrix, force[..., None])[..., 0]
-        motion = np.moveaxis(np.asarray(solution, np.complex128), -1, 0)
-    response = np.sum(task.output.shape * motion, axis=0)
-    return np.asarray(np.broadcast_to(np.abs(signal.amplitude * response), task.grid.shape))
+        force = -np.asarray(modes.participation)
+    if point is not None or not case.dampers:
+        named = Observed.of(modes, modes.point(None) if point is None else point)
+        observed = named.shape(modes.lines(), modes.decay.size)
+    elif case.particle_dampers:
+        first = case.particle_dampers[0]
+        observed = modes.space_shape(first.point, first.direction) @ unit_vector(first.direction)
+    else:
+        observed = modes.shape(case.dampers[0].point)
+    response = modes.harmonic_response(2 * np.pi * frequency, force[:, None])[:, :, 0] @ observed
+    return np.abs(response) * np.abs(level[:, None])
 
 
-def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) -> xarray.Dataset:
-    """Return the first harmonic and the period of sampled motions."""
-    z, place = maps.displacement.values, maps.relative_position.values
-    turns = np.exp(-2j * np.pi * np.arange(z.shape[-1] - 1) / samples)
-    harmonic = 2j / turns.size * (z[..., :-1] @ turns) * np.exp(-1j * phase)
+def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float, units: str) -> xarray.Dataset:
+    """Return the quantities of sampled steady motions in place of the samples."""
+    place = maps.relative_position.values
     place = np.where(maps.impacts_per_cycle.values[..., None, None] > 0, place, 0.0)  # without impacts a ball drifts
-    parts = np.concatenate([z[..., None], place], axis=-1)
-    with np.errstate(invalid="ignore"):  # of runs that failed
-        strobes = parts[..., ::samples, :] / np.ptp(parts, axis=-2).max(axis=-1)[..., None, None]
-        period, _ = period_of(strobes, tolerance)
-        spread = np.abs(np.diff(strobes, axis=-2)).max(axis=(-2, -1))
-    over, units = maps.status.dims, maps.displacement.attrs["units"]
-    return maps.drop_dims(["instant", "ball"]).assign(
-        amplitude=(over, np.abs(harmonic), {"units": units, "long_name": "amplitude of the first harmonic"}),
-        phase=(over, np.angle(harmonic), {"units": "rad", "long_name": "phase to the load"}),
-        spread=(over, spread, {"units": "1", "long_name": "spread of strobes over the range of motion"}),
-        period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),
-    )
+    values = steady_motion(maps.displacement.values, place, phase, samples, tolerance)
+    found = {
+        name: (maps.status.dims, values[name], {"units": units if unit == "m" else unit, "long_name": text})
+        for name, (_, unit, text) in QUANTITIES.items()
+    }
+    return maps.drop_dims(["instant", "ball"]).assign(found)

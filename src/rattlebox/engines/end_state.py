@@ -1,0 +1,77 @@
+"""State at the end of a particle run, from which a run with another load continues."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.core import _core
+
+_FROM_ZERO = ("time", "load_work", "base_work", "viscous_loss")
+"""Samples that the core counts from the begin of a continued run."""
+
+LOSSES = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
+"""Samples that the core continues to count."""
+
+
+@dataclass(frozen=True)
+class EndState:
+    """State at the end of a particle run: particles, contacts with their history, and structure.
+
+    Attributes
+    ----------
+    state : (bytes,) uint8
+        State of the core.
+    dt
+        Time step of the run [s].
+    positions
+        Initial positions of the particles of each damper, (n, 3) [m], for packing.
+    samples : dict of str to (1, ...) array
+        Last sample.
+    """
+
+    state: NDArray[np.uint8]
+    dt: float
+    positions: tuple[NDArray[np.float64], ...]
+    samples: Mapping[str, NDArray[Any]]
+
+    @classmethod
+    def of(cls, dem: _core.Dem, packed: _core.DemProblem, records: _core.Records) -> Self:
+        """Return the state of a run at its end, with the samples so far."""
+        samples = {name: getattr(records, name)[-1:].copy() for name in _core.Records.fields()}
+        positions = tuple(np.asarray(cavity.position) for cavity in packed.cavities)
+        return cls(np.array(dem.save()), packed.dt, positions, samples)
+
+    def sample(self) -> _core.Records:
+        """Return the last sample as the first one of a run that continues."""
+        values = {name: np.zeros_like(v) if name in _FROM_ZERO else v for name, v in self.samples.items()}
+        return _core.Records(**values)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the state as arrays with a first dimension of length one, by name."""
+        positions = {f"position.{k}": position[None] for k, position in enumerate(self.positions)}
+        samples = {f"sample.{name}": values for name, values in self.samples.items()}
+        return {"state": self.state[None], "dt": np.array([self.dt]), **positions, **samples}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> Self | None:
+        """Return the state of `arrays`; None if they do not hold one."""
+        if "state" not in arrays:
+            return None
+        count = sum(name.startswith("position.") for name in arrays)
+        samples = {name.removeprefix("sample."): v for name, v in arrays.items() if name.startswith("sample.")}
+        return cls(
+            np.ascontiguousarray(arrays["state"][0]),
+            float(arrays["dt"][0]),
+            tuple(arrays[f"position.{k}"][0] for k in range(count)),
+            samples,
+        )
+
+
+def losses_from_zero(records: _core.Records) -> _core.Records:
+    """Return the samples of a continued run with losses that count from its first sample."""
+    return records.replace(**{name: getattr(records, name) - getattr(records, name)[:1] for name in LOSSES})
