@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import io
+import math
 import pkgutil
 import sys
 from collections.abc import Callable, Iterator
@@ -307,3 +308,38 @@ def test_an_implausible_peak_in_a_stated_unit(tmp_path: Path, unit: str, implaus
     good = GOOD["two columns"]
     notes = plausibility_notes(read_file(tmp_path, good, table(f"time (s),acceleration ({unit})", TIMES, VALUES)))
     assert any(note.startswith("warning") and "peak of" in note for note in notes) == implausible
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("modal table", ("Hz is assumed, up to 25 Hz", "shares of one are assumed, up to 0.02", "kg^-0.5, at tip")),
+        ("Ansys result", ("kg is assumed", "kg^-0.5, at a")),
+        ("Ansys matrices", ("kg is assumed", "kg^-0.5, at a")),
+        ("Matrix Market", ("kg and N/m are assumed", "M up to 2 kg", "K up to 3e+04 N/m", "frequency of 11.25 Hz")),
+        ("NPZ matrices", ("kg and N/m are assumed", "M up to 2 kg", "K up to 3e+04 N/m", "frequency of 11.25 Hz")),
+        ("MAT matrices", ("kg and N/m are assumed", "M up to 2 kg", "K up to 3e+04 N/m", "frequency of 11.25 Hz")),
+        ("positions", ("m is assumed", "up to 0.004 m")),
+    ],
+)
+def test_structures_and_positions_without_unit(tmp_path: Path, name: str, words: tuple[str, ...]) -> None:
+    """Every unit that is assumed is noted with the largest value."""
+    good = GOOD[name]
+    content = good.content
+    if name == "modal table":
+        content = b"frequency,damping,tip\n10,0.01,2\n25,0.02,-3\n"
+        good = good._replace(case=MODAL.replace("damping_ratio = 0.01\n", "") + 'file = "FILE"\n')
+    notes = "\n".join(plausibility_notes(read(tmp_path, good, content)))
+    for word in words:
+        assert word in notes, notes
+
+
+@pytest.mark.parametrize("factor", [1000.0, 1e-3])
+def test_mis_scaled_files_show_their_scale(tmp_path: Path, factor: float) -> None:
+    """Files in other units than those that are assumed are read, and their notes state values that show it."""
+    matrices = GOOD["NPZ matrices"]
+    notes = plausibility_notes(read(tmp_path, matrices, saved(np.savez, K=factor * K, M=M)))
+    assert any(f"frequency of {11.254 * math.sqrt(factor):.4g} Hz" in note for note in notes), notes
+    content = table("frequency (Hz),real,imag", 1 + TIMES, factor * VALUES, VALUES)
+    with pytest.warns(UserWarning, match=f"largest magnitude is {np.abs(factor * VALUES + 1j * VALUES).max():.4g}"):
+        read(tmp_path, GOOD["response function"], content)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
+from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -10,6 +13,7 @@ from pydantic import Field, model_serializer, model_validator
 
 from rattlebox._util.exceptions import DataError
 from rattlebox.exchange.read.matrix_market import read_matrix
+from rattlebox.exchange.read.modes_in_file import listed
 
 from .elementwise import Vector
 from .errors import Hint, at, nearest
@@ -155,6 +159,21 @@ class Matrices(DampedModes):
             When a matrix is missing or describes no structure, naming the file and what it holds.
         """
         return cls(**{"file": os.fspath(path), **options})
+
+    def notes(self) -> Iterator[str]:
+        """Yield the units that are assumed for matrices from files, which state none."""
+        if self.file is None:
+            return
+        paths = [self.file] if isinstance(self.file, str) else list(self.file.values())
+        names = listed(list(dict.fromkeys(Path(path).name for path in paths)))
+        mass, _, stiffness = self.matrices()
+        values = self.modes().stiffness
+        lowest = math.sqrt(float(min(values[values > 0], default=0.0))) / (2 * math.pi)
+        largest = f"entries of M up to {np.abs(mass).max():.4g} kg and of K up to {np.abs(stiffness).max():.4g} N/m"
+        yield (
+            f"{names}: matrices state no units; kg and N/m are assumed, with {largest}, and a lowest natural frequency of "
+            f"{lowest:.4g} Hz; a model in t, mm and N needs both matrices times 1000"
+        )
 
     def matrices(self) -> tuple[Vector, Vector, Vector]:
         """Return mass, damping and stiffness, (n, n) each; the damping that modal damping ratios mean is not part of it."""

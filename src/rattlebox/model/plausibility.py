@@ -12,6 +12,7 @@ from .dampers import ImpactDamper
 from .elementwise import Vector
 from .harmonics import Harmonic, SineSweep
 from .materials import Material
+from .packing import Positions
 from .recorded import Record
 from .shocks import Shock
 from .signals import Sampled, Signal
@@ -85,6 +86,13 @@ def _note_assumed_units(case: Case) -> Iterator[str]:
                 f"note: {name}: {file} states no unit; {signal.unit} is assumed, with a peak of {peak:.4g} {signal.unit}"
                 f"{in_g}; set unit or scale if that is wrong"
             )
+
+    for index, damper in enumerate(case.particle_dampers):
+        packing = damper.packing
+        if isinstance(packing, Positions) and packing.file is not None:
+            farthest = float(np.abs(packing.positions).max())
+            name, file = " ".join(damper.label(index).split()), Path(packing.file).name
+            yield f"note: {name}: {file} states no unit; m is assumed, with coordinates up to {farthest:.4g} m"
 
 
 def _check_peaks(case: Case) -> Iterator[str]:

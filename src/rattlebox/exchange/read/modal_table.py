@@ -138,15 +138,21 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
     if "participation" in columns:
         places = columns["participation"]
         participation = table[:, places[0]] if len(places) == 1 else table[:, places]
-    damping = None
+    frequencies, damping = table[:, frequency] * float(scale(frequency, _FREQUENCY) or 1.0), None
+    notes = []
+    if not units[frequency].strip():
+        notes.append(f"{path.name} states no unit of frequency; Hz is assumed, up to {frequencies.max():.4g} Hz")
     if "damping" in columns:
         (column,) = columns["damping"]
         damping = table[:, column] * float(scale(column, _DAMPING) or 1.0)
+        if not units[column].strip():
+            notes.append(f"{path.name} states no unit of damping; shares of one are assumed, up to {damping.max():.4g}")
     return ModesInFile(
-        frequencies=table[:, frequency] * float(scale(frequency, _FREQUENCY) or 1.0),
+        frequencies=frequencies,
         shapes=shapes,
         modal_masses=modal_masses,
         damping_ratios=damping,
         participation=participation,
         mass_unit=mass_unit,
+        notes=tuple(notes),
     )
