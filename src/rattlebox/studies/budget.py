@@ -65,21 +65,24 @@ class RunGroup(NamedTuple):
         A typical one.
     runs
         Their number.
+    settlings
+        Number of them whose beds have to settle; others have the bed of another run.
     particles, steps
         Numbers of particles and of steps of each.
     """
 
     case: Case
     runs: float
+    settlings: float
     particles: int
     steps: int
 
     @classmethod
-    def of(cls, case: Case, runs: float) -> RunGroup | None:
+    def of(cls, case: Case, runs: float, settlings: float) -> RunGroup | None:
         """Return a group; None if the case cannot run."""
         particles = sum(int(damper.contents.radius.size) for damper in case.particle_dampers)
         try:
-            return cls(case, runs, particles, count_steps(case))
+            return cls(case, runs, min(runs, settlings), particles, count_steps(case))
         except RattleboxError:  # such a run has the status "refused"
             return None
 
@@ -91,8 +94,10 @@ class _Timed(NamedTuple):
     ----------
     particles, steps
         Numbers of particles and of steps.
+    settling
+        Processor time in which the beds settle [s].
     setup
-        Processor time before the first step and after the last [s].
+        Other processor time before the first step and after the last [s].
     stepping
         Processor time of all steps [s].
     share
@@ -101,6 +106,7 @@ class _Timed(NamedTuple):
 
     particles: int
     steps: int
+    settling: float
     setup: float
     stepping: float
     share: float
@@ -151,9 +157,11 @@ def time_of_particle_runs(groups: Sequence[RunGroup]) -> tuple[list[float], floa
         beyond = max(
             1.0, group.particles / particles[-1]
         )  # if the settling of the largest bed was too long to be timed
-        setup = float(np.interp(group.particles, particles, [each.setup for each in known])) * beyond
-        step = float(np.interp(group.particles, particles, [each.stepping / each.steps for each in known])) * beyond
-        times.append(group.runs * (setup + step * group.steps))
+        settling, setup, step = (
+            float(np.interp(group.particles, particles, costs)) * beyond
+            for costs in zip(*((each.settling, each.setup, each.stepping / each.steps) for each in known), strict=True)
+        )
+        times.append(group.settlings * settling + group.runs * (setup + step * group.steps))
     return times, min(each.share for each in known)
 
 
@@ -166,6 +174,7 @@ def _time_run(group: RunGroup, limit: float) -> _Timed | None:
             return None
     except RattleboxError:
         return None
+    settling = time.process_time() - before
     done: list[tuple[float, int]] = []  # processor time and number of steps
 
     def proceed(steps: int, total: int) -> bool:
@@ -175,12 +184,13 @@ def _time_run(group: RunGroup, limit: float) -> _Timed | None:
     run = simulate_dem(group.case, threads=1, progress=proceed)
     used, passed = time.process_time() - before, time.monotonic() - begun
     reached = max(1, int(run.counts["steps"]))
-    stepping = min(used, run.wall_time)
+    stepping = min(used - settling, run.wall_time)
     rate = stepping / reached
     if len(done) > 1 and done[-1][1] > (half := min(done, key=lambda each: abs(each[1] - reached / 2)))[1]:
         rate = (done[-1][0] - half[0]) / (done[-1][1] - half[1])
     rest = rate * max(0, group.steps - reached)
-    return _Timed(group.particles, group.steps, max(0.0, used - stepping), stepping + rest, min(1.0, used / passed))
+    setup = max(0.0, used - settling - stepping)
+    return _Timed(group.particles, group.steps, settling, setup, stepping + rest, min(1.0, used / passed))
 
 
 def workers_of(backend: Any, workers: int | None) -> int:

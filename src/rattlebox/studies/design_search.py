@@ -296,16 +296,17 @@ class DesignSearch:
         for case in self._valid(designs):
             curves = self.curve_runs(case)
             sweep = self.grid.size if self.measured else 0
-            runs = sweep + len(curves)
+            runs += sweep + len(curves)
             if case.particle_dampers:
                 groups += self._groups(case, sweep, curves)
             elif not others:  # 1-D designs cost about the same
                 others = len(designs) * self._time_of_impact_runs(case, curves)
         times, share = time_of_particle_runs(groups) if groups else ([others], 1.0)
+        runs_each = runs / max(1, len(designs))
         cpu_time = trials * (TRIAL + sum(times) / max(1, len(designs)))
         workers = workers_of(self.where.get("backend", "threads"), self.where.get("workers"))
-        wall_time = cpu_time / share / max(1, min(workers, runs))
-        return Budget(trials, trials * runs, cpu_time, wall_time, workers)
+        wall_time = cpu_time / share / max(1, min(workers, runs_each))
+        return Budget(trials, round(trials * runs_each), cpu_time, wall_time, workers)
 
     def _valid(self, designs: Sequence[Values]) -> Iterator[Case]:
         """Yield the cases of the designs that a trial would run."""
@@ -323,7 +324,10 @@ class DesignSearch:
         if sweep:
             work = instance(self.work_of(case), ParticleWork)
             ends += [(work.variant(index), sweep / 2) for index in (0, sweep - 1)]
-        return [group for each, runs in ends if (group := RunGroup.of(each, runs))]
+        # Each packing of each damper settles once. A shaken damper is alone in its run.
+        beds = self.count * len(case.particle_dampers) / len(ends)
+        groups = (RunGroup.of(each, runs, beds / len(each.particle_dampers)) for each, runs in ends)
+        return [group for group in groups if group]
 
     def _time_of_impact_runs(self, case: Case, curves: Sequence[Case]) -> float:
         """Return the time of all runs of a trial with impact dampers, from a few of them [s]."""
