@@ -1,6 +1,9 @@
 """Every example is run and checked on a number."""
 
 import runpy
+import subprocess
+import sys
+import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -9,6 +12,7 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 import rattlebox as rb
+from rattlebox.studies.trial_store import count_trials
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -162,6 +166,41 @@ def test_box_on_a_beam_of_exudyn_damps_as_in_a_whole_run() -> None:
     bare = rms(example["coupled"](damped=False)), rms(example["whole_run"](damped=False))
     assert bare[0] == pytest.approx(bare[1], rel=2e-3)
     assert rms(example["coupled"]()) == pytest.approx(rms(example["whole_run"]()), rel=0.03)
+
+
+def test_maps_of_one_cavity_agree_with_designs_of_the_bar() -> None:
+    """The least damping ratio of a design of the bar is that of the map of one of its cavities."""
+    example = runpy.run_path(str(EXAMPLES / "boring_bar_design.py"))
+    case, amplitudes = example["bar"](softening=100), ["50 um", "80 um"]
+    designs = example["search"](case, amplitudes, packings=1, fills=[0.4], numbers=[1, 2], progress=False)
+    one = example["loss_map"](case, 0.4, amplitudes, packings=1)
+    response = rb.response_from_map(case.structure, one, level="6 N", number=[1, 2])
+    least = response.damping_ratio.isel({"at": 0, "mode": 0}).min("map_amplitude")
+    np.testing.assert_allclose(designs.damping_ratio, least, rtol=0.05)
+    assert int(example["recommended"](designs)["damper.number"]) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_the_boring_bar_is_designed_in_spite_of_a_kill(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Killed after some of 12 designs, the script resumes, passes its assertions and writes its report with both answers."""
+    monkeypatch.chdir(tmp_path)
+    script = str(EXAMPLES / "boring_bar_design.py")
+    process = subprocess.Popen([sys.executable, script])
+    while (count_trials("boring_bar_design.zarr") or 0) < 4:
+        assert process.poll() is None
+        time.sleep(0.1)
+    process.kill()
+    process.wait()
+    before = count_trials("boring_bar_design.zarr")
+    runpy.run_path(script)["main"]()
+    printed, asked = capsys.readouterr()
+    assert asked.startswith(f"design: {12 - before} trials, ")
+    assert [line.partition(":")[0] for line in printed.splitlines()] == ["design", "map", "20 other packings"]
+    page = (tmp_path / "boring_bar_design.html").read_text(encoding="utf-8")
+    assert "Design: designs" in page and "Response from a loss map: map of a cavity, 40 % full" in page
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label,
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axis import Axis
 
 Vector = NDArray[np.float64]
 
@@ -131,6 +132,7 @@ def _draw_objective(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None
     axes.margins(0.04)
     x.label(axes, "x", log=_is_log(study, path))
     y.label(axes, "y")
+    _tick_whole_numbers(axes.xaxis, study[path])
 
 
 def _draw_parameter(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None:
@@ -141,6 +143,7 @@ def _draw_parameter(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None
     axes.margins(0.04)
     x.label(axes, "x")
     y.label(axes, "y", log=_is_log(study, path))
+    _tick_whole_numbers(axes.yaxis, study[path])
 
 
 def _parameter(study: xr.Dataset, path: str) -> LabelledValues:
@@ -148,6 +151,12 @@ def _parameter(study: xr.Dataset, path: str) -> LabelledValues:
     values = LabelledValues.of(study[path])
     text = values.text.removeprefix("Damper ")
     return values._replace(text=text[:1].upper() + text[1:])
+
+
+def _tick_whole_numbers(axis: Axis, values: xr.DataArray) -> None:
+    """Place ticks of a whole number at whole numbers only."""
+    if values.dtype.kind == "i":
+        axis.set_major_locator(MaxNLocator(integer=True))
 
 
 def _is_log(study: xr.Dataset, path: str) -> bool:

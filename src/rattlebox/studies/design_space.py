@@ -91,8 +91,9 @@ class DesignVariable:
         if column.unit is not None:
             attrs["units"] = column.unit
         if not is_range:
-            names = labels(column.array) if column.unit is None else column.array
-            choices = dict(zip(names.tolist(), column.array.tolist(), strict=True))
+            array = column.array.astype(int) if parameter.is_whole else column.array
+            names = labels(array) if column.unit is None else array
+            choices = dict(zip(names.tolist(), array.tolist(), strict=True))
             return cls(parameter.path, None, choices, False, False, attrs)
         if column.unit is None:
             raise parameter.wrong("its values are not numbers and have no bounds", "a list to choose from")
@@ -127,7 +128,8 @@ class DesignVariable:
 
     def describe(self) -> dict[str, Any]:
         """Return a description in JSON types."""
-        return {"bounds": self.bounds, "choices": [str(name) for name in self.choices], "log": self.log}
+        choices = [name if isinstance(name, (int, float)) else str(name) for name in self.choices]
+        return {"bounds": self.bounds, "choices": choices, "log": self.log}
 
 
 @dataclass(frozen=True)
@@ -207,7 +209,7 @@ def pareto_front(values: NDArray[np.float64], feasible: NDArray[np.bool_]) -> ND
     own = values[numbers]
     if own.shape[1] == 1:
         return numbers[[own.argmin()]]
-    others = own[:, None, :]
-    dominated = ((others <= own).all(axis=2) & (others < own).any(axis=2)).any(axis=0)
-    front = numbers[~dominated]
+    others, rounding = own[:, None, :], 1e-12 * np.abs(own).max(axis=0)
+    dominated = ((others <= own + rounding).all(axis=2) & (others < own - rounding).any(axis=2)).any(axis=0)
+    front: NDArray[np.int64] = numbers[~dominated]
     return front[np.lexsort(values[front].T[::-1])]

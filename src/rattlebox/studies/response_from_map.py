@@ -144,7 +144,13 @@ def response_from_map(
         ]
         for place in places
     ]
-    about = {"title": "Response from a loss map", "point": name, "load": load.name, "map_case": table.case}
+    about = {
+        "title": "Response from a loss map",
+        "study": "response_from_map",
+        "point": name,
+        "load": load.name,
+        "map_case": table.case,
+    }
     axes = {
         "at": ("at", [" + ".join(place) for place in places], {"long_name": "points of the dampers"}),
         "number": ("number", numbers, _described("1", "number of dampers at each point")),

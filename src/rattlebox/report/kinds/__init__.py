@@ -25,6 +25,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "damping_curve": ("damping_curve", "KIND"),
     "design": ("design", "KIND"),
     "sensitivity": ("sensitivity", "KIND"),
+    "response_from_map": ("map_response", "KIND"),
 }
 """Module in this folder, and its `Kind`, by the attribute `study` of a dataset; or "run" and "comparison"."""
 

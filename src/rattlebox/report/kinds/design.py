@@ -15,9 +15,13 @@ from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import system_words
+from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 from rattlebox.results.case_words import counted, joined
 from rattlebox.results.quantities import amount
+from rattlebox.studies.budget import duration
+from rattlebox.studies.design_space import ADDED_MASS, DAMPING_RATIO
+from rattlebox.studies.measures import INTERVAL, MEASURES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,34 +57,55 @@ def _question(study: xr.Dataset) -> str:
 
 
 def _answer(study: xr.Dataset) -> Iterator[str]:
-    goals, paths = _goals(study), _parameters(study)
+    goals = _goals(study)
     usable = int(study.feasible.sum())
+    if "stopped" in study.attrs:
+        yield f"The search {study.attrs['stopped']}."
     if not study.front.size:
         yield f"None of {counted(study.trial.size, 'trial')} is feasible: each lacks a value or exceeds a limit."
         return
     if len(goals) == 1:
         best = study.sel(trial=int(study.front[0]))
-        choice = joined(
-            [f"{name_of(study[path])} {words.axis_value(study[path], best[path].values[()])}" for path in paths]
+        yield (
+            f"The best of {counted(usable, 'feasible trial')} has {_choice(study, best)}, with a {name_of(study[goals[0]])} "
+            f"of {_value(study, best, goals[0])}."
         )
-        value = amount(float(best[goals[0]]), unit_of(study[goals[0]]))
-        yield f"The best of {counted(usable, 'feasible trial')} has {choice}, with a {name_of(study[goals[0]])} of {value}."
     else:
         yield f"{counted(study.front.size, 'design')} of {counted(usable, 'feasible trial')} are Pareto-optimal."
         for name in goals:
-            values = study[name].sel(trial=study.front.values)
+            values = study[name].sel(trial=study.front.values).values
             pick = values.argmax() if study[name].attrs["goal"] == "max" else values.argmin()
             best = study.sel(trial=int(study.front[int(np.asarray(pick))]))
-            choice = joined(
-                [f"{name_of(study[path])} {words.axis_value(study[path], best[path].values[()])}" for path in paths]
-            )
-            results = joined(
-                [f"{name_of(study[each])} {amount(float(best[each]), unit_of(study[each]))}" for each in goals]
-            )
-            yield f"The best {name_of(study[name])} has {choice}: {results}."
-    robust = str(study.attrs.get("robust", ""))
-    if robust:
-        yield f"Values are the {robust} over all levels and starts of a trial."
+            results = joined([f"{name_of(study[each])} {_value(study, best, each)}" for each in goals])
+            yield f"The best {name_of(study[name])} has {_choice(study, best)}: {results}."
+    robust, packings = str(study.attrs.get("robust", "")), study.sizes.get("packing", 1)
+    if robust and packings > 1:
+        yield (
+            f"Values are means over {packings} random initial states of the {robust} over all levels, starts and "
+            "amplitudes; intervals (±) are their 95 % intervals."
+        )
+    elif robust:
+        yield f"Values are the {robust} over all levels, starts and amplitudes of a trial."
+
+
+def _choice(study: xr.Dataset, trial: xr.Dataset) -> str:
+    """Return the parameters of a trial as text."""
+    return joined(
+        [
+            f"{name_of(study[path])} {words.axis_value(study[path], trial[path].values[()])}"
+            for path in _parameters(study)
+        ]
+    )
+
+
+def _value(study: xr.Dataset, trial: xr.Dataset, name: str) -> str:
+    """Return an objective of a trial with its interval."""
+    half = float(trial[name + INTERVAL]) if name + INTERVAL in trial else np.nan
+    return with_interval(float(trial[name]), half, _unit(study, name))
+
+
+def _unit(study: xr.Dataset, name: str) -> str:
+    return "%" if name == DAMPING_RATIO else unit_of(study[name])
 
 
 def _pictures(study: xr.Dataset) -> Iterator[Picture]:
@@ -94,14 +119,17 @@ def _pictures(study: xr.Dataset) -> Iterator[Picture]:
 
 
 def _tables(study: xr.Dataset) -> Iterator[Table]:
-    names = [*_parameters(study), *_goals(study)]
+    paths, goals = _parameters(study), _goals(study)
     rows = []
     for trial in study.front.values[:_MAX_ROWS]:
         one = study.sel(trial=int(trial))
-        rows.append((str(int(trial)), *(_cell(study[name], one[name].values[()]) for name in names)))
+        cells = [_cell(study[path], one[path].values[()]) for path in paths]
+        rows.append((str(int(trial)), *cells, *(_value(study, one, name) for name in goals)))
     note = f"{study.front.size - _MAX_ROWS} more are in the dataset." if study.front.size > _MAX_ROWS else ""
     if rows:
-        yield Table("Best trials", ("trial", *(name_of(study[name]) for name in names)), rows, note, numbers=True)
+        yield Table(
+            "Best trials", ("trial", *(name_of(study[name]) for name in (*paths, *goals))), rows, note, numbers=True
+        )
 
 
 def _cell(variable: xr.DataArray, value: Any) -> str:
@@ -111,13 +139,28 @@ def _cell(variable: xr.DataArray, value: Any) -> str:
 
 
 def _limits(study: xr.Dataset) -> Iterator[Limit]:
-    yield Limit(
-        "search",
-        counted(study.trial.size, "trial"),
-        "",
-        "The search is random. Better designs may lie between the trials: compare with more trials, or another seed.",
-    )
+    trials = counted(study.trial.size, "trial")
+    parameters = words.option_of(study, "parameters") or {}
+    if parameters and all(not each["bounds"] for each in parameters.values()):
+        meaning = "Only the listed choices were tried, in all or in some of their combinations."
+    else:
+        meaning = (
+            "The search is random. Better designs may lie between the trials: compare with more trials or another seed."
+        )
+    yield Limit("search", trials, "", meaning)
     yield from words.study_limits(study)
+
+
+def _about(study: xr.Dataset) -> Iterator[str]:
+    times = {name: study.attrs.get(name) for name in ("predicted_cpu_time", "cpu_time", "wall_time")}
+    if times["wall_time"] is not None:
+        used = f"{duration(times['cpu_time'])} of processor time in " if times["cpu_time"] is not None else ""
+        predicted = times["predicted_cpu_time"]
+        before = (
+            "" if predicted is None else f"; {duration(predicted)} of processor time were predicted before the start"
+        )
+        yield f"The trials took {used}{duration(times['wall_time'])}{before}."
+    yield from SWEEP.about(study)
 
 
 def _call(study: xr.Dataset) -> Call | None:
@@ -133,11 +176,17 @@ def _call(study: xr.Dataset) -> Call | None:
         else each["choices"]
         for path, each in parameters.items()
     }
-    varied = [path for path, column in trial["columns"].items() if column["varies_along"]]
+    varied = [path for path, column in trial["columns"].items() if column["varies_along"] not in ([], ["packing"])]
     remarks = (f"levels and starts: add those of {joined(varied)}",) if varied else ()
-    goals = [name if goal == "min" else {name: goal} for name, goal in objective.items()]
-    given = {"parameters": bounds, "objective": goals, "trials": int(study.trial.size)}
-    return Call("design", given, "design", remarks) if all(isinstance(goal, str) for goal in goals) else None
+    if not all(name in MEASURES or name in (ADDED_MASS, DAMPING_RATIO) for name in objective):
+        return None
+    given = {"parameters": bounds, "objective": objective, "trials": int(study.trial.size)}
+    given |= words.option_of(study, "curve") or {}
+    for name, usual in (("packings", 1), ("robust", "worst"), ("max_added_mass", None), ("seed", 0)):
+        value = words.option_of(study, name)
+        if value not in (None, usual) or name == "packings":
+            given[name] = value
+    return Call("design", given, "design", remarks)
 
 
 KIND = Kind(
@@ -150,5 +199,5 @@ KIND = Kind(
     tables=_tables,
     warnings=SWEEP.warnings,
     limits=_limits,
-    about=SWEEP.about,
+    about=_about,
 )
