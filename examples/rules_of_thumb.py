@@ -1,0 +1,106 @@
+"""For designers of particle dampers: how far rules of thumb hold, by loss maps and decays of beds of balls.
+
+Beds of 16 balls a layer are shaken without gravity at up to 2.5 times L/pi, where L is the length that they can move;
+restitution, friction and the number of layers vary.
+"""
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import rattlebox as rb
+
+FREE, BALL, HERTZ, G = 0.010, 0.005, 10.0, 9.80665  # m, m, Hz, m/s^2
+BEST = FREE / math.pi  # amplitude of the shaker [m]
+RATIOS = np.array([0.5, 0.8, 1.0, 1.3, 2.0, 2.5])  # of the amplitude to the best one
+CALM = {
+    "3 layers, restitution 0.8, friction 0.2": {},
+    "restitution 0.5": {"restitution": 0.5},
+    "friction 0.6": {"friction": 0.6},
+    "6 layers, restitution 0.95": {"layers": 6, "restitution": 0.95},
+}
+LIVELY = {
+    "friction 0": {"friction": 0.0},
+    "restitution 0.95": {"restitution": 0.95},
+    "1 layer": {"layers": 1},
+}
+
+
+def bed(layers=3, restitution=0.8, friction=0.2, **options):
+    """Return a damper with this number of layers, in a box that is higher by the free length."""
+    height = FREE + (1 + 0.9 * (layers - 1)) * BALL
+    usual = {"gravity": (0, 0, 0), "packing": rb.Lattice(seed=1), "softening": 20, "direction": "z"}
+    return rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter=BALL, count=16 * layers),
+        **{"cavity": rb.Box(size=("20.2 mm", "20.2 mm", height))} | usual | options,
+        contact=rb.Tsuji(restitution=restitution),
+        friction=friction,
+    )
+
+
+def one_ball(restitution):
+    """Return a ball in the same free length between hard walls."""
+    sphere, contact = rb.Sphere(diameter=BALL, material="steel"), rb.Tsuji(restitution=0.5)
+    return rb.ImpactDamper(ball=sphere, gap=FREE / 2, velocity=0.1, contact=contact), rb.Newton(restitution=restitution)
+
+
+def losses(damper, amplitudes=BEST * RATIOS, hertz=HERTZ, cycles=(10, 10), unit="m", **options):
+    """Return the loss in a cycle on a shaker, in units of m V^2."""
+    motion = rb.Harmonic(amplitude=(BEST, unit), frequency=hertz, direction=getattr(damper, "direction", None))
+    case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s", **options)
+    study = rb.loss_map(case, list(amplitudes), [hertz], cycles=cycles, samples=1 + 64 * cycles[1])
+    assert "warnings" not in study or not study.warnings.any()
+    return study.reduced_loss.values[:, 0]
+
+
+def decays(share, ratios=(1.2, 2.5)):
+    """Return added damping ratios over the mass ratio, in free decays of a structure with a bed of a share of its mass."""
+    damper = bed()
+    mass = float(damper.contents.mass.sum()) / share
+    case = rb.Case(structure=rb.SDOF(mass=mass, frequency=HERTZ, damping_ratio=0), damper=damper, duration="3 s")
+    return rb.damping_curve(case, [BEST * ratio for ratio in ratios], packings=3).damping_ratio.values / share
+
+
+def along_a_floor(accelerations=(0.1, 0.2, 0.5, 1.0)):
+    """Return the loss of a bed with friction 0.2 that rests on a floor and is shaken along it, at accelerations in g."""
+    box = {"cavity": rb.Box(size=("30.2 mm", "20.2 mm", "24 mm")), "packing": rb.Settled(seed=1), "direction": "x"}
+    damper = bed(**box, gravity=(0, 0, -G), softening="auto")
+    return losses(damper, [G * each for each in accelerations], 60.0, unit="m/s^2")
+
+
+if __name__ == "__main__":
+    beds = {name: losses(bed(**options)) for name, options in (CALM | LIVELY).items()}
+    balls = {}
+    for restitution in (0.0, 0.8):
+        damper, method = one_ball(restitution)
+        balls[f"one ball, restitution {restitution:g}"] = losses(damper, cycles=(400, 20), method=method)
+    print(f"{'amplitude over L/pi':40}", *(f"{ratio:4.1f}" for ratio in RATIOS))
+    for name, values in (beds | balls).items():
+        print(f"{name:40}", *(f"{value:4.1f}" for value in values))
+    calm = np.array([beds[name] for name in CALM])
+    at = {ratio: calm[:, k] for k, ratio in enumerate(RATIOS)}
+    assert at[1.0].min() > 3.0 and at[1.0].max() < 4.2  # close to the largest possible loss, 4
+    assert at[2.5].min() > 1.6 and at[2.5].max() < 2.3  # half of it
+    assert at[0.8].min() < 1.2 and at[0.8].max() > 2.5  # collects or not
+    assert all(1.9 < beds[name][2] < 3.2 for name in LIVELY)
+    assert abs(balls["one ball, restitution 0"][2] - 4) < 0.01
+    assert 1.1 < balls["one ball, restitution 0.8"][2] < 1.3
+
+    added = {share: decays(share) for share in (0.05, 0.2)}
+    for share, (near, above) in added.items():
+        print(f"mass ratio {share:.0%}: adds a damping ratio of {near:.2f} of it at 1.2 L/pi, {above:.2f} at 2.5 L/pi")
+    assert 0.42 < added[0.05][0] < 0.56 and 0.35 < added[0.2][0] < 0.48  # 3.1 / (2 pi) = 0.5 from the loss map
+    floor = along_a_floor()
+    print("along a floor at 0.1, 0.2, 0.5 and 1 g:", ", ".join(f"{value:.1f}" for value in floor), "m V^2")
+    assert floor[:2].max() < 0.2 and floor[2:].min() > 0.5
+
+    figure, axes = plt.subplots(figsize=(6.5, 3.5), layout="constrained")
+    styles = [(CALM, "o-"), (LIVELY, "s--"), (balls, "k:")]
+    for names, style in styles:
+        for name, alpha in zip(names, (1, 0.75, 0.5, 0.3), strict=False):
+            colour = {} if "k" in style else {"color": rb.plots.SERIES_COLOURS["s" in style]}
+            axes.plot(RATIOS, (beds | balls)[name], style, alpha=alpha, label=name, ms=4, **colour)
+    axes.set(xlabel="Amplitude ($L$/π)", ylabel="Loss a cycle ($m V^2$)", ylim=(0, 4.3))
+    figure.legend(loc="outside right center", frameon=False, fontsize="small")
+    figure.savefig("rules_of_thumb.png", dpi=200)
