@@ -217,3 +217,14 @@ def test_tutorials_print_the_numbers_of_their_page(
     printed = capsys.readouterr().out
     assert [line.split()[0] for line in printed.splitlines()] == [line.split()[0] for line in shown.splitlines()]
     assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    ["regimes", "rules_of_thumb", "particles_or_tuned_mass", "restitution_of_metals", "softening_and_step"],
+)
+def test_rules_for_designers(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each script asserts the numbers that it prints."""
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
