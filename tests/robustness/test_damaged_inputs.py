@@ -329,7 +329,7 @@ def test_structures_and_positions_without_unit(tmp_path: Path, name: str, words:
     if name == "modal table":
         content = b"frequency,damping,tip\n10,0.01,2\n25,0.02,-3\n"
         good = good._replace(case=MODAL.replace("damping_ratio = 0.01\n", "") + 'file = "FILE"\n')
-    notes = "\n".join(plausibility_notes(read(tmp_path, good, content)))
+    notes = "\n".join(plausibility_notes(read_file(tmp_path, good, content)))
     for word in words:
         assert word in notes, notes
 
@@ -338,8 +338,8 @@ def test_structures_and_positions_without_unit(tmp_path: Path, name: str, words:
 def test_mis_scaled_files_show_their_scale(tmp_path: Path, factor: float) -> None:
     """Files in other units than those that are assumed are read, and their notes state values that show it."""
     matrices = GOOD["NPZ matrices"]
-    notes = plausibility_notes(read(tmp_path, matrices, saved(np.savez, K=factor * K, M=M)))
+    notes = plausibility_notes(read_file(tmp_path, matrices, saved(np.savez, K=factor * K, M=M)))
     assert any(f"frequency of {11.254 * math.sqrt(factor):.4g} Hz" in note for note in notes), notes
     content = table("frequency (Hz),real,imag", 1 + TIMES, factor * VALUES, VALUES)
     with pytest.warns(UserWarning, match=f"largest magnitude is {np.abs(factor * VALUES + 1j * VALUES).max():.4g}"):
-        read(tmp_path, GOOD["response function"], content)
+        read_file(tmp_path, GOOD["response function"], content)

@@ -171,7 +171,7 @@ def test_a_killed_sweep_with_particles_continues_within_it(tmp_path: Path) -> No
     done = 0
     for _ in range(2):
         with subprocess.Popen([sys.executable, str(script), str(store)]) as process:
-            wait_for(has_begun(store, done + 3))
+            wait_for(has_stored(store, done + 3))
             process.kill()
         before, done = done, progress_of(store).done
         assert before < done < 20
