@@ -30,7 +30,7 @@ FALL_SWELL = 5e-6  # the same during the fall; the gaps of the bed are twice as 
 SINK = 0.1  # overlap over radius at the largest speed of the fall; under the own weight it is 50 times smaller
 WEIGHT_FACTORS = tuple(0.5**n for n in range(1, 25))  # successive fractions of the weight during expansion
 RELAXATION_BLOCKS = 3  # blocks of twenty contact times under each of them
-RESTITUTION = 0.1
+RESTITUTION = 0.3  # With stronger damping, steps of this length generate energy where friction is large.
 STEPS = 20  # in a contact
 MAX_FALL_TIMES = 40  # longest simulation over the duration of a fall through the cavity; common beds need 3 to 13
 QUIET_BLOCKS = 5  # blocks of twenty contact times in a row below the energy limit, after which a bed is at rest
@@ -269,12 +269,11 @@ class _SettlingBed:
                 quiet = quiet + 1 if energy < still else 0
                 if quiet == QUIET_BLOCKS:
                     return now
-                places = now
                 if stopped and energy < before:
                     if before < still:
                         return now
-                    break
-                before = energy
+                    break  # The next fall starts from the positions at the largest speed.
+                places, before = now, energy
         raise Hint(f"particles do not come to rest within {MAX_FALL_TIMES * self._fall:.3g} s", "a larger at_rest")
 
     def expand(self, places: Array, cavity: AnyCavity) -> Array:
