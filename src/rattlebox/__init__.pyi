@@ -42,6 +42,7 @@ from rattlebox.model.methods import EventDriven as EventDriven
 from rattlebox.model.methods import Newton as Newton
 from rattlebox.model.methods import Output as Output
 from rattlebox.model.methods import TwoStep as TwoStep
+from rattlebox.model.packing import Compacted as Compacted
 from rattlebox.model.packing import Lattice as Lattice
 from rattlebox.model.packing import Positions as Positions
 from rattlebox.model.packing import Settled as Settled
@@ -86,6 +87,7 @@ from rattlebox.plots.particles import film_particles as film_particles
 from rattlebox.plots.particles import plot_particles as plot_particles
 from rattlebox.plots.response import plot_frequency_response as plot_frequency_response
 from rattlebox.plots.sensitivity import plot_sensitivity as plot_sensitivity
+from rattlebox.prepare.bed import measure_bed as measure_bed
 from rattlebox.prepare.laws import alpha_of_restitution as alpha_of_restitution
 from rattlebox.prepare.laws import restitution_curve as restitution_curve
 from rattlebox.prepare.laws import restitution_of_alpha as restitution_of_alpha

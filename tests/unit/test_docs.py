@@ -19,6 +19,7 @@ PAGES = (
     "how-to/basins",
     "how-to/bifurcation",
     "how-to/design",
+    "how-to/fills",
     "how-to/fmu",
     "how-to/frequency_response",
     "how-to/loads",
@@ -44,6 +45,7 @@ FIELDS = DOCS / "reference" / "case_file.md"
 
 SEARCHES = (
     "co-simulation",
+    "90 % full",
     "contact law",
     "energy balance",
     "install",

@@ -229,7 +229,7 @@ def _result(
             "extrapolated": totals.extrapolated,
             "memory_bytes": totals.memory_bytes,
         },
-        diagnostics=diagnostics,
+        diagnostics={**diagnostics, **prepared.fills},
         wall_time=active.seconds,
     )
 

@@ -93,6 +93,26 @@ class Cavity(Part):
         """Return the width of the cavity along a unit vector [m]."""
         return float(np.sum(np.abs(components_along(self.frame, direction)) * self.lengths))
 
+    @property
+    def surface_over_volume(self) -> float:
+        """Area of the walls over the volume [1/m]."""
+        return 2 * float(np.sum(1 / self.lengths))
+
+    def spread(self, count: int) -> Vector:
+        """Return evenly spread points inside, (n, 3) [m]; n is `count` times the share of the bounding box inside.
+
+        Notes
+        -----
+        The points k * (1/g, 1/g^2, 1/g^3) modulo 1, with g^4 = g + 1, fill the bounding box more evenly than random ones:
+        the share of points in a part of the cavity has an error of about 1e-4 for 1e5 of them.
+        """
+        steps = _SPREAD ** -np.arange(1.0, 4.0)
+        points = ((np.arange(count)[:, None] * steps + 0.5) % 1.0 - 0.5) * self.lengths @ self.frame
+        return np.asarray(points[self.depth(points) >= 0])
+
+
+_SPREAD = 1.2207440846057596  # g^4 = g + 1
+
 
 class Box(Cavity):
     """A box with edges along x, y and z.

@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, m
 from rattlebox._util.exceptions import DataError
 
 from .base import Part
-from .cavities import AnyCavity, Box
+from .cavities import AnyCavity, Box, SphericalCavity
 from .elementwise import Vector
 from .errors import Hint, at, several
 from .files import BINARY, absolute, check_finite, existing, read_arrays
@@ -25,6 +25,9 @@ from .space import to_global
 from .units import SI, Number, Whole, in_si, numbers
 
 TOUCHING = 1e-9  # tolerance for overlaps by rounding, relative to the radius
+RANDOM_CLOSE_PACKING = 0.64  # largest share of the volume that equal spheres fill at random
+COMPACTED = 0.62  # volume of equal spheres over that of a compacted bed, far from walls
+LOOSEST = 0.571  # the same of a settled bed with a large coefficient of friction
 _FAR = 100.0  # distance over the size of the cavity from which positions are probably in other units
 
 
@@ -45,6 +48,10 @@ class Packing(Part):
             return self
         seed = int(np.random.SeedSequence([getattr(self, "seed", 0), index]).generate_state(1)[0])
         return self.model_copy(update={"seed": seed})
+
+    def bulk_density(self, friction: float) -> float:
+        """Return the volume of particles over that of their bed, far from walls; by default that of a compacted bed."""
+        return COMPACTED
 
 
 class Lattice(Packing):
@@ -98,12 +105,26 @@ class Lattice(Packing):
         return np.asarray(sites[chosen] + reach[:, None] * direction)
 
 
-class Settled(Packing):
-    """Particles inserted at random and settled under gravity.
+class Bed(Packing):
+    """Base class of packings that are computed before the run."""
+
+    kind: str
+    seed: Annotated[Whole, Field(ge=0)] = 0
+    at_rest: Annotated[Number, Field(gt=0, le=0.1)] = 1e-3
+
+    @property
+    def is_random(self) -> bool:
+        """True."""
+        return True
+
+
+class Settled(Bed):
+    """Particles inserted at random and settled under gravity: a loose bed, as it is poured.
 
     The fall is computed before the run with soft, strongly damped contacts and the largest friction of the damper. Motion
     that nothing slows, such as that of one ball in a round cavity, is stopped. In the end particles almost touch, without
-    overlap.
+    overlap. Far from walls particles fill 0.57 of the volume with a coefficient of friction of 1, 0.60 with 0.3, and 0.64
+    without friction.
 
     Parameters
     ----------
@@ -114,13 +135,29 @@ class Settled(Packing):
     """
 
     kind: Literal["settled"] = "settled"
-    seed: Annotated[Whole, Field(ge=0)] = 0
-    at_rest: Annotated[Number, Field(gt=0, le=0.1)] = 1e-3
 
-    @property
-    def is_random(self) -> bool:
-        """True."""
-        return True
+    def bulk_density(self, friction: float) -> float:
+        """Return the volume of particles over that of their bed, far from walls, with a coefficient of friction."""
+        return LOOSEST + 0.072 * math.exp(-friction / 0.25)
+
+
+class Compacted(Bed):
+    """Particles compacted at random without friction, then settled under gravity: a dense bed, as it is shaken down.
+
+    Particles far from walls fill 0.62 of the volume, near the largest value for random packings, 0.64. They are inserted at
+    random under a lid at the height of such a bed, and pushed apart until none overlap; then the lid is removed, and the bed
+    settles as a `Settled` one. A bed that is as large as the cavity fills all of it, without a free surface. Without gravity
+    particles fill the whole cavity evenly, whatever their number.
+
+    Parameters
+    ----------
+    seed
+        Random seed of the insertion.
+    at_rest
+        Kinetic energy of a bed at rest, relative to the energy of a fall by the mean radius.
+    """
+
+    kind: Literal["compacted"] = "compacted"
 
 
 def _table(columns: int, unit: str, what: str) -> Any:
@@ -224,7 +261,7 @@ class Positions(Packing):
         return cls.model_validate({"file": os.fspath(path)})
 
 
-AnyPacking = Annotated[Lattice | Settled | Positions, Field(discriminator="kind")]
+AnyPacking = Annotated[Lattice | Settled | Compacted | Positions, Field(discriminator="kind")]
 
 _COLUMNS = ("x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz")
 
@@ -265,7 +302,6 @@ def _from_arrays(file: Path, arrays: dict[str, Vector]) -> dict[str, Vector]:
     return {name: array.ravel() for name, array in arrays.items()}
 
 
-_LOOSE = 0.56  # fill ratio of randomly inserted spheres in a large cavity
 _COUNTABLE = 1_000_000  # lattices with more sites are not built to count them
 
 
@@ -365,6 +401,11 @@ class Crowd:
     volume: float
     largest: float
 
+    @property
+    def alike(self) -> bool:
+        """Whether all particles have one size, up to rounding."""
+        return self.volume > (1 - 1e-9) * 4 / 3 * math.pi * self.largest**3
+
     @classmethod
     def of(cls, radii: Vector) -> Crowd:
         """Return the summary of spheres with these radii [m]."""
@@ -379,9 +420,76 @@ class Crowd:
         return max(len(grid(cavity, 2 * self.largest)) for grid in grids)
 
     def at_random(self, cavity: AnyCavity) -> int:
-        """Return a safe estimate of the number that can be inserted at random; walls reduce it."""
-        walls = 2 * float(np.sum(1 / cavity.lengths))
-        return max(1, math.floor(_LOOSE / (1 + 0.3 * self.largest * walls) * cavity.volume / self.volume))
+        """Return the number in a full, compacted cavity, which can be inserted at random."""
+        filled = random_density(cavity, 2 * self.largest) * cavity.volume
+        return max(1, math.floor(filled / self.volume * (1 + 1e-9)))
+
+
+def random_density(cavity: AnyCavity, diameter: float, fill: float = 1.0, up: Vector | None = None) -> float:
+    """Return the largest density at which spheres between walls and a lid are readily inserted at random.
+
+    Parameters
+    ----------
+    cavity
+        Cavity around the spheres.
+    diameter
+        Diameter of the spheres [m].
+    fill
+        Volume below the lid over that of the cavity.
+    up
+        Unit vector against gravity, (3,); None if there is no lid.
+
+    Returns
+    -------
+    float
+        Volume of spheres over the volume below the lid. The coefficients are fitted to packings in boxes, cylinders and
+        spheres of 1.3 to 15 diameters, which are inserted in at most four attempts.
+    """
+    x = _wall_diameters(cavity, diameter, fill, up)
+    density = COMPACTED * (1 - 0.205 * x + 0.023 * x**2 - 0.0035 * x**3)
+    one = math.pi / 6 * diameter**3 / cavity.volume
+    _, width, length = np.sort(cavity.lengths)
+    if width < 1.9 * diameter:  # a tube, in which particles lie in a row
+        density = min(density, one * (length / diameter - 0.5))
+    if isinstance(cavity, SphericalCavity) and width < 2 * diameter:  # no room for two
+        density = one
+    return max(density, one)
+
+
+def bed_density(cavity: AnyCavity, diameter: float, bulk: float, fill: float, up: Vector | None) -> float:
+    """Return the usual density of a bed of spheres.
+
+    Parameters
+    ----------
+    cavity
+        Cavity around the bed.
+    diameter
+        Diameter of the spheres [m].
+    bulk
+        Volume of spheres over that of the bed far from walls.
+    fill
+        Volume of the bed over that of the cavity.
+    up
+        Unit vector against gravity, (3,); None without gravity.
+
+    Returns
+    -------
+    float
+        Volume of spheres over that of the bed, at most such that they can be inserted. The coefficients are fitted to beds
+        in boxes, cylinders and spheres of 2 to 14 diameters, with an error of 3 % (standard deviation) where the bed is
+        higher than two diameters.
+    """
+    most = random_density(cavity, diameter)
+    if up is None:
+        return most
+    x = _wall_diameters(cavity, diameter, fill, up)
+    return min(bulk * (1 - 0.165 * x + 0.02 * x**2), most / fill)
+
+
+def _wall_diameters(cavity: AnyCavity, diameter: float, fill: float, up: Vector | None) -> float:
+    """Return the area of walls and surface of a bed over its volume, times the diameter; at most 4."""
+    surface = 0.0 if up is None else 2 * (1 / fill - 1) / cavity.extent(up)
+    return min(diameter * (cavity.surface_over_volume + surface), 4.0)
 
 
 def lattice_is_full(cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> Hint:
@@ -399,12 +507,23 @@ def lattice_is_full(cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> Hint:
     )
 
 
+def holds_at_random(cavity: AnyCavity, crowd: Crowd) -> str:
+    """Return the sentence that states how many particles a cavity holds at random."""
+    most = crowd.at_random(cavity)
+    size = "this size" if crowd.alike else "these sizes"
+    return f"at random this cavity holds at most {most} particles of {size}, a fill ratio of {_filled(cavity, crowd, most)}"
+
+
 def fewer_at_random(cavity: AnyCavity, crowd: Crowd) -> str:
     """Return suggestions for more particles than can be inserted at random."""
     lattice = 'packing = { kind = "lattice" }, or ' if crowd.on_lattice(cavity) >= crowd.count else ""
     most = min(crowd.at_random(cavity), max(1, crowd.count - 1))
-    filled = most * crowd.volume / cavity.volume
-    return f"{lattice}at most {most} of them (a fill ratio of {math.floor(1e3 * filled) / 1e3:g}), or a larger cavity"
+    return f"{lattice}at most {most} of them (a fill ratio of {_filled(cavity, crowd, most)}), or a larger cavity"
+
+
+def _filled(cavity: AnyCavity, crowd: Crowd, count: int) -> str:
+    """Return the fill ratio of a number of particles, rounded down."""
+    return f"{math.floor(1e3 * count * crowd.volume / cavity.volume) / 1e3:g}"
 
 
 def check_size(cavity: AnyCavity, radius: float) -> None:

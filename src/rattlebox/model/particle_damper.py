@@ -26,14 +26,18 @@ from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, 
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
 from .packing import (
+    RANDOM_CLOSE_PACKING,
     AnyPacking,
+    Bed,
     Crowd,
     Lattice,
     Positions,
     Settled,
+    bed_density,
     check_packing,
     check_size,
     fewer_at_random,
+    holds_at_random,
     lattice_is_full,
 )
 from .pairs import Body, Pair
@@ -214,7 +218,7 @@ class ParticleDamper(Part):
     direction
         Direction of the base motion, and of a point whose mode shapes have one component.
     packing
-        Lattice, Settled or Positions.
+        Lattice, Settled, Compacted or Positions.
     velocity
         Initial velocity of all particles [m/s], relative to the base; Positions may add individual velocities.
     softening
@@ -291,7 +295,11 @@ class ParticleDamper(Part):
             if labels.index(species.label) != index or species.label == WALL:
                 raise Hint(f"the name {species.label!r} is taken", "another name", [*place, "name"])
             if not species.has_amount and (not isinstance(self.packing, Positions) or len(labels) > 1):
-                raise Hint("count, mass or fill_ratio is needed", "count = 200", place)
+                raise Hint("count, mass, fill_ratio or bed_fill is needed", "count = 200", place)
+            if species.bed_fill is not None and len(labels) > 1:
+                raise Hint(
+                    "the volume of a bed of several species is not known", "fill_ratio = 0.3", [*place, "bed_fill"]
+                )
             radii = isinstance(self.packing, Positions) and self.packing.radii is not None
             if species.has_size == radii:
                 raise Hint(
@@ -357,7 +365,7 @@ class ParticleDamper(Part):
         """Raise if the particles exceed the volume of the cavity or the memory, before arrays are allocated."""
         if isinstance(self.packing, Positions):
             return
-        crowds = [species.crowd(self.cavity.volume) for species in self.particles]
+        crowds = [species.crowd(self.cavity.volume, self._density(species)) for species in self.particles]
         count = sum(crowd.count for crowd in crowds)
         if not 0 < count <= MAX_PARTICLES:  # `Particles.number` raises.
             return
@@ -384,7 +392,8 @@ class ParticleDamper(Part):
             return Hint(hint.complaint, hint.suggestion, ["particles"])
         times = crowd.count * crowd.volume / self.cavity.volume
         return Hint(
-            f"{crowd.count} particles do not fit: their volume is {times:.3g} times that of the cavity",
+            f"{crowd.count} particles do not fit: their volume is {times:.3g} times that of the cavity; "
+            f"{holds_at_random(self.cavity, crowd)}",
             fewer_at_random(self.cavity, crowd),
             ["particles"],
         )
@@ -398,19 +407,20 @@ class ParticleDamper(Part):
         crowd = Crowd.of(contents.radius)
         if filled >= 1 and not isinstance(self.packing, Lattice):  # A lattice has a separate message.
             raise self._too_many(crowd)
-        if isinstance(self.packing, Settled):
-            if not any(self.gravity):
+        if isinstance(self.packing, Bed):
+            if isinstance(self.packing, Settled) and not any(self.gravity):
                 held = crowd.on_lattice(self.cavity)
                 some = "" if held >= crowd.count else f" with at most {held} of them"
+                dense = 'packing = { kind = "compacted" }, ' if crowd.count <= crowd.at_random(self.cavity) else ""
                 raise Hint(
                     "particles do not settle without gravity",
-                    f'packing = {{ kind = "lattice" }}{some}, or gravity = [0, 0, -9.81]',
+                    f'{dense}packing = {{ kind = "lattice" }}{some}, or gravity = [0, 0, -9.81]',
                     ["packing"],
                 )
-            if filled > 0.64 and contents.radius.size > 1:
+            if filled > RANDOM_CLOSE_PACKING and contents.radius.size > 1:
                 raise Hint(
-                    f"{contents.radius.size} particles fill {100 * filled:.3g} % of the cavity; "
-                    "inserted at random they fill 60 % or a little more",
+                    f"{contents.radius.size} particles would fill {100 * filled:.3g} % of the cavity; "
+                    f"{holds_at_random(self.cavity, crowd)}",
                     fewer_at_random(self.cavity, crowd),
                     ["particles"],
                 )
@@ -466,7 +476,28 @@ class ParticleDamper(Part):
         if not species.has_amount:
             return len(instance(self.packing, Positions).positions)
         with at(*self._place(index)):
-            return species.number(self.cavity.volume)
+            return species.number(self.cavity.volume, self._density(species))
+
+    def _density(self, species: Particles) -> float:
+        """Return the volume of the particles over that of their bed, as `bed_fill` states it."""
+        if species.bed_fill is None or not species.has_size:
+            return 1.0
+        bulk = self.packing.bulk_density(self.largest_friction)
+        return bed_density(self.cavity, species.mean_diameter, bulk, species.bed_fill, self.up)
+
+    @property
+    def up(self) -> Vector | None:
+        """Unit vector against gravity, (3,); None without gravity."""
+        pull = float(np.linalg.norm(self.gravity))
+        return -np.array(self.gravity) / pull if pull else None
+
+    @property
+    def largest_friction(self) -> float:
+        """Largest coefficient of friction among particles and at walls."""
+        names = [species.label for species in self.particles]
+        pairs = [(first, second) for k, first in enumerate(names) for second in (*names[k:], WALL)]
+        laws = (self._law("friction", *pair)[0] for pair in pairs)
+        return max((law.coefficient for law in laws if law is not None), default=0.0)
 
     @cached_property
     def start(self) -> Start:

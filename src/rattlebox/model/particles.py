@@ -16,10 +16,11 @@ from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
 from .materials import AnyMaterial
-from .packing import Crowd
+from .packing import COMPACTED, Crowd
 from .units import SI, Number, PositiveLength, PositiveMass, Whole, parse, radius_of_diameter
 
 MAX_PARTICLES = 100_000_000  # of one kind
+_AMOUNTS = ("count", "mass", "fill_ratio", "bed_fill")
 _MANY = 4096  # sizes from which the mean volume is estimated
 
 
@@ -163,9 +164,11 @@ class Particles(Part):
         Name of a material in the library, or a Material.
     radius, diameter, distribution
         One of them: the size of all particles [m], or a distribution of diameters.
-    count, mass, fill_ratio
-        One of them: number of particles, total mass [kg], or volume over that of the cavity. Mass and fill ratio are rounded
-        to a whole number of particles.
+    count, mass, fill_ratio, bed_fill
+        One of them: number of particles; total mass [kg]; volume of the particles over that of the cavity; or volume of
+        their bed, with the voids in it, over that of the cavity, 1 for a full cavity. All are rounded to a whole number of
+        particles. The number for a `bed_fill` follows from the usual density of such a bed, and the bed differs by some
+        percent; `rb.measure_bed` returns what it is.
     name
         Name of the species in `pairs`; default that of the material.
 
@@ -184,6 +187,9 @@ class Particles(Part):
         ("count", "mass"),
         ("count", "fill_ratio"),
         ("mass", "fill_ratio"),
+        ("count", "bed_fill"),
+        ("mass", "bed_fill"),
+        ("fill_ratio", "bed_fill"),
     )
     name: str = ""
     material: AnyMaterial = Field(examples=["steel"])
@@ -193,6 +199,7 @@ class Particles(Part):
     count: Annotated[Whole, Field(ge=0, le=MAX_PARTICLES)] | None = None
     mass: PositiveMass | None = None
     fill_ratio: Number | None = None
+    bed_fill: Annotated[Number, Field(examples=[0.9])] | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -203,7 +210,7 @@ class Particles(Part):
     def _validate(self) -> Particles:
         if self.radius is not None and self.distribution is not None:
             raise Hint("one size is needed: radius, diameter or distribution", 'radius = "2 mm"')
-        amounts = [name for name in ("count", "mass", "fill_ratio") if getattr(self, name) is not None]
+        amounts = self.amounts
         if len(amounts) > 1:
             raise Hint(f"{amounts[0]} and {amounts[1]} exclude each other", "give one of them")
         if self.count == 0:
@@ -214,10 +221,17 @@ class Particles(Part):
                 "0.4",
                 ["fill_ratio"],
             )
+        if self.bed_fill is not None and not 0 < self.bed_fill <= 1:
+            raise Hint("a bed fills more than 0 and at most 1 of the cavity, which is then full", "0.9", ["bed_fill"])
         if self.distribution is not None:
             with at("distribution"):
                 self.diameters(1)
         return self
+
+    @property
+    def amounts(self) -> list[str]:
+        """Names of the given ones of count, mass, fill ratio and bed fill."""
+        return [name for name in _AMOUNTS if getattr(self, name) is not None]
 
     @property
     def label(self) -> str:
@@ -232,7 +246,7 @@ class Particles(Part):
     @property
     def has_amount(self) -> bool:
         """Whether an amount is given; otherwise the packing needs positions."""
-        return self.count is not None or self.mass is not None or self.fill_ratio is not None
+        return bool(self.amounts)
 
     def diameters(self, count: int) -> Vector:
         """Return the diameters of n particles, (n,) [m], ascending: the medians of n equal shares of the distribution."""
@@ -240,19 +254,34 @@ class Particles(Part):
             return np.full(count, 2 * present(self.radius))
         return self.distribution.diameters((np.arange(count) + 0.5) / count)
 
-    def number(self, volume: float) -> int:
-        """Return the number of particles in a cavity of this volume [m^3].
+    @property
+    def mean_diameter(self) -> float:
+        """Sum of the cubes of the diameters over the sum of their squares [m]."""
+        some = self.diameters(1 if self.distribution is None else _MANY)
+        return float(np.sum(some**3) / np.sum(some**2))
+
+    def number(self, volume: float, density: float = COMPACTED) -> int:
+        """Return the number of particles in a cavity.
+
+        Parameters
+        ----------
+        volume
+            Volume of the cavity [m^3].
+        density
+            Volume of the particles over that of their bed, for a `bed_fill`.
 
         Raises
         ------
         Hint
-            If mass or fill ratio are less than one particle, or more than a hundred million.
+            If the amount is less than one particle, or more than a hundred million.
         """
         if self.count is not None:
             return self.count
-        filled = self.mass / self.material.density if self.mass is not None else (self.fill_ratio or 0.0) * volume
-        with at("mass" if self.mass is not None else "fill_ratio"):
+        filled = self._filled(volume, density)
+        with at(*self.amounts):
             count = self._closest(filled)
+            if self.bed_fill is not None and self._volume(count) > filled * (1 + 1e-9):
+                count = max(1, count - 1) if count else 0  # A full cavity may not hold one more.
             if count < 1:
                 mass = self._volume(1) * self.material.density
                 weight = f"{mass:.4g} kg" if mass >= 1 else f"{1e3 * mass:.4g} g"
@@ -262,15 +291,17 @@ class Particles(Part):
                 )
         return count
 
-    def crowd(self, volume: float) -> Crowd:
-        """Return a summary of the particles in a cavity of this volume [m^3], without arrays; the count is approximate."""
+    def _filled(self, volume: float, density: float) -> float:
+        """Return the volume of the particles [m^3]; see `number`."""
+        if self.mass is not None:
+            return self.mass / self.material.density
+        return (self.fill_ratio or (self.bed_fill or 0.0) * density) * volume
+
+    def crowd(self, volume: float, density: float = COMPACTED) -> Crowd:
+        """Return a summary of the particles, without arrays, with an approximate count; see `number`."""
         some = self.diameters(1 if self.distribution is None else _MANY)
         each = float(np.mean(math.pi / 6 * some**3))
-        if self.count is not None:
-            count = self.count
-        else:
-            filled = self.mass / self.material.density if self.mass is not None else (self.fill_ratio or 0.0) * volume
-            count = round(min(filled / each, 1e18))
+        count = round(min(self._filled(volume, density) / each, 1e18)) if self.count is None else self.count
         return Crowd(count, each, 0.5 * float(some.max()))
 
     def _volume(self, count: int) -> float:

@@ -12,6 +12,8 @@ _OTHERS = {  # ours: others'
     "rolling coefficient": "mu_r rolling_friction rolling_resistance",
     "count": "n number amount num quantity",
     "fill_ratio": "fill filling packing_fraction volume_fraction",
+    "bed_fill": "fill_level fill_height bed_volume bed_ratio",
+    "particles.bed_fill": "bed_fill fill_level",
     "particles.fill_ratio": "fill_ratio fill filling packing_fraction volume_fraction",
     "particles.count": "count n number",
     "particles.diameter": "diameter",
@@ -62,6 +64,8 @@ _OTHERS = {  # ours: others'
     "impact": "ball single",
     "sdof": "1dof single_degree_of_freedom spring_mass mass_spring",
     "matrices": "fem mdof",
+    "compacted": "dense tapped shaken",
+    "settled": "poured loose",
     "event_driven": "event events exact",
     "two_step": "fixed_step",
 }

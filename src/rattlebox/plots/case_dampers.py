@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..model.cavities import Box, Cylinder
 from ..model.dampers import ImpactDamper
-from ..model.packing import Settled
+from ..model.packing import Bed
 from ..model.particle_damper import ParticleDamper
 from ..prepare.settle import settle
 from ..results.case_words import counted, joined
@@ -179,7 +179,7 @@ def positions_at_start(damper: ParticleDamper) -> Array:
     damper
         The damper.
     """
-    return settle(damper) if isinstance(damper.packing, Settled) else damper.start.position
+    return settle(damper) if isinstance(damper.packing, Bed) else damper.start.position
 
 
 def _draw_particles(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:

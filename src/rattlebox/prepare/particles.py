@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +13,9 @@ from rattlebox._util.exceptions import RattleboxError
 from rattlebox.core import _core
 from rattlebox.model.errors import at
 from rattlebox.model.methods import EventDriven, Output
-from rattlebox.model.packing import Settled
+from rattlebox.model.packing import Bed
 from rattlebox.model.particle_case import direction_of_base, inertia_along
+from rattlebox.prepare.bed import bed_level, bed_note
 from rattlebox.prepare.laws import pack_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
 from rattlebox.prepare.settle import pack_walls, settle
@@ -47,13 +48,15 @@ class Prepared:
     case
         The case, with a number in place of each softening "auto".
     notes
-        Reasons for the values of softening "auto".
+        Reasons for the values of softening "auto", and beds with another volume than stated.
     step
         The time step and its limits.
     tables
         Contact laws of the pairs in each damper.
     positions
         Initial positions of the particles of each damper, (n, 3) [m].
+    fills
+        `fill_ratio` and `bed_fill` of all cavities together at the start; the second if all have a bed.
     """
 
     case: Case
@@ -61,6 +64,7 @@ class Prepared:
     step: Step
     tables: tuple[ContactTable, ...]
     positions: tuple[Array, ...]
+    fills: Mapping[str, float]
 
 
 def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
@@ -86,7 +90,10 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
     """
     case, notes = resolve_softening(case)
     tables, step = _step(case)
-    return Prepared(case, notes, step, tables, tuple(_positions(case, _shapes(case), positions)))
+    shapes = _shapes(case)
+    starts = tuple(_positions(case, shapes, positions))
+    fills, more = _fills(case, [start - case.modes.q0 @ shape for start, shape in zip(starts, shapes, strict=True)])
+    return Prepared(case, (*notes, *more), step, tables, starts, fills)
 
 
 def count_steps(case: Case) -> int:
@@ -173,8 +180,7 @@ def settle_all(case: Case, proceed: Callable[[], bool]) -> bool:
         If particles cannot be inserted, or do not come to rest.
     """
     return all(
-        not isinstance(damper.packing, Settled) or settle(damper, proceed) is not None
-        for damper in case.particle_dampers
+        not isinstance(damper.packing, Bed) or settle(damper, proceed) is not None for damper in case.particle_dampers
     )
 
 
@@ -220,11 +226,26 @@ def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | Non
     for index, (damper, shape) in enumerate(zip(case.particle_dampers, shapes, strict=True)):
         displacement = case.modes.q0 @ shape
         position = damper.start.position + displacement
-        if isinstance(damper.packing, Settled):
+        if isinstance(damper.packing, Bed):
             with at(*(("dampers", index) if len(shapes) > 1 else ("damper",)), "packing"):
                 position = settle(damper) + displacement if known is None else known[index]
         positions.append(_array(position))
     return positions
+
+
+def _fills(case: Case, positions: Sequence[Array]) -> tuple[dict[str, float], list[str]]:
+    """Return the fills of all cavities together, and notes on beds; positions are relative to the cavities."""
+    dampers = case.particle_dampers
+    volume = sum(damper.cavity.volume for damper in dampers)
+    solid = sum(4 / 3 * math.pi * float(np.sum(damper.contents.radius**3)) for damper in dampers)
+    fills = {"fill_ratio": solid / volume}
+    notes: list[str] = []
+    if all(isinstance(damper.packing, Bed) and damper.up is not None for damper in dampers):
+        beds = [bed_level(damper, place)[0] for damper, place in zip(dampers, positions, strict=True)]
+        fills["bed_fill"] = sum(bed * damper.cavity.volume for bed, damper in zip(beds, dampers, strict=True)) / volume
+        for index, (damper, bed) in enumerate(zip(dampers, beds, strict=True)):
+            notes += bed_note(damper, damper.label(index), bed)
+    return fills, notes
 
 
 def _loads(case: Case) -> tuple[list[_core.Load], Array]:

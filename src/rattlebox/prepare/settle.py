@@ -1,4 +1,4 @@
-"""Particles inserted at random and settled under gravity."""
+"""Particles inserted at random, compacted, and settled under gravity."""
 
 from __future__ import annotations
 
@@ -9,16 +9,27 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from rattlebox._util.narrow import instance
+from rattlebox._util.narrow import instance, present
 from rattlebox.core import _core
+from rattlebox.model.cavities import Walls
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import TOUCHING, Crowd, Settled, check_packing, fewer_at_random, overlapping
+from rattlebox.model.packing import (
+    TOUCHING,
+    Bed,
+    Compacted,
+    Crowd,
+    check_packing,
+    fewer_at_random,
+    holds_at_random,
+    overlapping,
+    random_density,
+)
 from rattlebox.model.space import components_along, to_global
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rattlebox.model.cavities import AnyCavity, Walls
+    from rattlebox.model.cavities import AnyCavity
     from rattlebox.model.particle_damper import ParticleDamper
 
     Array = NDArray[np.float64]
@@ -39,6 +50,8 @@ STOPS = (
 )
 MAX_FRICTION = 1.0  # A larger coefficient of friction does not change the bed.
 CACHED_BEDS = 8
+ATTEMPTS = 4  # insertions with different random numbers into a cavity that is nearly full; more of a few particles
+SPREAD = 2**16  # points at which volumes in a cavity are computed
 
 
 @overload
@@ -46,16 +59,16 @@ def settle(damper: ParticleDamper) -> Array: ...
 @overload
 def settle(damper: ParticleDamper, proceed: Callable[[], bool]) -> Array | None: ...
 def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -> Array | None:
-    """Return the positions of a settled packing of a damper.
+    """Return the positions of the particles of a damper in a bed.
 
-    The last few packings are cached: cases that differ only in motion or contacts start from the same one.
+    The last few beds are cached: cases that differ only in motion or contacts start from the same one.
 
     Parameters
     ----------
     damper
-        The damper, with a `Settled` packing.
+        The damper, with a `Settled` or `Compacted` packing.
     proceed
-        Function that is called repeatedly; settling stops when it returns False.
+        Function that is called repeatedly; the computation stops when it returns False.
 
     Returns
     -------
@@ -67,22 +80,26 @@ def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -
     Hint
         If particles cannot be inserted, or do not come to rest.
     """
-    packing = instance(damper.packing, Settled)
+    packing = instance(damper.packing, Bed)
     key = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
     if key in _beds:
         return _beds[key].copy()
     radii = damper.contents.radius
-    inserted = insert(damper.cavity, radii, packing.seed)
-    bed = _SettlingBed(damper, proceed)
     try:
-        settled = bed.expand(bed.fall(inserted, packing.at_rest), damper.cavity)
+        if isinstance(packing, Compacted):
+            places = compact(damper, proceed)
+        else:
+            places = insert(damper.cavity, radii, packing.seed, proceed)
+        if damper.up is not None:
+            bed = _SettlingBed(damper, proceed)
+            places = bed.expand(bed.fall(places, packing.at_rest), damper.cavity)
     except _Stopped:
         return None
-    check_packing(damper.cavity, settled, radii)
+    check_packing(damper.cavity, places, radii)
     for oldest in list(_beds)[: 1 - CACHED_BEDS]:
         _beds.pop(oldest, None)
-    _beds[key] = settled.copy()
-    return settled
+    _beds[key] = places.copy()
+    return places
 
 
 _beds: dict[str, Array] = {}
@@ -92,7 +109,68 @@ class _Stopped(Exception):
     pass
 
 
-def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
+def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -> Array:
+    """Return positions of a dense bed at random, under a lid that is as low as its density allows.
+
+    Parameters
+    ----------
+    damper
+        The damper, with a `Compacted` packing.
+    proceed
+        Function that is called repeatedly.
+
+    Returns
+    -------
+    (n, 3) float
+        Positions relative to the centre of the cavity [m].
+
+    Raises
+    ------
+    Hint
+        If the cavity is too small for the particles.
+    """
+    cavity, radii, seed = damper.cavity, damper.contents.radius, instance(damper.packing, Compacted).seed
+    fill = 1.0 if damper.up is None else _compacted_fill(cavity, radii, damper.up)
+    while fill < 1:
+        try:
+            return insert(cavity, radii, seed, proceed, _under_lid(cavity, present(damper.up), fill))
+        except Hint:  # Narrow cavities hold looser beds than the usual density.
+            fill *= 1.03
+    for attempt in range(ATTEMPTS + 100 // radii.size):
+        try:
+            return insert(cavity, radii, [seed, attempt] if attempt else seed, proceed)
+        except Hint as hint:
+            full = hint
+    raise full
+
+
+def _compacted_fill(cavity: AnyCavity, radii: Array, up: Array) -> float:
+    """Return the volume of a compacted bed over that of the cavity, at most 1."""
+    diameter = 2 * float(np.sum(radii**3) / np.sum(radii**2))
+    solid = 4 / 3 * math.pi * float(np.sum(radii**3)) / cavity.volume
+    lowest = min(1.0, 2.5 * float(radii.max()) / cavity.extent(up))  # one layer
+    fill = 1.0
+    for _ in range(20):
+        fill = min(1.0, max(lowest, solid / random_density(cavity, diameter, fill, up)))
+    return fill
+
+
+def _under_lid(cavity: AnyCavity, up: Array, fill: float) -> Walls:
+    """Return the walls of a cavity with a lid perpendicular to gravity, above a share of the volume."""
+    walls = cavity.walls()
+    level = np.quantile(cavity.spread(SPREAD) @ up, fill)
+    return Walls(
+        (*walls.names, "lid"), np.vstack([walls.axis, up]), np.append(walls.offset, level), (*walls.form, "plane")
+    )
+
+
+def insert(
+    cavity: AnyCavity,
+    radii: Array,
+    seed: int | list[int],
+    proceed: Callable[[], bool] = lambda: True,
+    walls: Walls | None = None,
+) -> Array:
     """Return random positions of spheres that do not overlap.
 
     Parameters
@@ -103,6 +181,10 @@ def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
         Radii of the spheres, (n,) [m].
     seed
         Random seed of the positions.
+    proceed
+        Function that is called repeatedly.
+    walls
+        Walls of the cavity, with those that are added; default those of the cavity.
 
     Returns
     -------
@@ -115,6 +197,7 @@ def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
         If the cavity is too small for all of them.
     """
     generator = np.random.default_rng(seed)
+    walls = cavity.walls() if walls is None else walls
     half = cavity.lengths / 2
     places = np.zeros((radii.size, 3))
     there = np.zeros(0, int)
@@ -123,12 +206,12 @@ def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
         left = new = np.flatnonzero(octave == k)
         for _ in range(1000):
             places[left] = to_global(generator.uniform(-half, half, (left.size, 3)), cavity.frame)
-            outside = cavity.room(places[left], radii[left]) < 0
+            outside = walls.distances(places[left]).min(axis=1) < radii[left]
             left = left[outside | _overlap(places[left], radii[left], places[there], radii[there])]
             if not left.size:
                 break
         there = np.sort(np.concatenate([there, new]))
-        places[there] = push_apart(cavity, places[there], radii[there], SWELL)
+        places[there] = push_apart(cavity, places[there], radii[there], SWELL, proceed, walls)
     return places
 
 
@@ -146,7 +229,14 @@ def _overlap(places: Array, radii: Array, others: Array, other_radii: Array) -> 
     return overlaps
 
 
-def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> Array:
+def push_apart(
+    cavity: AnyCavity,
+    places: Array,
+    radii: Array,
+    swell: float,
+    proceed: Callable[[], bool] = lambda: True,
+    walls: Walls | None = None,
+) -> Array:
     """Push overlapping spheres apart and off the walls until no overlap is left.
 
     Parameters
@@ -159,6 +249,10 @@ def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> 
         Radii of the spheres, (n,) [m].
     swell
         Enlargement of the spheres during the computation, relative to the radius.
+    proceed
+        Function that is called repeatedly.
+    walls
+        Walls of the cavity, with those that are added; default those of the cavity.
 
     Returns
     -------
@@ -179,11 +273,13 @@ def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> 
     E. Bitzek et al., Physical Review Letters 97 (2006) 170201, doi:10.1103/PhysRevLett.97.170201.
     """
     places, grown = places.copy(), radii * (1 + swell)
-    walls = cavity.walls()
+    walls = cavity.walls() if walls is None else walls
     margin = 0.3 * float(grown.min())
     listed = np.full_like(places, np.inf)  # positions at which the candidate pairs were listed
     move, stride, mixing, downhill = np.zeros_like(places), 0.3, 0.1, 0
-    for _ in range(MAX_ITERATIONS):
+    for iteration in range(MAX_ITERATIONS):
+        if iteration % 50 == 0 and not proceed():
+            raise _Stopped
         if not 2 * np.abs(places - listed).max() * math.sqrt(3) < margin:
             near = overlapping(places, grown, margin)[:2]
             listed = places.copy()
@@ -214,10 +310,12 @@ def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> 
             move, stride, mixing, downhill = np.zeros_like(places), 0.5 * stride, 0.1, 0
         move += stride * force
         places += stride * move
-    filled = float(np.sum(radii**3)) * 4 / 3 * math.pi / cavity.volume
+    crowd = Crowd.of(radii)
+    filled = crowd.count * crowd.volume / cavity.volume
     raise Hint(
-        f"{radii.size} particles cannot be inserted at random: they would fill {100 * filled:.3g} % of the cavity",
-        fewer_at_random(cavity, Crowd.of(radii)),
+        f"{crowd.count} particles, which would fill {100 * filled:.3g} % of the cavity, cannot be inserted at random"
+        + (f"; {holds_at_random(cavity, crowd)}" if crowd.count > crowd.at_random(cavity) else ""),
+        fewer_at_random(cavity, crowd),
     )
 
 
@@ -243,7 +341,7 @@ class _SettlingBed:
         self._contents, self._walls = damper.contents, damper.cavity.walls()
         self._gravity = np.array(damper.gravity)
         self._pull = float(np.linalg.norm(self._gravity))
-        height = damper.cavity.extent(self._gravity / self._pull)
+        height = damper.cavity.extent(present(damper.up))
         self._fall = math.sqrt(2 * height / self._pull)
         small = float(self._contents.radius.min())
         # A linear contact has a largest overlap of speed times duration over pi.
@@ -340,7 +438,4 @@ def pack_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
 
 def _friction(damper: ParticleDamper) -> float:
     """Return the largest coefficient of friction in a damper, at most `MAX_FRICTION`."""
-    entries = damper.contact_table.entries
-    return min(
-        max((entry.friction.coefficient for entry in entries if entry.friction is not None), default=0.0), MAX_FRICTION
-    )
+    return min(damper.largest_friction, MAX_FRICTION)

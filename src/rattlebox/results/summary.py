@@ -141,6 +141,7 @@ def _particle_results(run: Record) -> dict[str, Value]:
     return {
         "particles": len(arrays.particles),
         "particle_mass": float(arrays.particle_mass.sum()),
+        **{name: run.diagnostics[name] for name in ("fill_ratio", "bed_fill") if name in run.diagnostics},
         "first_touches": sum(run.counts.get(f"first_touches_{partner}", 0) for partner in PARTNERS),
         "contacts": float(arrays.contacts.sum(axis=(1, 2)).mean()),
         **{name: run.diagnostics.get(name, float("nan")) for name in names},
@@ -316,6 +317,8 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         _Row("impacts", "impacts", ""),
         _Row("particles", "particles", ""),
         _Row("particle_mass", "mass of the particles", "kg"),
+        _Row("fill_ratio", "volume of the particles over the cavity", "%"),
+        _Row("bed_fill", "volume of the bed over the cavity", "%"),
         _Row("first_touches", "first touches", ""),
         _Row("contacts", "mean number of contacts", "1"),
         _Row("step", "time step", "s"),

@@ -17,7 +17,7 @@ from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
-from rattlebox.model.packing import Lattice, Settled
+from rattlebox.model.packing import Bed, Lattice
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 from rattlebox.prepare.time_step import exceeded_limits
@@ -304,7 +304,7 @@ def _starts(case: Case, count: int) -> list[Case]:
                 # `start` displaces the row as a whole, by a fraction of the gap.
                 start = float(rng.uniform(-1, 1)) if number else 0.0
                 dampers.append(damper.model_copy(update={"start": start}))
-            elif isinstance(damper.packing, (Settled, Lattice)) and damper.packing.is_random:
+            elif isinstance(damper.packing, (Bed, Lattice)) and damper.packing.is_random:
                 random = True
                 packing = damper.packing.model_copy(update={"seed": damper.packing.seed + number})
                 dampers.append(damper.model_copy(update={"packing": packing}))

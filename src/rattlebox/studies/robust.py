@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import Lattice, Settled
+from rattlebox.model.packing import Bed, Lattice
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.units import whole_number
 
@@ -65,7 +65,7 @@ def packing_axis(case: Case, count: int) -> dict[str, Any]:
     seeds: dict[str, list[int]] = {}
     for index, damper in enumerate(case.dampers):
         packing = damper.packing if isinstance(damper, ParticleDamper) else None
-        if isinstance(packing, (Settled, Lattice)) and packing.is_random:
+        if isinstance(packing, (Bed, Lattice)) and packing.is_random:
             seeds[f"dampers[{index}].packing.seed"] = list(range(packing.seed, packing.seed + count))
     if not seeds:
         raise no_random_packing()

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import rattlebox as rb
-from rattlebox.prepare.settle import insert
+from rattlebox.prepare.settle import compact, insert
 
 CAVITIES = {
     "can": rb.Cylinder(diameter="40 mm", length="60 mm", axis="x"),
@@ -19,6 +19,7 @@ CAVITIES = {
     "plate": rb.Cylinder(diameter="80 mm", length="9 mm", axis="z"),
 }
 UP = (0, 0, -9.81)
+PACKINGS = {"lattice": rb.Lattice(), "settled": rb.Settled(seed=1), "compacted": rb.Compacted(seed=1)}
 
 
 def attempt(wanted: dict[str, Any]) -> None:
@@ -27,6 +28,8 @@ def attempt(wanted: dict[str, Any]) -> None:
     damper = rb.ParticleDamper(**{**wanted, "particles": particles, "contact": rb.Tsuji(restitution=0.6)})
     if isinstance(damper.packing, rb.Settled):
         insert(damper.cavity, damper.contents.radius, damper.packing.seed)
+    if isinstance(damper.packing, rb.Compacted):
+        compact(damper)
 
 
 def followed(wanted: dict[str, Any], message: str, way: int) -> dict[str, Any]:
@@ -36,8 +39,8 @@ def followed(wanted: dict[str, Any], message: str, way: int) -> dict[str, Any]:
     amounts = {
         name: value for name, value in wanted["particles"].items() if name not in ("count", "fill_ratio", "mass")
     }
-    if kind := re.search(r'packing = \{ kind = "(\w+)" \}', tried):
-        ways.append({"packing": {"lattice": rb.Lattice(), "settled": rb.Settled(seed=1)}[kind[1]]})
+    for kind in re.findall(r'packing = \{ kind = "(\w+)" \}', tried):
+        ways.append({"packing": PACKINGS[kind]})
     if gravity := re.search(r"gravity = \[0, 0, -9.81\]", tried):
         assert gravity
         ways.append({"gravity": UP})
@@ -51,7 +54,7 @@ def followed(wanted: dict[str, Any], message: str, way: int) -> dict[str, Any]:
 
 @pytest.mark.parametrize("way", [0, pytest.param(1, marks=pytest.mark.slow), pytest.param(2, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("gravity", [UP, (0, 0, 0)], ids=["gravity", "no gravity"])
-@pytest.mark.parametrize("packing", [rb.Settled(seed=1), rb.Lattice()], ids=lambda packing: packing.kind)
+@pytest.mark.parametrize("packing", PACKINGS.values(), ids=PACKINGS)
 @pytest.mark.parametrize(
     "particles",
     [

@@ -1,0 +1,211 @@
+"""Volume, height and density of the bed of particles in a cavity."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rattlebox.model.errors import at
+from rattlebox.model.packing import Bed, Crowd
+from rattlebox.prepare.settle import SPREAD, settle
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rattlebox.model.cavities import AnyCavity
+    from rattlebox.model.particle_damper import ParticleDamper
+
+    Array = NDArray[np.float64]
+
+MARGIN = 2.0
+"""Distance of the bulk from the walls and from the surface of the bed, over the largest diameter."""
+TOLERANCE = 0.05
+"""Difference of the volume of a bed over that of the cavity from the stated one, above which a run notes it."""
+BULK_POINTS = 2**19
+
+
+@dataclass(frozen=True)
+class BedMeasures:
+    """Fill of a cavity, by the volume of its particles and by the volume of their bed.
+
+    Attributes
+    ----------
+    count
+        Number of particles.
+    fill_ratio
+        Volume of the particles over that of the cavity.
+    bed_fill
+        Volume of the bed, with the voids in it, over that of the cavity; NaN without gravity.
+    height
+        Height of the bed above the lowest point of the cavity [m]; NaN without gravity.
+    density
+        Volume of the particles over that of the bed; NaN without gravity.
+    bulk_density
+        The same at least two diameters from the walls and from the surface; NaN if there is no such place.
+    bulk_error
+        Standard error of the bulk density.
+    full_count
+        Largest number of such particles that the cavity holds at random, as in a full cavity of a compacted bed.
+    """
+
+    count: int
+    fill_ratio: float
+    bed_fill: float
+    height: float
+    density: float
+    bulk_density: float
+    bulk_error: float
+    full_count: int
+
+
+def bed_level(damper: ParticleDamper, positions: Array) -> tuple[float, float]:
+    """Return volume and height of a bed.
+
+    Parameters
+    ----------
+    damper
+        The damper, with gravity.
+    positions
+        Positions of the particles relative to the centre of the cavity, (n, 3) [m].
+
+    Returns
+    -------
+    fill, height
+        Volume of the bed over that of the cavity, and its height [m].
+
+    Notes
+    -----
+    The surface is where a liquid would have it whose centre of mass is that of the particles. For level layers of equal
+    spheres this is the top of the highest layer.
+    """
+    up, volume = np.asarray(damper.up), damper.contents.radius**3
+    heights, centroids = _levels(damper.cavity, tuple(up.tolist()))
+    centre = float(volume @ (positions @ up) / volume.sum())
+    below = int(np.searchsorted(centroids, centre))
+    top = heights[min(below, heights.size - 1)]
+    return below / heights.size, float(top - heights[0])
+
+
+@lru_cache(maxsize=16)
+def _levels(cavity: AnyCavity, up: tuple[float, float, float]) -> tuple[Array, Array]:
+    """Return heights of points in a cavity, ascending, and the mean height of all points up to each."""
+    heights = np.sort(cavity.spread(SPREAD) @ np.array(up))
+    return heights, np.cumsum(heights) / np.arange(1, heights.size + 1)
+
+
+def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
+    """Yield a note if a bed does not fill its cavity as `bed_fill` states.
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    name
+        Name of the damper, for the note.
+    fill
+        Volume of its bed over that of the cavity.
+    """
+    asked = damper.particles[0].bed_fill
+    if asked is not None and isinstance(damper.packing, Bed) and abs(fill - asked) > TOLERANCE:
+        count = damper.contents.radius.size
+        more = "more" if fill < asked else "fewer"
+        yield (
+            f"the bed of {name} fills {100 * fill:.3g} % of the cavity, not {100 * asked:.3g} %, because the number of "
+            f"particles, {count}, follows from the usual density of such a bed: use count with {more} of them"
+        )
+
+
+def measure_bed(damper: ParticleDamper) -> BedMeasures:
+    """Return by how much a damper is filled, by the volume of its particles and by the volume of their bed.
+
+    Parameters
+    ----------
+    damper
+        Damper with any packing; a settled or compacted bed is computed, as before a run.
+
+    Returns
+    -------
+    BedMeasures
+        Fill ratio, volume, height and density of the bed, and the number in a full cavity.
+
+    Raises
+    ------
+    CaseError
+        If particles cannot be inserted, or do not come to rest.
+
+    Notes
+    -----
+    The surface of the bed is where a liquid would have it whose centre of mass is that of the particles; for level layers of
+    equal spheres this is the top of the highest layer. The density of the bulk is that of a part of the bed; its standard
+    error is estimated from eight parts of equal volume. Volumes are counted on at least 65 000 evenly spread points, with a
+    relative error below 0.3 %.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> damper = rb.ParticleDamper(
+    ...     particles=rb.Particles(material="steel", diameter="4 mm", bed_fill=0.9),
+    ...     cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
+    ...     contact=rb.Tsuji(restitution=0.7),
+    ...     friction=0.3,
+    ...     packing=rb.Compacted(seed=1),
+    ... )
+    >>> bed = rb.measure_bed(damper)
+    >>> bed.count, round(bed.fill_ratio, 2), abs(bed.bed_fill - 0.9) < 0.03
+    (394, 0.49, True)
+    """
+    with at("packing"):
+        positions = settle(damper) if isinstance(damper.packing, Bed) else damper.start.position
+    cavity, contents = damper.cavity, damper.contents
+    fill_ratio = 4 / 3 * math.pi * float(np.sum(contents.radius**3)) / cavity.volume
+    fill, height = (math.nan, math.nan) if damper.up is None else bed_level(damper, positions)
+    bulk, error = _bulk_density(damper, positions, height)
+    return BedMeasures(
+        count=contents.radius.size,
+        fill_ratio=fill_ratio,
+        bed_fill=fill,
+        height=height,
+        density=fill_ratio / fill if fill else math.nan,
+        bulk_density=bulk,
+        bulk_error=error,
+        full_count=Crowd.of(contents.radius).at_random(cavity),
+    )
+
+
+def _bulk_density(damper: ParticleDamper, positions: Array, height: float) -> tuple[float, float]:
+    """Return the density in the bulk and its standard error; NaN if there is no bulk."""
+    cavity, radii = damper.cavity, damper.contents.radius
+    margin = MARGIN * 2 * float(radii.max())
+    points = cavity.spread(BULK_POINTS)
+    inside = cavity.depth(points) > margin
+    if damper.up is not None:
+        heights = points @ damper.up
+        inside &= heights < heights.min() + height - margin
+    points = points[inside]
+    if points.shape[0] < 100:
+        return math.nan, math.nan
+    filled = _in_spheres(points, positions, radii)
+    # Points in eight octants about the median are eight parts of similar volume.
+    octant = (points > np.median(points, axis=0)) @ np.array([1, 2, 4])
+    parts = np.array([filled[octant == k].mean() for k in np.unique(octant)])
+    return float(filled.mean()), float(parts.std(ddof=1) / math.sqrt(parts.size))
+
+
+def _in_spheres(points: Array, positions: Array, radii: Array) -> NDArray[np.bool_]:
+    """Return whether each point is in one of the spheres, (n,)."""
+    from scipy.spatial import cKDTree
+
+    filled = np.zeros(len(points), bool)
+    sizes = np.log2(radii / radii.min()).astype(int)
+    for size in np.unique(sizes):  # The search radius is that of similar spheres.
+        own = np.flatnonzero(sizes == size)
+        near = cKDTree(points).sparse_distance_matrix(
+            cKDTree(positions[own]), float(radii[own].max()), output_type="ndarray"
+        )
+        filled[near["i"][near["v"] < radii[own][near["j"]]]] = True
+    return filled
