@@ -174,7 +174,8 @@ def test_maps_of_one_cavity_agree_with_designs_of_the_bar() -> None:
     case, amplitudes = example["bar"](softening=100), ["50 um", "80 um"]
     designs = example["search"](case, amplitudes, packings=1, fills=[0.4], numbers=[1, 2], progress=False)
     one = example["loss_map"](case, 0.4, amplitudes, packings=1)
-    response = rb.response_from_map(case.structure, one, level="6 N", number=[1, 2])
+    with pytest.warns(UserWarning, match="validity limit"):  # softening = 100 is for speed
+        response = rb.response_from_map(case.structure, one, level="6 N", number=[1, 2])
     least = response.damping_ratio.isel({"at": 0, "mode": 0}).min("map_amplitude")
     np.testing.assert_allclose(designs.damping_ratio, least, rtol=0.05)
     assert int(example["recommended"](designs)["damper.number"]) == 2

@@ -75,8 +75,8 @@ def test_view_of_particles(folder):
 def test_particle_run_in_parts_has_the_same_bits(folder, tmp_path, monkeypatch):
     """A run that is stopped for intermediate views gives the bits of a run without stops."""
     seen = []
-    monkeypatch.setattr(worker, "FIRST_LOOK", 0.1)
-    monkeypatch.setattr(worker, "MOST_WAIT", 0.1)
+    monkeypatch.setattr(worker, "FIRST_LOOK", 0.02)
+    monkeypatch.setattr(worker, "MOST_WAIT", 0.05)
     text = SHORT_BOX.replace('"20 ms"', '"60 ms"')
     worker.run(lambda what, *_: seen.append(what), text, str(tmp_path), "run-001", False)
     assert "view" in seen

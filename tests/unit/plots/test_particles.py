@@ -306,7 +306,7 @@ def test_an_interrupted_film_does_not_replace_the_earlier_one(
         (["run.nc", "--number", "1"], "--number 1: run.nc has no snapshots\n  try: run.vtkhdf"),
         (
             ["run.nc", "--kind", "impacts"],
-            "--kind impacts: this run has no such figure\n  known: energy, motion, particles",
+            "--kind impacts: this run has no such figure\n  known: case, energy, motion, particles, responses",
         ),
         (["run.vtkhdf", "--number", "5"], "holds 5 snapshots; 5 is not from 0 to 4"),
         (["run.vtkhdf", "-o", "a.jpg"], "the suffix must be one of .png, .svg, .pdf, .gif, .mp4"),
@@ -330,7 +330,7 @@ def test_an_interrupted_film_does_not_replace_the_earlier_one(
         ([".", "--pixels", "320x180"], "--pixels 320x180: this option is for films"),
         ([".", "--kind", "energy", "--colour", "spin"], "--colour spin: this option is for pictures of particles"),
         ([".", "--kind", "particles", "--view", "below"], "view 'below' is not one of 'oblique', 'front'"),
-        ([".", "--kind", "impacts"], "--kind impacts: this run has no such figure\n  known: energy, motion, particles"),
+        ([".", "--kind", "impacts"], "--kind impacts: this run has no such figure\n  known: case, energy, motion, particles, responses"),
     ],
 )
 def test_wrong_arguments_are_refused(

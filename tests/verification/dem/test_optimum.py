@@ -8,7 +8,7 @@ import pytest
 
 import rattlebox as rb
 
-from ..exact import shaken
+from support.exact import shaken
 
 DIAMETER = 0.004
 LENGTH = "damper.cavity.size[0]"
