@@ -194,7 +194,8 @@ void add_dem(nb::module_& module) {
         .def("save", &Dem::save, "Return all that a bitwise restart needs.")
         .def("restore", &Dem::restore, nb::arg("bytes"), "Continue from a saved state.")
         .def("continue_from", &Dem::continue_from, nb::arg("bytes"), nb::arg("dt"),
-             "Start from the last sample of a run with the same particles and structure; dt is the step of that run.")
+             "Start from the last sample of a run with the same particles and structure; dt is the step of "
+             "that run.")
         .def_prop_ro("status", &Dem::status)
         .def_prop_ro("step", &Dem::step, "The next step.")
         .def_prop_ro("serial_steps", &Dem::serial_steps,

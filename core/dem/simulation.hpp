@@ -358,8 +358,8 @@ class Simulation {
         ++steps_since_;
     }
 
-    // Predicts the next step, which was predicted with another time step and other inputs, from the state at the
-    // last step.
+    // Predicts the next step, which was predicted with another time step and other inputs, from the state at
+    // the last step.
     void predict_again(real dt_before) {
         modes_ = output_modes_;
         --step_, --steps_since_;
@@ -540,9 +540,9 @@ public:
         require(step_ <= problem_.steps + 1);
     }
 
-    // Reads the state at the last sample of a run with the same particles and structure, but another time step
-    // or other signals, and makes that sample the begin of this run: time, work and extremes count from there.
-    // Losses continue.
+    // Reads the state at the last sample of a run with the same particles and structure, but another time
+    // step or other signals, and makes that sample the begin of this run: time, work and extremes count from
+    // there. Losses continue.
     template <class Reader> void continue_from(Reader& reader, real dt_before) {
         read(reader);
         require(step_ > 0 && status_ == Status::finished && dt_before > 0 && dt_before < infinity);

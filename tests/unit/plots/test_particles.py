@@ -330,7 +330,10 @@ def test_an_interrupted_film_does_not_replace_the_earlier_one(
         ([".", "--pixels", "320x180"], "--pixels 320x180: this option is for films"),
         ([".", "--kind", "energy", "--colour", "spin"], "--colour spin: this option is for pictures of particles"),
         ([".", "--kind", "particles", "--view", "below"], "view 'below' is not one of 'oblique', 'front'"),
-        ([".", "--kind", "impacts"], "--kind impacts: this run has no such figure\n  known: case, energy, motion, particles, responses"),
+        (
+            [".", "--kind", "impacts"],
+            "--kind impacts: this run has no such figure\n  known: case, energy, motion, particles, responses",
+        ),
     ],
 )
 def test_wrong_arguments_are_refused(

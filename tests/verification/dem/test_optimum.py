@@ -5,10 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.exact import shaken
 
 import rattlebox as rb
-
-from support.exact import shaken
 
 DIAMETER = 0.004
 LENGTH = "damper.cavity.size[0]"
