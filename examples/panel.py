@@ -28,24 +28,17 @@ damper = rb.ParticleDamper(
     direction="z",
     softening=10,
 )
-shaking = rb.Random("gevs_acceptance", LENGTH, seed=1)
-common = {"structure": panel, "base": shaking, "duration": LENGTH, "output": rb.Output(rate="10 kHz")}
-figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
-levels = {}
+run = {"base": rb.Random("gevs_acceptance", LENGTH, seed=1), "duration": LENGTH, "output": rb.Output(rate="10 kHz")}
+levels, (figure, axes) = {}, plt.subplots(figsize=(7, 3), layout="constrained")
 for name, dampers in {"bare": {}, "with particles": {"damper": damper}}.items():
-    motion = rb.simulate(rb.Case(**common, **dampers)).motion
+    motion = rb.simulate(rb.Case(structure=panel, **run, **dampers)).motion
     along_z = motion.sel(axis="z") if "axis" in motion.dims else motion
     velocity = along_z.velocity.sel(point="middle") + along_z.base_velocity
     absolute = velocity.differentiate("time").assign_attrs(units="m/s^2")
     density = power_spectral_density(motion.time, absolute, resolution=2).density
     level = band_levels(density.sel(frequency=slice(20, 2000))) / G
-    axes.bar(
-        np.arange(level.size) + 0.4 * len(levels),
-        level,
-        width=0.4,
-        color=rb.plots.SERIES_COLOURS[len(levels)],
-        label=name,
-    )
+    place, colour = np.arange(level.size) + 0.4 * len(levels), rb.plots.SERIES_COLOURS[len(levels)]
+    axes.bar(place, level, width=0.4, color=colour, label=name)
     levels[name] = float(level.sel(nominal="200")), float(along_z.interface_force.std())
     print(f"{name:14} {levels[name][0]:.1f} g in the band of 200 Hz, {levels[name][1]:.0f} N on the base")
 axes.set_xticks(np.arange(level.size) + 0.2, level.nominal.values, rotation=90)
