@@ -1,8 +1,15 @@
-"""For designers of particle dampers: how far rules of thumb hold, by loss maps and decays of beds of balls.
+"""Rules of thumb and their range
+==============================
+
+For designers of particle dampers: how far rules of thumb hold, by loss maps and decays of beds of balls.
 
 Beds of 16 balls a layer are shaken without gravity at up to 2.5 times L/pi, where L is the length that they can move;
 restitution, friction and the number of layers vary.
+
+:doc:`/guide/rules_of_thumb` explains it.
 """
+
+# sphinx_gallery_tags = ["space", "map", "damping curve"]
 
 import math
 
@@ -80,20 +87,25 @@ if __name__ == "__main__":
         print(f"{name:40}", *(f"{value:4.1f}" for value in values))
     calm = np.array([beds[name] for name in CALM])
     at = {ratio: calm[:, k] for k, ratio in enumerate(RATIOS)}
-    assert at[1.0].min() > 3.0 and at[1.0].max() < 4.2  # close to the largest possible loss, 4
-    assert at[2.5].min() > 1.6 and at[2.5].max() < 2.3  # half of it
-    assert at[0.8].min() < 1.2 and at[0.8].max() > 2.5  # collects or not
-    assert all(1.9 < beds[name][2] < 3.2 for name in LIVELY)
+    lively = np.array([beds[name] for name in LIVELY])
+    for rows, ranges in ((calm, ((0.7, 3.1), (3.2, 4.1), (1.8, 2.2))), (lively, ((2.6, 3.2), (2.3, 2.9), (1.1, 1.4)))):
+        found = [(rows[:, k].min(), rows[:, k].max()) for k in (1, 2, 5)]  # at 0.8, 1 and 2.5 L/pi
+        assert np.allclose(found, ranges, rtol=0.1, atol=0.1)
+    assert at[0.8].min() < 0.25 * at[1.0].max()  # collects or not
+    assert all(np.ptp(at[ratio]) < 0.25 * at[ratio].mean() for ratio in (1.3, 2.0, 2.5))
+    assert (lively[:, :2].max(axis=1) > lively[:, 2]).all()
+    assert np.allclose([beds["1 layer"][2], calm[0, 2]], [2.3, 3.4], atol=0.25)
     assert abs(balls["one ball, restitution 0"][2] - 4) < 0.01
     assert 1.1 < balls["one ball, restitution 0.8"][2] < 1.3
 
     added = {share: decays(share) for share in (0.05, 0.2)}
     for share, (near, above) in added.items():
         print(f"mass ratio {share:.0%}: adds a damping ratio of {near:.2f} of it at 1.2 L/pi, {above:.2f} at 2.5 L/pi")
-    assert 0.42 < added[0.05][0] < 0.56 and 0.35 < added[0.2][0] < 0.48  # 3.1 / (2 pi) = 0.5 from the loss map
+    assert np.allclose(added[0.05], [0.48, 0.27], rtol=0.12)  # 3.1 / (2 pi) = 0.49 and 1.9 / (2 pi) = 0.30 from the map
+    assert np.allclose(added[0.2], [0.41, 0.22], rtol=0.12)
     floor = along_a_floor()
     print("along a floor at 0.1, 0.2, 0.5 and 1 g:", ", ".join(f"{value:.1f}" for value in floor), "m V^2")
-    assert floor[:2].max() < 0.2 and floor[2:].min() > 0.5
+    assert floor[:2].max() < 0.1 and np.allclose(floor[2:], [0.7, 1.8], rtol=0.2)
 
     figure, axes = plt.subplots(figsize=(6.5, 3.5), layout="constrained")
     styles = [(CALM, "o-"), (LIVELY, "s--"), (balls, "k:")]
