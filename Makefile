@@ -8,7 +8,7 @@ CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*
 
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: setup demo reproduction test app-test verify sanitize sanitize-memory sanitize-threads coverage mutate lint stub docs wheel bench \
+.PHONY: setup demo reproduction test app-test verify sanitize sanitize-memory sanitize-threads coverage mutate lint stub docs gallery wheel bench \
     bench-guard format clean
 
 setup: $(VENV)/.installed
@@ -123,8 +123,13 @@ format: setup
 stub: setup
 	cd src && ../$(BIN)/python -m nanobind.stubgen -q -m $$(../$(BIN)/python -c "from rattlebox.core.choose import core; print(core().__name__)") -o rattlebox/core/_core.pyi
 
+# The pages, with the figures of docs/_static in the gallery of examples.
 docs: setup
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
 
+# The same, with the scripts of the gallery run, so that their output is on their pages, and their figures in docs/_static.
+gallery: setup
+	$(BIN)/sphinx-build -W -b html -D plot_gallery=True docs docs/_build/html
+
 clean:
-	rm -rf $(VENV) build docs/_build
+	rm -rf $(VENV) build docs/_build docs/gallery

@@ -1,7 +1,14 @@
+import sys
+from pathlib import Path
+
 from docutils import nodes
 from docutils.parsers.rst import Directive
 from docutils.statemachine import StringList
 from latex2mathml.converter import convert
+
+sys.path.insert(0, str(Path(__file__).parent))  # for the module of the gallery
+
+import gallery_of_examples
 
 import rattlebox
 from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
@@ -9,7 +16,7 @@ from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
 project = "Rattlebox"
 author = "Rattlebox developers"
 release = rattlebox.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
 myst_enable_extensions = ["dollarmath"]
 exclude_patterns = ["_build", "validation/verification_table.md", "validation/paper_table.md"]
 html_theme = "furo"
@@ -20,6 +27,24 @@ html_show_copyright = False
 html_math_renderer = "mathml"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
+plot_gallery = "False"  # `make gallery` runs the scripts
+sphinx_gallery_conf = {
+    "examples_dirs": "_build/examples",
+    "gallery_dirs": "gallery",
+    "backreferences_dir": "gallery/uses",
+    "filename_pattern": rf"(?<!{')(?<!'.join(gallery_of_examples.LONG)})\.py$",
+    "ignore_pattern": r"write_data\.py",
+    "image_scrapers": ("gallery_of_examples.take_figure",),
+    "reset_modules": ("matplotlib", "gallery_of_examples.before"),
+    "capture_repr": (),
+    "abort_on_example_error": True,
+    "remove_config_comments": True,
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "within_subsection_order": "FileNameSortKey",
+    "parallel": 2,
+}
 
 
 class SchemaTable(Directive):
@@ -52,7 +77,12 @@ class SchemaTable(Directive):
 
 
 def setup(app):
-    """Add tables of output variables, and write formulas as MathML: browsers draw it, and MathJax would need the network."""
+    """Prepare the gallery, add tables of output variables, and write formulas as MathML.
+
+    Browsers draw MathML; MathJax would need the network.
+    """
+    gallery_of_examples.prepare()
+    app.connect("source-read", gallery_of_examples.show_figure)
     app.add_directive("schema", SchemaTable)
 
     def write(display):

@@ -1,7 +1,14 @@
-"""For users whose damper behaves differently from start to start: basins of attraction of a ball in a shaken cavity.
+"""Which start leads to which motion
+=================================
+
+For users whose damper behaves differently from start to start: basins of attraction of a ball in a shaken cavity.
 
 The map shows which initial position and velocity leads to which of four steady motions.
+
+:doc:`/how-to/basins` explains it.
 """
+
+# sphinx_gallery_tags = ["lecture", "map"]
 
 import rattlebox as rb
 

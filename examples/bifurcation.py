@@ -1,7 +1,14 @@
-"""For users who look for period doubling and jumps: bifurcation diagram of a ball in a shaken cavity.
+"""Period doubling of a ball in a shaken cavity
+============================================
+
+For users who look for period doubling and jumps: bifurcation diagram of a ball in a shaken cavity.
 
 The motion is followed over the amplitude of the shaker, up and down again.
+
+:doc:`/how-to/bifurcation` explains it.
 """
+
+# sphinx_gallery_tags = ["lecture", "sweep"]
 
 import rattlebox as rb
 

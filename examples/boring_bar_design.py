@@ -1,10 +1,17 @@
-"""For engineers who fill a tool with particles: how many cavities, and how full? A design, a map, and a report of both.
+"""Number and fill of the cavities of a boring bar
+===============================================
+
+For engineers who fill a tool with particles: how many cavities, and how full? A design, a map, and a report of both.
 
 The head of the bar has room for four cavities. Each design is evaluated at seven amplitudes of steady vibration with three
 random packings: 12 designs, 630 shaken cavities. Maps of one cavity give the same answer for any number in a fraction of a
 second. The recommended design is simulated with 20 other packings. `boring_bar_design.zarr` holds the finished trials: the
 script resumes after a stop.
+
+:doc:`/how-to/design` explains it.
 """
+
+# sphinx_gallery_tags = ["machine tool", "design", "map", "response"]
 
 import sys
 import time

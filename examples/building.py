@@ -1,8 +1,15 @@
-"""For structural engineers who compare dampers in an earthquake: storey drifts of a building with three dampers.
+"""A building in an earthquake
+===========================
+
+For structural engineers who compare dampers in an earthquake: storey drifts of a building with three dampers.
 
 Five storeys are bare, or have a tuned mass, one ball or sixteen balls of the same mass on the top floor. The ground motion
 is synthetic and has the file format of the PEER database (AT2).
+
+:doc:`/tutorials/building` explains it.
 """
+
+# sphinx_gallery_tags = ["building", "comparison"]
 
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,14 @@
-"""For users who choose clearance and mass of an impact damper: Pareto front of added mass and settling time.
+"""Clearance and mass of an impact damper
+======================================
+
+For users who choose clearance and mass of an impact damper: Pareto front of added mass and settling time.
 
 Each design has to serve pulses of two strengths and three initial positions of the ball.
+
+:doc:`/how-to/design` explains it.
 """
+
+# sphinx_gallery_tags = ["machine tool", "design"]
 
 import rattlebox as rb
 

@@ -1,7 +1,14 @@
-"""For users who sweep a test frequency: frequency response of an impact damper, up and down.
+"""Frequency response up and down
+==============================
+
+For users who sweep a test frequency: frequency response of an impact damper, up and down.
 
 Between 28 and 29.7 Hz two steady motions coexist: in the sweep up the ball stays at rest, in the sweep down it works.
+
+:doc:`/how-to/frequency_response` explains it.
 """
+
+# sphinx_gallery_tags = ["lecture", "response"]
 
 import rattlebox as rb
 

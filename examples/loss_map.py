@@ -1,8 +1,15 @@
-"""For users who choose a damper for a frequency range: loss and effective mass of a ball over amplitude and frequency.
+"""Loss map of one ball
+====================
+
+For users who choose a damper for a frequency range: loss and effective mass of a ball over amplitude and frequency.
 
 A ball in a cavity on a shaker is computed for 25 amplitudes and 21 frequencies. At small accelerations the ball moves with
 the cavity and its effective mass is its mass; the largest loss per cycle is 12 m V^2.
+
+:doc:`/how-to/loss_map` explains it.
 """
+
+# sphinx_gallery_tags = ["lecture", "map"]
 
 import rattlebox as rb
 

@@ -1,7 +1,14 @@
-"""For users who must know whether a motion is chaotic: Lyapunov exponent over the frequency of the load.
+"""Chaos or periodic motion
+========================
+
+For users who must know whether a motion is chaotic: Lyapunov exponent over the frequency of the load.
 
 The growth of small differences per cycle is positive at 30.8 Hz (chaos) and negative at 33 Hz (a periodic motion).
+
+:doc:`/how-to/lyapunov` explains it.
 """
+
+# sphinx_gallery_tags = ["lecture", "sweep"]
 
 import rattlebox as rb
 

@@ -1,9 +1,17 @@
-"""For users with a measured contact force: restitution of a steel ball on a rubber pad.
+"""Contact with a measured force
+=============================
+
+For users with a measured contact force: restitution of a steel ball on a rubber pad.
 
 The force of the pad is given as tables over the overlap, one for loading and one for unloading. A warning reports overlaps
 beyond the measured range.
+
+:doc:`/theory/laws` explains it.
 """
 
+# sphinx_gallery_tags = ["machine tool", "inputs"]
+
+import matplotlib.pyplot as plt
 import numpy as np
 
 import rattlebox as rb
@@ -31,6 +39,19 @@ if __name__ == "__main__":
         print(f"{speed} m/s: overlap {1e6 * float(hit.peak_overlap):.0f} um, restitution {restitution:.3f}")
         for note in run.notes:
             print(f"  {note}")
+    figure, panels = plt.subplots(1, 2, figsize=(7, 3), layout="constrained")
+    for curve, name in ((PAD, "loading"), (PAD.unloading, "unloading")):
+        panels[0].plot(1e6 * np.array(curve.overlap), curve.force, "o-", label=name)
+    panels[0].set(xlabel="Overlap (µm)", ylabel="Force (N)")
+    panels[0].legend(frameon=False)
+    speeds = np.linspace(0.05, 0.6, 23)
+    hits = [impact(float(speed)).impacts.isel(impact=0) for speed in speeds]
+    panels[1].plot(speeds, [float(hit.separation_speed / hit.approach_speed) for hit in hits], "k")
+    beyond = [speed for speed, hit in zip(speeds, hits, strict=True) if hit.peak_overlap > PAD.overlap[-1]]
+    panels[1].axvspan(beyond[0], speeds[-1], color="0.9", label="beyond the measurement")
+    panels[1].set(xlabel="Approach speed (m/s)", ylabel="Restitution", xlim=(0, speeds[-1]), ylim=(0, 1))
+    panels[1].legend(frameon=False, loc="lower right")
+    figure.savefig("measured_contact.png", dpi=200)
     # For an impact as deep as the measurement, the areas below both curves give nearly the same restitution.
     loading = np.trapezoid(PAD.force, PAD.overlap)
     unloading = np.trapezoid(PAD.unloading.force, PAD.unloading.overlap)

@@ -1,8 +1,15 @@
-"""For engineers with a time integration of their own: a ball in the Newmark loop of a frame with two masses.
+"""A damper in your own time integration
+=====================================
+
+For engineers with a time integration of their own: a ball in the Newmark loop of a frame with two masses.
 
 The loop exchanges motion and force with the ball once in each step, or four times, by going back to the state of the
 start of the step. Both approach the run of `rb.simulate` as the step goes to zero, the second one faster.
+
+:doc:`/how-to/stepper` explains it.
 """
+
+# sphinx_gallery_tags = ["building", "coupling"]
 
 import matplotlib.pyplot as plt
 import numpy as np

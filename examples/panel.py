@@ -1,7 +1,14 @@
-"""For engineers of spacecraft structures: a panel in random vibration, bare and with a particle damper, without gravity.
+"""A satellite panel in random vibration
+=====================================
+
+For engineers of spacecraft structures: a panel in random vibration, bare and with a particle damper, without gravity.
 
 The three modes of the panel are read from a universal file, examples/data/panel.uff, which was computed and not measured.
+
+:doc:`/tutorials/panel` explains it.
 """
+
+# sphinx_gallery_tags = ["space", "comparison"]
 
 from pathlib import Path
 

@@ -1,4 +1,7 @@
-"""For those who doubt simulated particle dampers: apparent mass and loss of an open vertical box over the acceleration.
+"""Apparent mass of an open box
+============================
+
+For those who doubt simulated particle dampers: apparent mass and loss of an open vertical box over the acceleration.
 
 Masmoudi et al. measured on a shaker, and Ferreyra et al. simulated, that the loss falls with the inverse of the
 acceleration amplitude, and that the apparent mass falls steeply, about with the inverse of its square at moderate
@@ -8,8 +11,13 @@ swept.
 References: M. Masmoudi, S. Job, M. S. Abbes, I. Tawfiq, M. Haddar (2016), Experimental and numerical investigations
 of dissipation mechanisms in particle dampers, Granular Matter 18, 71. M. V. Ferreyra, M. Baldini, L. A. Pugnaloni, S.
 Job (2021), Effect of lateral confinement on the apparent mass of particle dampers, arXiv:2007.07961.
+
+:doc:`/validation/experiments` explains it.
 """
 
+# sphinx_gallery_tags = ["lecture", "map", "validation"]
+
+import matplotlib.pyplot as plt
 import numpy as np
 
 import rattlebox as rb
@@ -43,6 +51,7 @@ def exponent(levels, values):
 
 if __name__ == "__main__":
     moderate, high = np.geomspace(1.5, 4.0, 5), np.geomspace(8.0, 40.0, 5)
+    figure, panels = plt.subplots(1, 2, figsize=(7, 3), layout="constrained")
     for restitution, friction in ((0.7, 0.3), (0.5, 0.3), (0.7, 0.1)):
         stored, lost = masses([*moderate, *high], restitution, friction)
         falls, decays = exponent(moderate, np.maximum(stored[:5], 1e-3)), exponent(high, lost[5:])
@@ -53,3 +62,14 @@ if __name__ == "__main__":
         assert -1.2 < decays < -0.8
         assert -3.5 < falls < -1.2
         assert (stored[7:] < 0).all()
+        name = f"restitution {restitution}, friction {friction}"
+        for panel, values in zip(panels, (stored, lost), strict=True):
+            panel.plot([*moderate, *high], values, "o-", ms=4, label=name)
+    panels[0].set(ylabel="Effective mass (mass of beads)", xscale="log")
+    panels[0].axhline(0, color="0.8", lw=0.8, zorder=0)
+    panels[1].plot(high, 6 / high, "k:", label="inverse of the acceleration")
+    panels[1].set(ylabel="Damping mass (mass of beads)", xscale="log", yscale="log")
+    for panel in panels:
+        panel.set_xlabel("Acceleration (gravity)")
+    panels[1].legend(frameon=False, fontsize="x-small", loc="lower left")
+    figure.savefig("bouncing_bed.png", dpi=200)

@@ -1,4 +1,7 @@
-"""For those who doubt simulated particle dampers: free decay of a box of beads on a leaf spring in weightlessness.
+"""Free decay in weightlessness
+============================
+
+For those who doubt simulated particle dampers: free decay of a box of beads on a leaf spring in weightlessness.
 
 Bannerman et al. measured in parabolic flight, and found with event-driven hard spheres, that the amplitude falls
 linearly while the bed is collected and thrown once per half-cycle, and then leaves this regime. Mass ratio, size of
@@ -7,8 +10,13 @@ are random.
 
 Reference: M. N. Bannerman, J. E. Kollmer, A. Sack, M. Heckel, P. Mueller, T. Poeschel (2011), Movers and shakers:
 granular damping in microgravity, Physical Review E 84, 011301, doi:10.1103/PhysRevE.84.011301.
+
+:doc:`/validation/experiments` explains it.
 """
 
+# sphinx_gallery_tags = ["space", "damping curve", "validation"]
+
+import matplotlib.pyplot as plt
 import numpy as np
 from scipy.signal import find_peaks
 
@@ -61,9 +69,16 @@ def linear_part(values):
 
 if __name__ == "__main__":
     rows = []
+    figure, axes = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
     for friction in (0.0, 0.1, 0.3):
         for seed in (1, 2, 3):
-            rows.append((friction, *linear_part(peaks(rb.simulate(case(friction, seed)))[1])))
+            times, tops = peaks(rb.simulate(case(friction, seed)))
+            rows.append((friction, *linear_part(tops)))
+            colour, name = rb.plots.SERIES_COLOURS[int(10 * friction)], f"friction {friction}" if seed == 1 else None
+            axes.plot(FREQUENCY * times, 1e3 * tops, "o-", ms=3, lw=0.8, color=colour, label=name)
+    axes.set(xlabel="Time (cycles)", ylabel="Amplitude of the box (mm)", ylim=0)
+    axes.legend(frameon=False)
+    figure.savefig("microgravity_decay.png", dpi=200)
     table = np.array(rows)
     print("friction, decrement per cycle (mm), deviation from a line")
     print(np.round(table * [1, 1e3, 1], 4))

@@ -1,5 +1,7 @@
 """Every example is run and checked on a number."""
 
+import ast
+import re
 import runpy
 import subprocess
 import sys
@@ -15,6 +17,7 @@ import rattlebox as rb
 from rattlebox.studies.trial_store import count_trials
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+SCRIPTS = sorted(path for path in EXAMPLES.rglob("*.py") if path.name != "write_data.py")
 
 
 def test_all_examples_are_checked_here() -> None:
@@ -27,6 +30,18 @@ def test_all_examples_are_checked_here() -> None:
         "steel_balls_in_a_box",
         "two_cavities_on_a_beam",
     }
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=[script.stem for script in SCRIPTS])
+def test_scripts_are_in_the_gallery(script: Path) -> None:
+    """A script begins with a title and has tags, asserts a number, and its figure is among those of the pages."""
+    code = script.read_text(encoding="utf-8")
+    title, line, blank, introduction = (ast.get_docstring(ast.parse(code)) or "").split("\n")[:4]
+    assert line == len(title) * "=" and not blank and introduction.startswith("For ")
+    tags = re.search(r"^# sphinx_gallery_tags = (\[.+\])$", code, re.MULTILINE)
+    assert tags and all(isinstance(tag, str) for tag in ast.literal_eval(tags[1]))
+    assert re.search(r"^ *assert ", code, re.MULTILINE)
+    assert (EXAMPLES.parent / "docs" / "_static" / f"{script.stem}.png").exists()
 
 
 @pytest.mark.parametrize("name", ["steel_ball", "steel_ball_jackson_green"])
@@ -223,9 +238,19 @@ def test_tutorials_print_the_numbers_of_their_page(
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
-    ["regimes", "rules_of_thumb", "particles_or_tuned_mass", "restitution_of_metals", "softening_and_step"],
+    [
+        "boring_bar_checks",
+        "building_variants",
+        "fills",
+        "panel_variants",
+        "particles_or_tuned_mass",
+        "regimes",
+        "restitution_of_metals",
+        "rules_of_thumb",
+        "softening_and_step",
+    ],
 )
-def test_rules_for_designers(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each script asserts the numbers that it prints."""
+def test_numbers_of_the_guide_and_of_tutorials(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each script asserts the numbers of its page."""
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
