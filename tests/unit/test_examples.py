@@ -119,8 +119,11 @@ def test_a_shaken_box_rides_along_or_is_thrown(cycles: tuple[int, int]) -> None:
     assert by_force.item() == pytest.approx(result.reduced_loss[1].item(), rel=0.05)
 
 
-def test_a_measured_contact_gives_back_the_area_below_its_unloading_curve(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_measured_contact_gives_back_the_area_below_its_unloading_curve(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """An impact as deep as the measurement has the restitution of the areas below both curves; a deeper one is noted."""
+    monkeypatch.chdir(tmp_path)
     example = runpy.run_path(str(EXAMPLES / "measured_contact.py"), run_name="__main__")
     assert "0.6 m/s: overlap 133 um, restitution 0.770\n  warning" in capsys.readouterr().out
     pad = example["PAD"]

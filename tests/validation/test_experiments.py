@@ -49,7 +49,8 @@ def test_data_set_can_be_read_and_has_units():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["microgravity_decay", "collect_and_collide", "bouncing_bed", "six_per_cent"])
-def test_script(name, monkeypatch):
+def test_script(name, tmp_path, monkeypatch):
     """Each script asserts the numbers of the page."""
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "argv", [name])
     runpy.run_path(str(SCRIPTS / f"{name}.py"), run_name="__main__")
