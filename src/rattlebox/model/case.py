@@ -421,18 +421,8 @@ class Case(Part):
         CaseError
             If a value is not allowed.
         """
-        if not given:
-            raise CaseError(f"{source}: the file is empty\n  try: rattlebox demo, which writes two case files")
-        if "case" in given and "structure" not in given:
-            raise CaseError(f"{source}: this is a study of a case, not a case\n  try: rattlebox sweep {source}")
-        try:
-            library = _Library.model_validate({"materials": given.get("materials", {})})
-            values = {key: value for key, value in given.items() if key != "materials"}
-            if folder is not None:
-                values = _with_files(values, lambda file: str(folder / file))
-            return cls.model_validate(values, context=library.materials)
-        except ValidationError as error:
-            raise translate(error, source, vocabulary(), given) from None
+        case, _ = case_and_materials(given, source=source, folder=folder)
+        return case
 
     def __repr__(self) -> str:
         counts = Counter(type(part).__name__ for part in (*self.dampers, *self.tuned_masses, *self.loads, *self.base))
@@ -504,6 +494,35 @@ class Case(Part):
             "additionalProperties": {"$ref": "#/$defs/Material"},
         }
         return schema
+
+
+def case_and_materials(
+    given: dict[str, Any], *, source: str = "case", folder: Path | None = None
+) -> tuple[Case, dict[str, Material]]:
+    """Return the case of the parsed content of a case file, and the materials that the file defines, by name.
+
+    Parameters
+    ----------
+    given, source, folder
+        See `Case.from_dict`.
+
+    Raises
+    ------
+    CaseError
+        If a value is not allowed.
+    """
+    if not given:
+        raise CaseError(f"{source}: the file is empty\n  try: rattlebox demo, which writes two case files")
+    if "case" in given and "structure" not in given:
+        raise CaseError(f"{source}: this is a study of a case, not a case\n  try: rattlebox sweep {source}")
+    try:
+        library = _Library.model_validate({"materials": given.get("materials", {})})
+        values = {key: value for key, value in given.items() if key != "materials"}
+        if folder is not None:
+            values = _with_files(values, lambda file: str(folder / file))
+        return Case.model_validate(values, context=library.materials), library.materials
+    except ValidationError as error:
+        raise translate(error, source, vocabulary(), given) from None
 
 
 @contextmanager

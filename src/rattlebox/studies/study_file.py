@@ -14,7 +14,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.model.base import examples
-from rattlebox.model.case import Case
+from rattlebox.model.case import Case, case_and_materials
 from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
@@ -201,11 +201,8 @@ def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Materi
         except DataError as error:
             raise CaseError(f"{source}: case.file = {name!r}\n  {error}") from None
         content = read_toml(_text(file), str(file))
-        case = Case.from_dict(content, source=str(file), folder=file.parent)
-    else:
-        case = Case.from_dict(content, source=f"{source}: case", folder=folder)
-    own = content.get("materials", {})
-    return case, {name: Material(**{"name": name, **values}) for name, values in own.items()}
+        return case_and_materials(content, source=str(file), folder=file.parent)
+    return case_and_materials(content, source=f"{source}: case", folder=folder)
 
 
 def _text(file: Path) -> str:
