@@ -245,6 +245,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "boring_bar_checks",
         "building_variants",
         "fills",
+        "lecture",
         "panel_variants",
         "particles_or_tuned_mass",
         "regimes",
