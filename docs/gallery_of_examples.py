@@ -13,7 +13,12 @@ from pathlib import Path
 DOCS = Path(__file__).parent
 FIGURES, SCRIPTS, PAGES = DOCS / "_static", DOCS / "_build" / "examples", DOCS / "gallery"
 """Folders of the figures, of copies of the examples, which write files into their folder, and of their pages."""
-LONG = {"boring_bar_checks": "2 minutes", "boring_bar_design": "20 minutes", "panel_variants": "1 minute"}
+LONG = {
+    "boring_bar_checks": "2 minutes",
+    "boring_bar_design": "20 minutes",
+    "panel_variants": "1 minute",
+    "two_case_files": "30 seconds",
+}
 """Scripts that `make gallery` does not run, and processor time that they take."""
 TRADES = ("machine tool", "space", "building", "lecture")
 

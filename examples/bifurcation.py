@@ -10,6 +10,8 @@ The motion is followed over the amplitude of the shaker, up and down again.
 
 # sphinx_gallery_tags = ["lecture", "sweep"]
 
+import numpy as np
+
 import rattlebox as rb
 
 AMPLITUDE = "structure.motion.amplitude"
@@ -37,3 +39,15 @@ down = maps.sel(direction="down")
 doubled = down[AMPLITUDE].where(down.period == 2, drop=True)
 print(f"the period doubles at {1e3 * float(doubled.min()):.2f} mm")
 assert abs(float(doubled.min()) - 1.10e-3) < 0.03e-3
+
+impacts = maps.impacts_per_cycle
+two = down[AMPLITUDE].where((down.period == 1) & np.isclose(down.impacts_per_cycle, 2), drop=True)
+two_up, three_down = np.isclose(impacts.sel(direction="up"), 2), np.isclose(impacts.sel(direction="down"), 3)
+coexisting = down[AMPLITUDE].values[two_up & three_down]
+four = down[AMPLITUDE].where((down.period == 1) & np.isclose(down.impacts_per_cycle, 4), drop=True)
+print(f"two impacts a cycle from {1e3 * float(two.min()):.2f} mm, four from {1e3 * float(four.min()):.2f} mm")
+print(f"two motions coexist from {1e3 * coexisting.min():.2f} to {1e3 * coexisting.max():.2f} mm")
+theory = 2e-3 / np.hypot(np.pi * (1 + 0.6) / (1 - 0.6), 2)  # smallest amplitude with two impacts a cycle, gap of 1 mm
+assert abs(theory - 0.157e-3) < 0.0005e-3 and theory < two.min() < theory + 0.015e-3
+assert abs(four.min() - 2.35e-3) < 0.02e-3
+assert np.allclose([coexisting.min(), coexisting.max()], [0.98e-3, 1.07e-3], atol=0.02e-3)

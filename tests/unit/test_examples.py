@@ -252,6 +252,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "restitution_of_metals",
         "rules_of_thumb",
         "softening_and_step",
+        "two_case_files",
     ],
 )
 def test_numbers_of_the_guide_and_of_tutorials(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
