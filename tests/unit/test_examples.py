@@ -252,6 +252,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "restitution_of_metals",
         "rules_of_thumb",
         "softening_and_step",
+        "time_step",
         "two_case_files",
     ],
 )
