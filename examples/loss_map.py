@@ -46,4 +46,4 @@ amplitude = level / (2 * np.pi * float(at_95_hz["structure.motion.frequency"])) 
 phase = brentq(lambda phi: amplitude * (ratio * np.pi * np.cos(phi) + 2 * np.sin(phi)) - 2 * gap, -1.5, 0.1)
 theory = 4 * ratio * np.cos(phase) ** 2
 print(f"at 95 Hz and {amplitude / gap:.2f} gaps: {float(at_95_hz.max()):.1f} m V^2, in theory {theory:.1f} m V^2")
-assert abs(theory - 11.2) < 0.05 and abs(at_95_hz.max() - 11.3) < 0.1 and abs(amplitude / gap - 0.21) < 0.005
+assert abs(at_95_hz.max() / theory - 1) < 0.02 and abs(amplitude / gap - 0.21) < 0.01
