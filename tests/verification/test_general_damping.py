@@ -58,6 +58,31 @@ def test_free_motion(damping: Array, method: Any) -> None:
     np.testing.assert_allclose(result.velocity, exact[:, 5], atol=bound * 2e-3 * 300)
 
 
+@pytest.mark.parametrize("damping", DASHPOTS.values(), ids=DASHPOTS)
+def test_free_motion_in_three_dimensions(damping: Array) -> None:
+    """The 3-D engine moves a structure with any damping matrix as the matrix exponential does; the ledger closes."""
+    untouched = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", radius="50 mm", count=1),
+        cavity=rb.Box(size=("1 m",) * 3),
+        packing=rb.Positions(positions=[(0.0, 0.0, 0.0)]),
+        gravity=(0, 0, 0),
+        point="tip",
+        direction="z",
+        contact=rb.Tsuji(restitution=0.6),
+        wall="steel",
+    )
+    own = structure(damping, displacement=START[:3], velocity=START[3:])
+    run = rb.simulate(rb.Case(structure=own, damper=untouched, duration=0.2, output=rb.Output(rate=500.0)))
+    assert run.ok, run.message
+    exact = np.array([expm(generator(damping) * t) @ START for t in run.motion.time.values])
+    result = run.motion.sel(point="tip")
+    np.testing.assert_allclose(result.displacement, exact[:, 2], atol=1e-11 * np.abs(exact[:, 2]).max())
+    np.testing.assert_allclose(result.velocity, exact[:, 5], atol=1e-11 * np.abs(exact[:, 5]).max())
+    first, last = exact[0], exact[-1]
+    energies = [0.5 * s[3:] @ MASS @ s[3:] + 0.5 * s[:3] @ STIFFNESS @ s[:3] for s in (first, last)]
+    assert float(run.energy.viscous_loss[-1]) == pytest.approx(energies[0] - energies[1], rel=1e-9)
+
+
 def test_forced_motion() -> None:
     """The steady response to a harmonic force agrees with the inverse of the dynamic stiffness."""
     damping, frequency = DASHPOTS["between two"] + 0.001 * STIFFNESS, 14.0
