@@ -139,6 +139,21 @@ def test_a_table_without_units_gives_a_note(tmp_path: Path) -> None:
     assert "the largest mass-normalised shape is 3 kg^-0.5, at tip" in text
 
 
+@pytest.mark.parametrize("name", ["Mode", "no.", "Mode number", "Set"])
+def test_columns_that_number_the_modes_are_left_out(tmp_path: Path, name: str) -> None:
+    """A column with numbers or names of modes is not the shape at a point."""
+    (tmp_path / "modes.csv").write_text(TABLE)
+    head, *rows = TABLE.splitlines()
+    numbers = ["1", "second"]
+    (tmp_path / "numbered.csv").write_text(
+        "\n".join([f"{name}, {head}", *(f"{k}, {row}" for k, row in zip(numbers, rows, strict=True))])
+    )
+    plain = rb.Modal.from_file(tmp_path / "modes.csv").modes()
+    numbered = rb.Modal.from_file(tmp_path / "numbered.csv").modes()
+    assert list(numbered.shapes) == list(plain.shapes)
+    np.testing.assert_array_equal(numbered.participation, plain.participation)
+
+
 def test_toml_tables(tmp_path: Path) -> None:
     """A TOML table has the fields of Modal and, optionally, modal masses."""
     (tmp_path / "modes.toml").write_text(

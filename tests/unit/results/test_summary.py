@@ -263,3 +263,22 @@ def test_drifts_of_storeys_are_listed() -> None:
         expected = float(abs(analysis.drift(run, upper, lower)).max())
         assert values[f"peak_drift[{upper}]"] == pytest.approx(expected)
         assert f"peak drift, {upper}" in str(run.summary())
+
+
+def test_a_slowly_loaded_building() -> None:
+    """Under a slow force F at the top of a building, all storeys drift by F/k, modes move by phi F/w^2, the base feels F."""
+    force, stiffness = 120e3, 60e6
+    tower = rb.ShearBuilding(masses=["50 t"] * 3, stiffnesses=[stiffness] * 3, damping_ratio=0.05)
+    load = rb.Harmonic(amplitude=force, frequency="0.02 Hz", point="storey 3")
+    run = rb.simulate(rb.Case(structure=tower, load=load, duration="100 s"), progress=False)
+    values = run.summary().values
+    modes = tower.modes()
+    expected = {f"peak_drift[storey {k}]": force / stiffness for k in (1, 2, 3)}
+    for k, (shape, squared) in enumerate(zip(modes.shapes["storey 3"], modes.stiffness, strict=True), start=1):
+        expected[f"peak_modal_displacement[mode {k}]"] = abs(shape) * force / squared
+        expected[f"rms_modal_displacement[mode {k}]"] = abs(shape) * force / squared / np.sqrt(2)
+    expected |= {"peak_interface_force": force, "rms_interface_force": force / np.sqrt(2)}
+    expected["steady_rms_interface_force"] = force / np.sqrt(2)
+    assert {key: values[key] for key in expected} == pytest.approx(expected, rel=2e-3)
+    text = str(run.summary())
+    assert "peak force on the base" in text and "RMS force on the base, second half" in text

@@ -18,6 +18,8 @@ _QUANTITIES = {
     "frequency": "frequency", "f": "frequency", "damping": "damping", "damping ratio": "damping", "modal mass": "mass",
     "participation": "participation",
 }  # fmt: skip
+_NUMBERING = ("mode", "mode number", "mode no", "mode no.", "number", "no", "no.", "nr", "nr.", "set")
+"""Headings of columns that only number or name the modes."""
 _FREQUENCY = {"": 1.0, "hz": 1.0, "khz": 1e3, "rad/s": 1 / (2 * np.pi)}
 _DAMPING = {"": 1.0, "1": 1.0, "-": 1.0, "%": 0.01}
 _SHAPE = {"": None, "kg^-0.5": 1.0, "kg^-1/2": 1.0, "t^-0.5": 1e3, "t^-1/2": 1e3, "g^-0.5": 1e-3, "g^-1/2": 1e-3}
@@ -32,7 +34,8 @@ def read_modal_table(path: Path) -> ModesInFile:
     path
         An existing file. The first line names the columns: "frequency (Hz)", "damping (%)", "modal mass (kg)",
         "participation" (or "participation x", "y", "z"); every other column is the mode shape at a point, "tip", or one of
-        its components, "tip x", "tip y", "tip z". Lines that begin with # are comments.
+        its components, "tip x", "tip y", "tip z". A column that numbers the modes ("mode", "no.") is left out. Lines that
+        begin with # are comments.
 
     Returns
     -------
@@ -65,12 +68,14 @@ def read_modal_table(path: Path) -> ModesInFile:
         )
     if not body:
         raise DataError(f"{path} has a header, but no mode below it")
-    table = np.empty((len(body), len(head)))
+    table = np.zeros((len(body), len(head)))
     for row, (number, cells) in enumerate(body):
         if len(cells) != len(head):
             advice = "the complete file: its last line is cut short" if row == len(body) - 1 else ""
             raise DataError(f"{path}, line {number}: {len(cells)} columns, but {len(head)} names above", advice)
         for column, cell in enumerate(cells):
+            if names[column].lower() in _NUMBERING:
+                continue
             try:
                 table[row, column] = float(cell)
             except ValueError:
@@ -98,6 +103,8 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
     columns: dict[str, list[int]] = {}  # by quantity
     points: dict[str, dict[int, int]] = {}  # column of each axis, -1 for a shape without components
     for column, name in enumerate(names):
+        if name.lower() in _NUMBERING:
+            continue
         quantity = _QUANTITIES.get(name.lower()) or (
             "participation" if name.lower().startswith("participation ") else ""
         )
