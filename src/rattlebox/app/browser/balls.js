@@ -13,24 +13,37 @@ export default {
   props: { url: String },
   data: () => ({ playing: true, part: 0, now: 0, speed: 0.1 }),
   mounted() {
-    this.run = null;
+    this.due = 0;
     this.load();
-    let last = performance.now();
-    const step = (at) => {
-      if (!this.$el.isConnected) return;
-      if (this.playing && this.run) this.part = (this.part + (this.speed * (at - last)) / 1000 / this.run.about.end) % 1;
-      last = at;
-      this.draw();
-      this.frame = requestAnimationFrame(step);
-    };
-    this.frame = requestAnimationFrame(step);
+    // At most 30 frames a second, fewer while new runs arrive, none if nothing changed: without a graphics card each costs 25 ms.
+    const step = (at) => { if (at >= this.due) this.advance(at); this.request = requestAnimationFrame(step); };
+    this.request = requestAnimationFrame(step);
   },
-  unmounted() { cancelAnimationFrame(this.frame); },
+  unmounted() { cancelAnimationFrame(this.request); },
   watch: { url() { this.load(); } },
   methods: {
     async load() {
-      if (!this.url) { this.run = null; return; }
-      try { this.run = await fetchBody(this.url); } catch (error) { console.warn("no animation:", error.message); }
+      const url = this.url;
+      this.run = null;
+      if (!url) return;
+      try {
+        const run = await fetchBody(url);
+        if (url !== this.url) return;
+        run.reach = (run.arrays["frame displacement"] || []).reduce((most, x) => Math.max(most, Math.abs(x)), 1e-9);
+        this.run = run;
+        this.drawn = "";
+        this.advance(performance.now());
+        this.due = this.last + 200;
+      } catch (error) { console.warn("no animation:", error.message); }
+    },
+    advance(at) {
+      if (!this.run) return;
+      if (this.playing) this.part = (this.part + (this.speed * Math.min(at - (this.last || at), 200)) / 1000 / this.run.about.end) % 1;
+      this.last = at;
+      this.due = at + 30;
+      const state = `${this.part} ${this.$el.clientWidth}`;
+      if (state !== this.drawn) this.draw();
+      this.drawn = state;
     },
     draw() {
       const canvas = this.$el.querySelector("canvas"), ratio = window.devicePixelRatio || 1;
@@ -40,13 +53,10 @@ export default {
       const pen = canvas.getContext("2d");
       pen.setTransform(ratio, 0, 0, ratio, 0, 0);
       pen.clearRect(0, 0, width, height);
-      if (!this.run) return;
-      const { arrays, shapes, about } = this.run, times = arrays["frame time"];
+      const { arrays, shapes, about, reach } = this.run, times = arrays["frame time"];
       const count = times.length, k = Math.min(count - 1, Math.floor(this.part * count));
       this.now = times[k];
       const shift = arrays["frame displacement"], places = arrays["frame place"];
-      let reach = 1e-9;
-      if (shift) for (let i = 0; i < count; i++) reach = Math.max(reach, Math.abs(shift[i]));
       const dampers = about.gaps.length, house = Math.min(300, width * 0.4), room = (width - house) / 2 - 40;
       const scale = room / reach, centre = width / 2 + (shift ? shift[k] * scale : 0), top = 26, lane = (height - 52) / Math.max(1, dampers);
       // ground, spring, structure

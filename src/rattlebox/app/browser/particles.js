@@ -24,45 +24,56 @@ export default {
     </div></div>`,
   props: { url: String, growing: Boolean },
   data: () => ({ playing: true, frame: 0, count: 0, now: 0, rate: 30, colour: "speed", cut: 1, top: { speed: 1e-9, spin: 1e-9 } }),
-  mounted() {
-    const box = this.$el.querySelector(".rb-scene"), scene = new THREE.Scene();
-    scene.background = new THREE.Color("#f7f7f5");
-    const camera = new THREE.PerspectiveCamera(35, box.clientWidth / 400 || 2, 0.001, 1000);
-    camera.up.set(0, 0, 1);
-    const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
-    box.appendChild(renderer.domElement);
-    scene.add(new THREE.HemisphereLight("#ffffff", "#777788", 2.2));
-    const sun = new THREE.DirectionalLight("#ffffff", 2);
-    sun.position.set(2, -3, 5);
-    scene.add(sun);
-    this.view = { box, scene, camera, renderer, controls: new OrbitControls(camera, renderer.domElement), mesh: null, walls: [], frames: [] };
-    const resize = () => { const width = box.clientWidth || 600; renderer.setSize(width, 400); camera.aspect = width / 400; camera.updateProjectionMatrix(); };
-    this.observer = new ResizeObserver(resize);
-    this.observer.observe(box);
-    resize();
-    this.load(true);
-    let due = 0, shown = 0, start = performance.now();
-    const step = (at) => {
-      if (!this.view) return;
-      if (this.playing && this.count > 1 && at >= due) { this.frame = (this.frame + 1) % this.count; due = Math.max(due + 1000 / this.rate, at - 50); this.show(); }
-      renderer.render(scene, camera);
-      shown++;
-      window.rbFps = (1000 * shown) / (at - start + 1);
-      this.request = requestAnimationFrame(step);
-    };
-    this.request = requestAnimationFrame(step);
-  },
+  mounted() { this.load(true); },
   unmounted() {
-    cancelAnimationFrame(this.request); clearTimeout(this.timer); this.observer.disconnect();
+    clearTimeout(this.timer);
+    if (!this.view) return;
+    cancelAnimationFrame(this.request); this.observer.disconnect();
     this.view.renderer.dispose(); this.view.renderer.forceContextLoss(); this.view = null;
   },
   watch: { url() { this.load(true); }, growing(now) { if (!now) this.load(false); } },
   methods: {
+    // Without a graphics card a scene costs a whole core: it is made when there are particles, and drawn when it changes.
+    open() {
+      const box = this.$el.querySelector(".rb-scene"), scene = new THREE.Scene();
+      scene.background = new THREE.Color("#f7f7f5");
+      const camera = new THREE.PerspectiveCamera(35, 2, 0.001, 1000);
+      camera.up.set(0, 0, 1);
+      const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+      box.appendChild(renderer.domElement);
+      scene.add(new THREE.HemisphereLight("#ffffff", "#777788", 2.2));
+      const sun = new THREE.DirectionalLight("#ffffff", 2);
+      sun.position.set(2, -3, 5);
+      scene.add(sun);
+      this.view = { box, scene, camera, renderer, controls: new OrbitControls(camera, renderer.domElement), mesh: null, walls: [], frames: [] };
+      const resize = () => { const width = box.clientWidth || 600; renderer.setSize(width, 400); camera.aspect = width / 400; camera.updateProjectionMatrix(); this.stale = true; };
+      this.view.controls.addEventListener("change", () => { this.stale = true; });
+      this.observer = new ResizeObserver(resize);
+      this.observer.observe(box);
+      resize();
+      let due = 0, shown = 0, start = 0;
+      const step = (at) => {
+        if (!this.view) return;
+        this.request = requestAnimationFrame(step);
+        if (!box.clientWidth) return;
+        if (this.playing && this.count > 1 && at >= due) { this.frame = (this.frame + 1) % this.count; due = Math.max(due + 1000 / this.rate, at - 50); this.show(); }
+        if (!this.stale) return;
+        this.stale = false;
+        renderer.render(scene, camera);
+        start = start || at;
+        window.rbFps = (1000 * shown++) / (at - start + 1);
+      };
+      this.request = requestAnimationFrame(step);
+    },
     async load(fresh) {
       clearTimeout(this.timer);
-      if (!this.url) return;
       const url = this.url;
-      if (fresh) { this.view.frames = []; this.count = 0; this.frame = 0; this.next = 0; this.top = { speed: 1e-9, spin: 1e-9 }; }
+      if (url && !this.view) this.open();
+      if (fresh && this.view) {
+        this.clear();
+        Object.assign(this, { count: 0, frame: 0, next: 0, now: 0, top: { speed: 1e-9, spin: 1e-9 } });
+      }
+      if (!url) return;
       try {
         const body = await fetchBody(`${url}?first=${this.next || 0}`);
         if (url !== this.url || !this.view) return;
@@ -85,9 +96,13 @@ export default {
       this.count = this.view.frames.length;
       this.show();
     },
+    clear() {
+      for (const old of [this.view.mesh, ...this.view.walls]) if (old) { this.view.scene.remove(old); old.geometry.dispose(); }
+      Object.assign(this.view, { frames: [], mesh: null, walls: [] });
+      this.stale = true;
+    },
     build(arrays, about, particles) {
       const { scene, camera, controls } = this.view;
-      for (const old of [this.view.mesh, ...this.view.walls]) if (old) { scene.remove(old); old.geometry.dispose(); }
       const detail = particles > 3000 ? 1 : 2;
       this.view.mesh = new THREE.InstancedMesh(new THREE.IcosahedronGeometry(1, detail), new THREE.MeshStandardMaterial({ roughness: 0.4 }), particles);
       this.view.mesh.frustumCulled = false;
@@ -125,6 +140,7 @@ export default {
       }
       mesh.instanceMatrix.needsUpdate = true;
       mesh.instanceColor.needsUpdate = true;
+      this.stale = true;
       window.rbParticles = { particles: mesh.count, frames: this.count, frame: this.frame };
     },
   },
