@@ -143,7 +143,8 @@ def _component(values: Any, along: Any) -> Any:
 
 def _total(values: Any) -> np.ndarray[Any, Any]:
     """Return an energy summed over all modes, dampers and partners."""
-    return np.asarray(values.sum([dim for dim in values.dims if dim != "time"]).values, float)
+    others = tuple(axis for axis, dim in enumerate(values.dims) if dim != "time")
+    return np.asarray(values.values.sum(axis=others), float)
 
 
 def _balls(run: rb.Run, rows: slice) -> dict[str, Any]:
@@ -186,13 +187,13 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
     """
     try:
         snapshots = rb.Snapshots(path)
-    except rb.DataError:  # the bed still settles, or the file is being created
-        return encode({}, next=0, planned=0)
-    frames = range(len(snapshots))
-    if len(snapshots):
-        size = 20 * snapshots[0].radius.size
-        frames = frames[:: max(1, -(-len(snapshots.planned) * size // MOST_BYTES))]
-    new = [snapshots[number] for number in frames if number >= first]
+        frames = range(len(snapshots))
+        if len(snapshots):
+            size = 20 * snapshots[0].radius.size
+            frames = frames[:: max(1, -(-len(snapshots.planned) * size // MOST_BYTES))]
+        new = [snapshots[number] for number in frames if number >= first]
+    except rb.DataError:  # the bed still settles, or the file is being created or removed
+        return encode({}, next=first, planned=0)
     cavities = _cavities(rb.Case.from_toml(snapshots.case_toml)) if new else []
     reach = max((2 * abs(cavity["place"][1]) + max(cavity["size"]) for cavity in cavities), default=1.0)
     about = {"next": len(snapshots), "planned": len(snapshots.planned), "cavities": cavities, "reach": reach}
