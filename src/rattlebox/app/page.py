@@ -58,6 +58,8 @@ class Page:
         self.folder, self._bodies = folder, bodies
         self.draft = Draft(folder)
         self._keys: dict[str, str] = {}
+        self._version = 0
+        self._impact_rows: list[dict[str, Any]] = []
         self._pinned = list(PINNED["steel_ball"])
         self._live = Live(self._show_view, lambda text: self._failure.set_text(text))
         self._worker: Worker | None = None
@@ -66,23 +68,19 @@ class Page:
     # ---- bodies
 
     def publish(self, slot: str, body: Callable[..., bytes]) -> str:
-        """Offer a body under a new URL, in place of the last one of the slot."""
-        self.withdraw(slot)
-        self._keys[slot] = key = secrets.token_urlsafe(12)
+        """Offer a body under a new URL; earlier URLs of the slot, which the browser may still read, have it too."""
+        key = self._keys.setdefault(slot, secrets.token_urlsafe(12))
         self._bodies[key] = body
-        return f"/data/{key}"
-
-    def withdraw(self, slot: str) -> None:
-        """Remove the body of a slot."""
-        self._bodies.pop(self._keys.pop(slot, ""), None)
+        self._version += 1
+        return f"/data/{key}/{self._version}"
 
     def close(self) -> None:
         """Stop all computations of the page, and forget its data."""
         self._live.stop()
         self.stop_run()
         self.map_tab.close()
-        for slot in list(self._keys):
-            self.withdraw(slot)
+        for key in self._keys.values():
+            self._bodies.pop(key, None)
 
     # ---- layout
 
@@ -157,7 +155,7 @@ class Page:
         self._particles = Particles().classes("w-full")
         self._particles.set_visibility(False)
         self._charts = Charts().classes("w-full")
-        with ui.expansion("Impacts", value=False).classes("w-full") as self._impacts:
+        with ui.expansion("Impacts", on_value_change=self._list_impacts).classes("w-full") as self._impacts:
             listed = [{"name": name, "field": name, "label": label} for name, label in IMPACT_COLUMNS.items()]
             self._impact_list = ui.table(columns=listed, rows=[], row_key="number", pagination=10).props("dense")
         with ui.expansion("Summary", value=False).classes("w-full"):
@@ -270,12 +268,18 @@ class Page:
         if "impacts" in about:
             self._balls.show(url)
             self._impacts.set_text(f"Impacts: {about['impact_count']}")
-            self._impact_list.rows = about["impacts"]
+            self._impact_rows = about["impacts"]
+            self._list_impacts()
         self._summary.set_text(about["summary"])
         self._warnings.set_text("\n".join(about["warnings"]))
         self._failure.set_text("" if about["status"] in ("finished", "interrupted") else about["status"])
         shown = f"; drawn from {about['shown']}" if about["shown"] else ""
         self._about.set_text(f"{about['status']} at t = {about['end']:.4g} s{shown}")
+
+    def _list_impacts(self) -> None:
+        """Send the list of impacts if it is open; it is larger than everything else that a slider changes."""
+        if self._impacts.value:
+            self._impact_list.rows = self._impact_rows
 
     def show_watch(self) -> None:
         """Show the tab with the run."""

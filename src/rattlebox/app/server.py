@@ -38,8 +38,8 @@ def build(folder: Path, port: int, token: str) -> None:
         page = Page(folder, bodies)
         ui.context.client.on_delete(page.close)
 
-    @app.get("/data/{key}")
-    def data(key: str, first: int = 0) -> Response:
+    @app.get("/data/{key}/{_version}")
+    def data(key: str, _version: str, first: int = 0) -> Response:
         body = bodies.get(key)
         if body is None or not 0 <= first < 10**9:
             raise HTTPException(404)
@@ -86,6 +86,7 @@ def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
         "title": "Rattlebox",
         "reload": False,
         "favicon": "\N{HAMMER}",
+        "gzip_middleware_factory": None,  # compression takes longer than the loopback
     }
     ui.run(show=f"/?token={token}" if show else False, show_welcome_message=False, reconnect_timeout=3.0, **options)
 

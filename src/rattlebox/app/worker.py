@@ -95,11 +95,6 @@ def _view(result: rb.Run, case: rb.Case, compare: bool) -> bytes:
     return view_of_run(result, bare)
 
 
-def kept(report: Report, folder: str, name: str) -> bytes:
-    """Return the view of a run in the folder."""
-    return view_of_run(rb.load(Path(folder) / f"{name}.nc"))
-
-
 def sweep(report: Report, toml: str, folder: str, name: str, axes: dict[str, Any], measure: str, compare: bool) -> None:
     """Run a case over one or two axes and write the map to the folder, and the same without dampers if requested."""
     case = rb.Case.from_toml(toml, folder=Path(folder))
@@ -117,4 +112,4 @@ def _spaced(start: str, stop: str, count: int, logarithmic: bool) -> Any:
     return (rb.geomspace if logarithmic else rb.linspace)(start, stop, count)
 
 
-TASKS: dict[str, Callable[..., Any]] = {"live": live, "run": run, "kept": kept, "sweep": sweep}
+TASKS: dict[str, Callable[..., Any]] = {"live": live, "run": run, "sweep": sweep}

@@ -45,13 +45,13 @@ def test_case_is_computed_run_and_mapped(tmp_path):
     async def visit():
         async with opened(tmp_path) as (page, user, bodies):
             await until(lambda: "view" in page._keys)
-            first = page._keys["view"]
+            first = bodies[page._keys["view"]](0)
             await page._draw_case()
             assert "<svg" in page._drawing.content
             page.draft.set_value(("damper", "gap"), "0.7 mm")
             page.use_text(page.draft.text.replace('"5 s"', '"0.3 s"'))
-            await until(lambda: page._keys["view"] != first)
-            assert first not in bodies  # the last view replaces the one before
+            await until(lambda: bodies[page._keys["view"]](0) != first)
+            assert len(bodies) == 1  # the last view replaces the one before
             await page.run()
             assert rb.load(tmp_path / "run-001.nc").case == page.draft.case
             with user.client:

@@ -1,5 +1,13 @@
 // Reads the bodies of rattlebox.app.binary: a JSON header and arrays of float32.
-export async function fetchBody(url) {
+let last = {};
+
+// Return a body; charts and animation of one run share it.
+export function fetchBody(url) {
+  if (last.url !== url || url.includes("?")) last = { url, body: read(url) };
+  return last.body;
+}
+
+async function read(url) {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: ${response.status}`);
   const buffer = await response.arrayBuffer();
