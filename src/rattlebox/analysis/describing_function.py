@@ -8,9 +8,8 @@ the load, the accelerations a_0 of the structure alone at level 1, and its accel
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,10 @@ NEGLIGIBLE = 0.05
 
 _FINE = 8  # amplitudes in each interval of the table at which levels are computed
 _EDGE = 0.1  # width of the transition outside of the table, in natural logarithms of the amplitude
-_BISECTIONS = 40
+_BISECTIONS = 60
+_ROOT = 1e-12  # change of a solution below which it has converged
+_NEWTON = 1e-6  # largest residual of a point on a branch
+_NEARBY = 0.3  # largest change of a motion over that without dampers in one step of Newton's method
 _LONGEST, _SHORTEST = 0.1, 1e-6  # steps along a branch, in natural logarithms of the level
 _MOST_STEPS = 1500
 _ROUNDING = 1e-9
@@ -61,11 +63,11 @@ class MassTable:
 
     @cached_property
     def _coefficients(self) -> ComplexArray:
-        """Coefficients of the cubics in each interval, (4, K - 1, J), highest power first."""
+        """Coefficients of the cubics in each interval, (J, K - 1, 4), highest power first."""
         from scipy.interpolate import PchipInterpolator
 
         x = np.log(self.amplitude)
-        found = np.full((4, x.size - 1, self.frequency.size), np.nan, np.complex128)
+        found = np.full((self.frequency.size, x.size - 1, 4), np.nan, np.complex128)
         for k, column in enumerate(self.mass.T):
             known = np.flatnonzero(np.isfinite(column))
             if known.size < 2:
@@ -73,7 +75,40 @@ class MassTable:
             values = column[known]
             cubic = PchipInterpolator(x[known], np.stack([values.real, values.imag], axis=1)).c
             whole = np.flatnonzero(np.diff(known) == 1)  # intervals between neighbours in the table
-            found[:, known[whole], k] = cubic[:, whole, 0] + 1j * cubic[:, whole, 1]
+            found[k, known[whole]] = (cubic[:, whole, 0] + 1j * cubic[:, whole, 1]).T
+        return found
+
+    @cached_property
+    def _latest(self) -> dict[bytes, MassCurves]:
+        return {}
+
+    def curves(self, frequency: FloatArray) -> MassCurves:
+        """Return the apparent mass over the amplitude at frequencies.
+
+        The last curves are stored: many arrangements of dampers are computed at the same frequencies.
+
+        Parameters
+        ----------
+        frequency : (F,) float
+            Frequencies within the table [Hz].
+        """
+        key = frequency.tobytes()
+        if key not in self._latest:
+            self._latest.clear()
+            self._latest[key] = MassCurves(np.log(self.amplitude), self._at(frequency))
+        return self._latest[key]
+
+    def _at(self, frequency: FloatArray) -> ComplexArray:
+        """Return the coefficients of the cubics at frequencies, (F, K - 1, 4)."""
+        nodes = np.log(self.frequency)
+        left = np.clip(np.searchsorted(nodes, np.log(frequency), side="right") - 1, 0, max(nodes.size - 2, 0))
+        right = np.minimum(left + 1, nodes.size - 1)
+        span = nodes[right] - nodes[left]
+        part = np.clip((np.log(frequency) - nodes[left]) / np.where(span > 0, span, 1.0), 0.0, 1.0)
+        found = np.zeros((frequency.size, self.amplitude.size - 1, 4), np.complex128)
+        for column, weight in ((left, 1 - part), (right, part)):
+            w = weight[:, None, None]
+            found += np.where(w > 0, w * self._coefficients[column], 0.0)  # a column without weight may be unknown
         return found
 
     def covers(self, frequency: FloatArray) -> NDArray[np.bool_]:
@@ -101,21 +136,74 @@ class MassTable:
             Mass [kg] and derivative [kg]. Outside of the table the derivative decays to zero within a few per cent of the
             amplitude, so that branches of solutions can be followed there; these solutions are not used.
         """
-        x, nodes = np.log(self.amplitude), np.log(self.frequency)
-        inner = np.clip(log_amplitude, x[0], x[-1])
-        interval = np.clip(np.searchsorted(x, inner, side="right") - 1, 0, x.size - 2)
+        return MassCurves(np.log(self.amplitude), self._at(frequency)).evaluate(
+            np.arange(frequency.size), log_amplitude
+        )
+
+    def thinned(self, amplitudes: bool) -> MassTable | None:
+        """Return the table without every second amplitude or frequency; None if fewer than three are left to omit from."""
+        nodes = self.amplitude if amplitudes else self.frequency
+        if nodes.size < 3:
+            return None
+        kept = np.unique(np.append(np.arange(0, nodes.size, 2), nodes.size - 1))
+        if amplitudes:
+            return MassTable(self.frequency, nodes[kept], self.mass[kept], self.is_acceleration)
+        return MassTable(nodes[kept], self.amplitude, self.mass[:, kept], self.is_acceleration)
+
+
+@dataclass(frozen=True, eq=False)
+class MassCurves:
+    """Apparent mass of a damper over the amplitude at F frequencies.
+
+    Attributes
+    ----------
+    nodes : (K,) float
+        Natural logarithms of the amplitudes of the table.
+    coefficients : (F, K - 1, 4) complex
+        Coefficients of the cubic in each interval, highest power first [kg].
+    """
+
+    nodes: FloatArray
+    coefficients: ComplexArray
+
+    @cached_property
+    def grid(self) -> FloatArray:
+        """Eight logarithms of amplitudes in each interval, and the last one, (G,)."""
+        inner = self.nodes[:-1, None] + np.diff(self.nodes)[:, None] * np.arange(_FINE) / _FINE
+        return np.append(inner.ravel(), self.nodes[-1])
+
+    @cached_property
+    def mass_on_grid(self) -> ComplexArray:
+        """Apparent mass on the grid, (F, G) [kg]."""
+        steps = np.diff(self.nodes)
+        powers = (steps[:, None, None] * np.arange(_FINE)[:, None] / _FINE) ** np.arange(3, -1, -1)  # (K - 1, 8, 4)
+        inner = np.einsum("fkp,kip->fki", self.coefficients, powers).reshape(len(self.coefficients), -1)
+        last = self.coefficients[:, -1] @ steps[-1] ** np.arange(3, -1, -1)
+        return np.concatenate([inner, last[:, None]], axis=1)
+
+    def evaluate(self, rows: NDArray[np.intp], log_amplitude: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the apparent mass and its derivative with respect to the logarithm of the amplitude.
+
+        Parameters
+        ----------
+        rows : (R,) int
+            Numbers of frequencies.
+        log_amplitude : (R, ...) float
+            Natural logarithms of amplitudes.
+
+        Returns
+        -------
+        tuple of (R, ...) complex
+            Mass [kg] and derivative [kg]. Outside of the table the derivative decays to zero within a few per cent of the
+            amplitude, so that branches of solutions can be followed there; these solutions are not used.
+        """
+        x = self.nodes
+        inner = np.minimum(np.maximum(log_amplitude, x[0]), x[-1])
+        interval = np.minimum(np.searchsorted(x[1:], inner, side="right"), x.size - 2)
         d = inner - x[interval]
-        left = np.clip(np.searchsorted(nodes, np.log(frequency), side="right") - 1, 0, max(nodes.size - 2, 0))
-        right = np.minimum(left + 1, nodes.size - 1)
-        span = nodes[right] - nodes[left]
-        part = np.clip((np.log(frequency) - nodes[left]) / np.where(span > 0, span, 1.0), 0.0, 1.0)
-        shape = (-1, *[1] * (inner.ndim - 1))
-        mass, slope = np.zeros(inner.shape, np.complex128), np.zeros(inner.shape, np.complex128)
-        for column, weight in ((left, 1 - part), (right, part)):
-            c = self._coefficients[:, interval, column.reshape(shape)]
-            w = weight.reshape(shape)
-            mass += np.where(w > 0, w * (((c[0] * d + c[1]) * d + c[2]) * d + c[3]), 0.0)
-            slope += np.where(w > 0, w * ((3 * c[0] * d + 2 * c[1]) * d + c[2]), 0.0)
+        c = self.coefficients[rows.reshape(-1, *[1] * (inner.ndim - 1)), interval]
+        mass = ((c[..., 0] * d + c[..., 1]) * d + c[..., 2]) * d + c[..., 3]
+        slope = (3 * c[..., 0] * d + 2 * c[..., 1]) * d + c[..., 2]
         beyond = log_amplitude - inner
         if not beyond.any():
             return mass, slope
@@ -128,16 +216,6 @@ class MassTable:
             parts.append((value + change * np.sign(beyond) * width * (1 - decay), change * decay))
         (mass_real, slope_real), (mass_imag, slope_imag) = parts
         return mass_real + 1j * mass_imag, slope_real + 1j * slope_imag
-
-    def thinned(self, amplitudes: bool) -> MassTable | None:
-        """Return the table without every second amplitude or frequency; None if fewer than three are left to omit from."""
-        nodes = self.amplitude if amplitudes else self.frequency
-        if nodes.size < 3:
-            return None
-        kept = np.unique(np.append(np.arange(0, nodes.size, 2), nodes.size - 1))
-        if amplitudes:
-            return MassTable(self.frequency, nodes[kept], self.mass[kept], self.is_acceleration)
-        return MassTable(nodes[kept], self.amplitude, self.mass[:, kept], self.is_acceleration)
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +239,23 @@ class Solutions:
     is_below: NDArray[np.bool_]
     is_above: NDArray[np.bool_]
     is_lost: NDArray[np.bool_]
+
+    def with_rows(self, rows: NDArray[np.intp], others: Solutions) -> Solutions:
+        """Return the solutions with other ones at some frequencies; these are all frequencies of the others."""
+        count = max(self.is_unstable.shape[2], others.is_unstable.shape[2])
+        changed, new = self._padded(count), others._padded(count)
+        for each in fields(Solutions):
+            getattr(changed, each.name)[:, rows] = getattr(new, each.name)
+        return changed
+
+    def _padded(self, count: int) -> Solutions:
+        """Return a copy with places for a number of solutions."""
+        more = (0, 0), (0, 0), (0, count - self.is_unstable.shape[2])
+        return Solutions(
+            np.pad(self.acceleration, (*more, (0, 0)), constant_values=np.nan),
+            np.pad(self.is_unstable, more),
+            *(each.copy() for each in (self.is_below, self.is_above, self.is_lost)),
+        )
 
 
 def solve(
@@ -203,82 +298,175 @@ def solve(
     """
     inside = np.flatnonzero(table.covers(frequency) & np.any(drive != 0, axis=1))
     one = drive.shape[1] == 1
-    parts = (_one if one else _several)(table, frequency[inside], gain[inside], drive[inside], levels)
-    shape, dampers = (levels.size, frequency.size), drive.shape[1]
-    count = max([1, *(len(rows) for cell in parts.rows for rows in cell)])
-    acceleration = np.full((*shape, count, dampers), np.nan, np.complex128)
-    unstable = np.zeros((*shape, count), bool)
-    below, above, lost = (np.zeros(shape, bool) for _ in range(3))
-    below[:, inside], above[:, inside], lost[:, inside] = parts.below, parts.above, parts.lost
-    for level, cells in enumerate(parts.rows):
-        for place, rows in zip(inside, cells, strict=True):
-            rows.sort(key=lambda row: -float(np.abs(row[0]).max()))
-            for number, (motion, is_unstable) in enumerate(rows):
-                acceleration[level, place, number] = motion
-                unstable[level, place, number] = is_unstable
-    return Solutions(acceleration, unstable, below, above, lost)
+    curves = table.curves(frequency)
+    parts = (_one if one else _several)(
+        _System(table, curves, inside, frequency[inside], gain[inside], drive[inside]), levels
+    )
+    return parts.solutions(inside, frequency.size, levels.size, drive.shape[1])
+
+
+def solve_near(
+    table: MassTable,
+    frequency: FloatArray,
+    gain: ComplexArray,
+    drive: ComplexArray,
+    levels: FloatArray,
+    solutions: Solutions,
+) -> Solutions:
+    """Return the motions for a table that differs little from that of known motions.
+
+    Parameters
+    ----------
+    table, frequency, gain, drive, levels
+        As for `solve`, but with the other table.
+    solutions
+        Motions with the known table, from `solve`.
+
+    Returns
+    -------
+    Solutions
+        The motions close to the known ones, from Newton's method. At frequencies where it does not find one of them, and
+        for one cavity at all, those of `solve`.
+    """
+    if drive.shape[1] == 1:
+        return solve(table, frequency, gain, drive, levels)
+    place = np.nonzero(np.isfinite(solutions.acceleration).all(axis=-1))
+    level, rows = np.log(levels[place[0]]), place[1]
+    branch = _Branch(_System(table, table.curves(frequency), np.arange(frequency.size), frequency, gain, drive))
+    scale = (branch.scale[rows] * np.exp(level))[:, None]
+    unit = solutions.acceleration[place] / scale
+    start = np.concatenate([unit.real, unit.imag, level[:, None]], axis=1)
+    reach = np.maximum(_NEARBY, 0.5 * np.linalg.norm(start[:, :-1], axis=1))
+    point = _at_level(branch, start, rows, level, reach)
+    value, _ = branch.residual(point, rows)
+    with np.errstate(invalid="ignore"):
+        found = np.asarray(np.abs(value).max(axis=1) < _NEWTON) & (np.linalg.norm(point - start, axis=1) < reach)
+    acceleration = np.full(solutions.acceleration.shape, np.nan, np.complex128)
+    acceleration[place] = branch.motion(point) * scale
+    near = replace(solutions, acceleration=acceleration)
+    if found.all():
+        return near
+    lost = np.unique(rows[~found])
+    return near.with_rows(lost, solve(table, frequency[lost], gain[lost], drive[lost], levels))
+
+
+@dataclass(frozen=True, eq=False)
+class _System:
+    """Cavities at the frequencies within a table.
+
+    Attributes
+    ----------
+    table, curves
+        Apparent mass, and its values at all frequencies.
+    rows : (F,) int
+        Numbers of the frequencies in the curves.
+    frequency, gain, drive
+        As for `solve`.
+    """
+
+    table: MassTable
+    curves: MassCurves
+    rows: NDArray[np.intp]
+    frequency: FloatArray
+    gain: ComplexArray
+    drive: ComplexArray
+
+    def mass(self, rows: NDArray[np.intp], log_amplitude: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return mass and derivative at frequencies of the system; see `MassCurves.evaluate`."""
+        return self.curves.evaluate(self.rows[rows], log_amplitude)
 
 
 @dataclass
 class _Found:
-    """Solutions by level and frequency, and whether there are others outside of the table, (L, F) each."""
+    """Solutions, in any order, and whether there are others outside of the table.
 
-    rows: list[list[list[tuple[ComplexArray, bool]]]]
+    Attributes
+    ----------
+    level, row : (N,) int
+        Numbers of level and frequency.
+    motion : (N, P) complex
+        Accelerations of the cavities.
+    unstable : (N,) bool
+        Whether the motion is between two folds.
+    below, above, lost : (L, F) bool
+        See `Solutions`.
+    """
+
+    level: NDArray[np.intp]
+    row: NDArray[np.intp]
+    motion: ComplexArray
+    unstable: NDArray[np.bool_]
     below: NDArray[np.bool_]
     above: NDArray[np.bool_]
     lost: NDArray[np.bool_]
 
-    @classmethod
-    def none(cls, levels: int, frequencies: int) -> _Found:
-        rows: list[Any] = [[[] for _ in range(frequencies)] for _ in range(levels)]
-        return cls(rows, *(np.zeros((levels, frequencies), bool) for _ in range(3)))
+    def solutions(self, inside: NDArray[np.intp], frequencies: int, levels: int, dampers: int) -> Solutions:
+        """Return the solutions over all frequencies, those of a level and frequency in the order of their amplitudes."""
+        place = inside[self.row]
+        order = np.lexsort((-np.abs(self.motion).max(axis=1), place, self.level))
+        cell = (self.level * frequencies + place)[order]
+        first = np.searchsorted(cell, cell, side="left")
+        number = np.arange(cell.size) - first
+        shape = levels, frequencies
+        acceleration = np.full((*shape, int(number.max(initial=0)) + 1, dampers), np.nan, np.complex128)
+        unstable = np.zeros(acceleration.shape[:-1], bool)
+        acceleration[self.level[order], place[order], number] = self.motion[order]
+        unstable[self.level[order], place[order], number] = self.unstable[order]
+        flags = []
+        for each in (self.below, self.above, self.lost):
+            whole = np.zeros(shape, bool)
+            whole[:, inside] = each
+            flags.append(whole)
+        return Solutions(acceleration, unstable, *flags)
 
 
 # ---- one cavity
 
 
-def _one(
-    table: MassTable, frequency: FloatArray, gain: ComplexArray, drive: ComplexArray, levels: FloatArray
-) -> _Found:
+def _one(system: _System, levels: FloatArray) -> _Found:
     """Return the solutions for one cavity from the level as a function of the amplitude."""
-    found = _Found.none(levels.size, frequency.size)
-    x = np.log(table.amplitude)
-    grid = np.append((x[:-1, None] + np.diff(x)[:, None] * np.arange(_FINE) / _FINE).ravel(), x[-1])
-    omega = 2 * np.pi * frequency
-    offset = table.log_acceleration(omega) - np.log(np.abs(drive[:, 0]))
-
-    def log_level(rows: NDArray[np.intp], log_amplitude: FloatArray) -> FloatArray:
-        mass, _ = table.evaluate(frequency[rows], log_amplitude)
-        more = (-1, *[1] * (log_amplitude.ndim - 1))
-        factor = np.abs(1 + gain[rows, 0, 0].reshape(more) * mass)
-        with np.errstate(divide="ignore"):
-            return np.asarray(log_amplitude + offset[rows].reshape(more) + np.log(factor))
-
-    everything = np.arange(frequency.size)
-    curve = log_level(everything, np.broadcast_to(grid, (frequency.size, grid.size)))
+    grid, gain, drive = system.curves.grid, system.gain[:, 0, 0], system.drive[:, 0]
+    offset = system.table.log_acceleration(2 * np.pi * system.frequency) - np.log(np.abs(drive))
+    with np.errstate(divide="ignore"):
+        factor = np.log(np.abs(1 + gain[:, None] * system.curves.mass_on_grid[system.rows]))
+    curve = grid + offset[:, None] + factor
     known = np.isfinite(curve)
+    shape = levels.size, system.frequency.size
+    below, above, lost = (np.zeros(shape, bool) for _ in range(3))
+    places = []
     for number, level in enumerate(np.log(levels)):
-        above = curve >= level
+        over = curve >= level
         # A level below that of the smallest amplitude belongs to a smaller one, and the other way round.
-        found.below[number] = above[:, 0] & known[:, 0]
-        found.above[number] = ~above[:, -1] & known[:, -1]
+        below[number] = over[:, 0] & known[:, 0]
+        above[number] = ~over[:, -1] & known[:, -1]
         for row in np.flatnonzero(~known.all(axis=1)):  # the level may be reached where runs of the map failed
-            sides, numbers = above[row, known[row]], np.flatnonzero(known[row])
+            sides, numbers = over[row, known[row]], np.flatnonzero(known[row])
             hidden = (sides[1:] != sides[:-1]) & (np.diff(numbers) > 1)
-            found.lost[number, row] = hidden.any() or not (known[row, 0] and known[row, -1])
-        rows, cells = np.nonzero((above[:, 1:] != above[:, :-1]) & known[:, 1:] & known[:, :-1])
-        low, high = grid[cells], grid[cells + 1]
-        rises = above[rows, cells + 1]
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (low + high)
-            beyond = (log_level(rows, middle) >= level) == rises
-            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-        root = 0.5 * (low + high)
-        mass, _ = table.evaluate(frequency[rows], root)
-        motion = levels[number] * drive[rows, 0] / (1 + gain[rows, 0, 0] * mass)
-        for row, value, rising in zip(rows, motion, rises, strict=True):
-            found.rows[number][row].append((np.array([value]), not rising))
-    return found
+            lost[number, row] = hidden.any() or not (known[row, 0] and known[row, -1])
+        rows, cells = np.nonzero((over[:, 1:] != over[:, :-1]) & known[:, 1:] & known[:, :-1])
+        places.append(np.stack([np.full(rows.size, number), rows, cells, over[rows, cells + 1]]))
+    level_of, rows, cells, rises = np.concatenate(places, axis=1)
+    low, high, level = grid[cells], grid[cells + 1], np.log(levels)[level_of]
+    begin, end = curve[rows, cells] - level, curve[rows, cells + 1] - level
+    # Newton's method, which bisects where it would leave the interval.
+    root = low - begin / (end - begin) * (high - low)
+    for _ in range(_BISECTIONS):
+        mass, slope = system.mass(rows, root)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            total = 1 + gain[rows] * mass
+            value = root + offset[rows] + np.log(np.abs(total)) - level
+            step = value / (1 + (gain[rows] * slope / total).real)
+        beyond = (value >= 0) == rises.astype(bool)
+        low, high = np.where(beyond, low, root), np.where(beyond, root, high)
+        new = root - step
+        inner = (new >= low) & (new <= high)
+        new = np.where(inner, new, 0.5 * (low + high))
+        change, root = np.abs(new - root).max(initial=0.0), new
+        if change < _ROOT:
+            break
+    mass, _ = system.mass(rows, root)
+    motion = levels[level_of] * drive[rows] / (1 + gain[rows] * mass)
+    return _Found(level_of, rows, motion[:, None], rises == 0, below, above, lost)
 
 
 # ---- several cavities
@@ -290,12 +478,13 @@ class _Branch:
     A point is an array (F, 2 P + 1): real parts, imaginary parts, logarithm of the level.
     """
 
-    def __init__(self, table: MassTable, frequency: FloatArray, gain: ComplexArray, drive: ComplexArray) -> None:
-        self.table, self.frequency, self.gain = table, frequency, gain
-        self.scale = np.abs(drive).max(axis=1)
-        self.target = drive / self.scale[:, None]
-        self.offset = np.log(self.scale) - table.log_acceleration(2 * np.pi * frequency)
-        self.count = drive.shape[1]
+    def __init__(self, system: _System) -> None:
+        self.system, self.limits = system, system.table.limits
+        self.gain, self.count = system.gain, system.drive.shape[1]
+        with np.errstate(divide="ignore", invalid="ignore"):  # frequencies without drive, which have no solutions
+            self.scale = np.abs(system.drive).max(axis=1)
+            self.target = system.drive / self.scale[:, None]
+            self.offset = np.log(self.scale) - system.table.log_acceleration(2 * np.pi * system.frequency)
 
     def motion(self, point: FloatArray) -> ComplexArray:
         return np.asarray(point[:, : self.count] + 1j * point[:, self.count : -1])
@@ -307,7 +496,7 @@ class _Branch:
     def residual(self, point: FloatArray, rows: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
         """Return the residual, (F, 2 P), and its derivative, (F, 2 P, 2 P + 1)."""
         y, gain, p = self.motion(point), self.gain[rows], self.count
-        mass, slope = self.table.evaluate(self.frequency[rows], self.log_amplitudes(point, rows))
+        mass, slope = self.system.mass(rows, self.log_amplitudes(point, rows))
         value = y + (gain @ (mass * y)[..., None])[..., 0] - self.target[rows]
         size = np.maximum(np.abs(y) ** 2, 1e-300)
         by_level = (gain @ (slope * y)[..., None])[..., 0]
@@ -321,25 +510,26 @@ class _Branch:
 
     def start(self) -> FloatArray:
         """Return the motions at a level at which all are so far below the table that the masses are constant."""
-        low = self.table.limits[0] - 10 * _EDGE
-        mass, _ = self.table.evaluate(self.frequency, np.full((self.frequency.size, self.count), low))
+        low = self.limits[0] - 10 * _EDGE
+        every = np.arange(len(self.gain))
+        mass, _ = self.system.mass(every, np.full((every.size, self.count), low))
         y = np.linalg.solve(np.eye(self.count) + self.gain * mass[:, None, :], self.target[..., None])[..., 0]
         level = low - np.log(np.abs(y).max(axis=1)) - self.offset
         return np.concatenate([y.real, y.imag, level[:, None]], axis=1)
 
 
-def _several(
-    table: MassTable, frequency: FloatArray, gain: ComplexArray, drive: ComplexArray, levels: FloatArray
-) -> _Found:
+def _several(system: _System, levels: FloatArray) -> _Found:
     """Return the solutions for several cavities, which share the branch that begins at small levels."""
-    found = _Found.none(levels.size, frequency.size)
-    branch = _Branch(table, frequency, gain, drive)
-    path, lost = _follow(branch)
-    low, high = table.limits
+    branch = _Branch(system)
+    path, at_end = _follow(branch)
+    low, high = branch.limits
+    shape = levels.size, system.frequency.size
+    below, above, lost = (np.zeros(shape, bool) for _ in range(3))
+    parts = []
     for number, level in enumerate(np.log(levels)):
-        found.below[number] = path[0, :, -1] > level
-        found.above[number] = ~lost & (path[-1, :, -1] < level)
-        found.lost[number] = lost
+        below[number] = path[0, :, -1] > level
+        above[number] = ~at_end & (path[-1, :, -1] < level)
+        lost[number] = at_end
         beyond = path[..., -1] >= level
         steps, rows = np.nonzero(beyond[1:] != beyond[:-1])
         begin, end = path[steps, rows], path[steps + 1, rows]
@@ -348,25 +538,35 @@ def _several(
         logs = branch.log_amplitudes(points, rows)
         smallest = np.where(logs < logs.max(axis=1, keepdims=True) + math.log(NEGLIGIBLE), np.inf, logs).min(axis=1)
         motion = branch.motion(points) * (branch.scale[rows] * levels[number])[:, None]
-        for k, row in enumerate(rows):
-            if smallest[k] < low:
-                found.below[number, row] = True
-            if logs[k].max() > high:
-                found.above[number, row] = True
-            if low <= smallest[k] and logs[k].max() <= high:
-                found.rows[number][row].append((motion[k], bool(beyond[steps[k], row])))
-    return found
+        small, large = smallest < low, logs.max(axis=1) > high
+        below[number, rows[small]] = True
+        above[number, rows[large]] = True
+        inner = ~small & ~large
+        parts.append((np.full(inner.sum(), number), rows[inner], motion[inner], beyond[steps, rows][inner]))
+    level_of, rows, motion, unstable = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return _Found(level_of, rows, motion, unstable, below, above, lost)
 
 
-def _at_level(branch: _Branch, point: FloatArray, rows: NDArray[np.intp], level: float) -> FloatArray:
-    """Return the solutions near points, at a given logarithm of the level."""
+def _at_level(
+    branch: _Branch,
+    point: FloatArray,
+    rows: NDArray[np.intp],
+    level: float | FloatArray,
+    reach: float | FloatArray = _NEARBY,
+) -> FloatArray:
+    """Return the solutions near points, at a given logarithm of the level, from steps shorter than the reach."""
     point = point.copy()
     point[:, -1] = level
+    active, reach = np.arange(len(point)), np.broadcast_to(reach, len(point))
     for _ in range(6):
-        value, derivative = branch.residual(point, rows)
+        value, derivative = branch.residual(point[active], rows[active])
         change = np.linalg.solve(derivative[..., :-1], -value[..., None])[..., 0]
-        small = np.linalg.norm(change, axis=1) < 0.3  # otherwise the interpolated point is better
-        point[:, :-1] += np.where(small[:, None], change, 0.0)
+        size = np.linalg.norm(change, axis=1)
+        small = size < reach[active]  # otherwise the given point is better
+        point[active[small], :-1] += change[small]
+        active = active[small & (size > _ROOT)]
+        if not active.size:
+            break
     return point
 
 
@@ -376,18 +576,24 @@ def _follow(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
     path, tangent = [point.copy()], np.zeros_like(point)
     tangent[:, -1] = 1.0
     length = np.full(len(point), _LONGEST)
-    end = branch.table.limits[1] + 10 * _EDGE
+    end = branch.limits[1] + 10 * _EDGE
     lost, active = np.zeros(len(point), bool), np.arange(len(point))
+    before = tangent.copy()
+    last = np.zeros(len(point))
     for _ in range(_MOST_STEPS):
         if not active.size:
             break
         here, along, h = point[active], tangent[active], length[active]
-        ahead = here + h[:, None] * along
+        # Second order: the tangents of the last two points give the curvature.
+        bend = (along - before[active]) / np.where(last[active] > 0, last[active], np.inf)[:, None]
+        ahead = here + h[:, None] * along + 0.5 * h[:, None] ** 2 * bend
         accepted, new_tangent = _correct(branch, ahead, along, active)
         good = np.asarray(np.isfinite(accepted).all(axis=1) & np.isfinite(new_tangent).all(axis=1))
         good &= np.linalg.norm(np.where(good[:, None], accepted - ahead, 0.0), axis=1) < 0.5 * h
         good &= np.einsum("fi,fi->f", np.nan_to_num(new_tangent), along) > 0.9
-        point[active[good]], tangent[active[good]] = accepted[good], new_tangent[good]
+        done = active[good]
+        before[done], last[done] = along[good], h[good]
+        point[done], tangent[done] = accepted[good], new_tangent[good]
         length[active] = np.where(good, np.minimum(1.5 * h, _LONGEST), 0.5 * h)
         path.append(point.copy())
         lost[active] = length[active] < _SHORTEST
@@ -401,24 +607,27 @@ def _correct(
     branch: _Branch, ahead: FloatArray, along: FloatArray, rows: NDArray[np.intp]
 ) -> tuple[FloatArray, FloatArray]:
     """Return the points of the branch nearest to predicted ones and the tangents there; NaN where there are none."""
-    point = ahead.copy()
-    constraint = along[:, None, :]
-    unit = np.zeros(point.shape)
-    unit[:, -1] = 1.0
+    point, tangents = np.full_like(ahead, np.nan), np.full_like(ahead, np.nan)
+    active, here = np.arange(len(ahead)), ahead
     try:
         for _ in range(8):
-            value, derivative = branch.residual(point, rows)
-            matrix = np.concatenate([derivative, constraint], axis=1)
-            distance = np.einsum("fi,fi->f", along, point - ahead)
-            right = np.stack([-np.concatenate([value, distance[:, None]], axis=1), unit], axis=2)
-            change, tangent = np.moveaxis(np.linalg.solve(matrix, right), 2, 0)
-            if np.abs(value).max(initial=0.0) < 1e-9:
+            along_here = along[active]
+            value, derivative = branch.residual(here, rows[active])
+            matrix = np.concatenate([derivative, along_here[:, None, :]], axis=1)
+            distance = np.einsum("fi,fi->f", along_here, here - ahead[active])
+            right = np.zeros((*here.shape, 2))
+            right[:, :-1, 0], right[:, -1, 0], right[:, -1, 1] = -value, -distance, 1.0
+            solved = np.linalg.solve(matrix, right)
+            done = np.abs(value).max(axis=1) < _NEWTON
+            tangent = solved[done, :, 1]
+            point[active[done]] = here[done]
+            tangents[active[done]] = tangent / np.linalg.norm(tangent, axis=1, keepdims=True)
+            active, here = active[~done], (here + solved[..., 0])[~done]
+            if not active.size:
                 break
-            point += change
     except np.linalg.LinAlgError:
         return np.full_like(point, np.nan), along
-    point[~(np.abs(value).max(axis=1) < 1e-6)] = np.nan
-    return point, tangent / np.linalg.norm(tangent, axis=1, keepdims=True)
+    return point, tangents
 
 
 # ---- modes
@@ -461,7 +670,7 @@ def damping_of_modes(
         omega = np.full(amplitudes.size, math.sqrt(stiffness[mode]))
         x = np.zeros((amplitudes.size, count))
         x[:, mode] = 1.0
-        for _ in range(60):
+        for step in range(60):
             hertz = np.clip(omega / (2 * np.pi), table.frequency[0], table.frequency[-1])
             logs, outside = _cavity_amplitudes(x @ shapes.T, amplitudes)
             mass, _ = table.evaluate(hertz, logs)
@@ -470,7 +679,8 @@ def damping_of_modes(
             before, omega = omega, np.sqrt(squared)
             if np.nanmax(np.abs(omega / before - 1), initial=0.0) < 1e-9:
                 break
-            omega = 0.3 * before + 0.7 * omega
+            if step > 8:  # slow convergence, or none
+                omega = 0.3 * before + 0.7 * omega
         extra = -number * omega[:, None, None] * np.einsum("kp,pi,pj->kij", mass.imag, shapes, shapes)
         lost = np.einsum("ki,kij,kj->k", x, damping + extra, x)
         kinetic = np.einsum("ki,kij,kj->k", x, loaded, x)
