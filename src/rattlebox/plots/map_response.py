@@ -40,7 +40,7 @@ def plot_response_from_map(
     """Draw the amplitude over frequency at each level, and the damping ratio of each mode over the amplitude of the damper.
 
     Unstable motions are dotted. Crosses mark motions with less than 95 % in the first harmonic. Lines end where the map
-    ends. The structure without dampers is grey.
+    ends. The structure without dampers is grey, and so are 95 % intervals of the damping ratio.
 
     Parameters
     ----------
@@ -120,7 +120,10 @@ def _draw_damping(axes: Axes, response: xarray.Dataset) -> None:
             hertz, own = scaled(response.mode_frequency.sel(mode=mode), "Hz")
             name = f"mode {mode}, {float(response.mode_frequency.sel(mode=mode).mean()) / hertz:.3g} {own}"
             style = SERIES_STYLES[k % len(SERIES_STYLES)]
-            axes.plot(response.map_amplitude / divisor, 100 * ratio, color=INK, ls=style, label=name)
+            amplitude = response.map_amplitude / divisor
+            axes.plot(amplitude, 100 * ratio, color=INK, ls=style, label=name)
+            half = response.damping_ratio_interval.sel(mode=mode)
+            axes.fill_between(amplitude, 100 * (ratio - half), 100 * (ratio + half), color=FAINT, lw=0, zorder=0)
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(LogLocator(subs=(1,)))
     axes.xaxis.set_major_formatter("{x:g}")
@@ -134,6 +137,8 @@ def _draw_damping(axes: Axes, response: xarray.Dataset) -> None:
 
 def _handles(response: xarray.Dataset) -> list[Line2D]:
     handles = [Line2D([], [], color=FAINT, lw=pen(0.8), label="no damper")]
+    if np.isfinite(response.damping_ratio_interval).any():
+        handles.append(Line2D([], [], color=FAINT, lw=pen(4), label="95 % interval"))
     if response.is_unstable.any():
         handles.append(Line2D([], [], color=INK, ls=":", label="unstable"))
     if (response.first_harmonic_share < 0.95).any():

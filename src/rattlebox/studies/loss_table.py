@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -119,6 +120,26 @@ class LossTable:
             text,
             str(data.warnings.attrs.get("flag_meanings", "")) if "warnings" in data else "",
         )
+
+    @cached_property
+    def thinned(self) -> list[MassTable]:
+        """Apparent masses without every second amplitude, and without every second frequency, where these are enough."""
+        return [each for each in (self.masses.thinned(True), self.masses.thinned(False)) if each is not None]
+
+    @cached_property
+    def shifted(self) -> list[MassTable]:
+        """Apparent masses with m' and with m'' larger by half of their intervals; empty if the map has none."""
+        if self.interval is None or not np.isfinite(self.interval).any():
+            return []
+        half = np.nan_to_num(self.interval)
+        return [replace(self.masses, mass=self.masses.mass + step) for step in (half[..., 0], -1j * half[..., 1])]
+
+    def has_interval(self, frequency: FloatArray, amplitude: FloatArray) -> NDArray[np.bool_]:
+        """Return whether the map has intervals around each amplitude; the arguments are those of `interpolate`."""
+        if self.interval is None:
+            return np.zeros(amplitude.shape, bool)
+        missing = ~np.isfinite(self.interval).all(axis=-1)
+        return np.asarray(self.interpolate(missing.astype(float), frequency, amplitude) == 0)
 
     def interpolate(self, values: FloatArray, frequency: FloatArray, amplitude: FloatArray) -> FloatArray:
         """Interpolate values of the map linearly in the logarithms of amplitude and frequency.

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.analysis.describing_function import MassTable, Solutions, damping_of_modes, solve
+from rattlebox.analysis.describing_function import MassTable, Solutions, damping_of_modes, solve, solve_near
 from rattlebox.model.modes import ModalModel
 
 from .loss_table import LossTable
@@ -130,8 +130,10 @@ class MapResponse:
         Relative change of the largest amplitude with half of the map.
     peak, peak_frequency, peak_error : (L,) float
         Largest amplitude [m], its frequency [Hz], and its relative change with half of the map.
-    mode_frequency, damping_ratio : (m, K) float
-        Natural frequency [Hz] and damping ratio of the modes.
+    peak_interval : (L,) float
+        Half of the 95 % interval of the peak that follows from those of the map [m].
+    mode_frequency, damping_ratio, damping_ratio_interval : (m, K) float
+        Natural frequency [Hz] and damping ratio of the modes, and half of the 95 % interval of the latter.
     """
 
     amplitude: ComplexArray
@@ -144,8 +146,10 @@ class MapResponse:
     peak: FloatArray
     peak_frequency: FloatArray
     peak_error: FloatArray
+    peak_interval: FloatArray
     mode_frequency: FloatArray
     damping_ratio: FloatArray
+    damping_ratio_interval: FloatArray
 
     @classmethod
     def of(cls, transfer: Transfer, table: LossTable, number: int, levels: FloatArray) -> MapResponse:
@@ -163,21 +167,42 @@ class MapResponse:
             Levels.
         """
         masses, model = table.masses, transfer.model
-        solutions, amplitude, rests = _motions(transfer, table, masses, number, levels)
+        system = transfer.frequency, number * transfer.gain, transfer.drive, levels
+        from_map = solve(masses, *system)
+        solutions, amplitude, rests = _motions(transfer, table, masses, number, levels, from_map)
         squared = 1.0 if masses.is_acceleration else (2 * np.pi * transfer.frequency[:, None, None]) ** 2
         each = np.abs(solutions.acceleration) / squared
         peak, where = _peaks(transfer, solutions, np.abs(amplitude), levels)
         damping = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
-        frequency, ratio = damping_of_modes(masses, model.stiffness, damping, transfer.shapes, number)
+        modes = model.stiffness, damping, transfer.shapes, number
+        frequency, ratio = damping_of_modes(masses, *modes)
         share = np.where(rests, 1.0, _first_harmonic_share(transfer, table, number, each, ratio))
         heavy = number * table.mass * float((transfer.shapes**2).sum(axis=1).max())
+
+        def changed(other: MassTable) -> tuple[FloatArray, FloatArray]:
+            """Return the largest amplitude, (L, F), and the peak with another table."""
+            near = solve_near(other, *system, from_map)
+            others, found, _ = _motions(transfer, table, other, number, levels, near)
+            return np.abs(found[..., 0]), _peaks(transfer, others, np.abs(found), levels)[0]
+
         errors, peak_errors = [np.zeros(solutions.is_below.shape)], [np.zeros(peak.shape)]
-        for thinned in (masses.thinned(True), masses.thinned(False)):
-            if thinned is not None:
-                others, changed, _ = _motions(transfer, table, thinned, number, levels)
-                with np.errstate(invalid="ignore"):
-                    errors.append(np.abs(np.abs(changed[..., 0]) / np.abs(amplitude[..., 0]) - 1))
-                    peak_errors.append(np.abs(_peaks(transfer, others, np.abs(changed), levels)[0] / peak - 1))
+        for size, highest in map(changed, table.thinned):
+            with np.errstate(invalid="ignore"):
+                errors.append(np.abs(size / np.abs(amplitude[..., 0]) - 1))
+            peak_errors.append(np.abs(highest / peak - 1))
+        peak_interval, ratio_interval = np.full(peak.shape, np.nan), np.full(ratio.shape, np.nan)
+        if table.shifted:
+            peaks = [changed(other)[1] - peak for other in table.shifted]
+            at_peak = (transfer.frequency == where[:, None]).argmax(
+                axis=1
+            )  # peaks that are NaN have no interval anyway
+            moved = np.moveaxis(each, 1, 0)
+            has = np.asarray((table.has_interval(transfer.frequency, moved) | np.isnan(moved)).all(axis=(-2, -1)))
+            peak_interval = np.where(has[at_peak, np.arange(peak.size)], np.hypot(*peaks), np.nan)
+            ratios = [damping_of_modes(other, *modes)[1] - ratio for other in table.shifted]
+            own = np.nan_to_num(frequency, nan=masses.frequency[0]).ravel()
+            has = table.has_interval(own, np.broadcast_to(masses.amplitude, ratio.shape).ravel())
+            ratio_interval = np.where(has.reshape(ratio.shape), np.hypot(*ratios), np.nan)
         known = np.moveaxis(each, 1, 0)
         doubtful = table.interpolate(table.is_doubtful.astype(float), transfer.frequency, known)
         near = np.asarray(((doubtful > 0) & np.isfinite(known)).any(axis=(-2, -1)))
@@ -202,16 +227,22 @@ class MapResponse:
             peak,
             where,
             np.where(np.isfinite(peak), np.max(peak_errors, axis=0), np.nan),
+            peak_interval,
             frequency,
             ratio,
+            ratio_interval,
         )
 
 
 def _motions(
-    transfer: Transfer, table: LossTable, masses: MassTable, number: int, levels: FloatArray
+    transfer: Transfer,
+    table: LossTable,
+    masses: MassTable,
+    number: int,
+    levels: FloatArray,
+    solutions: Solutions,
 ) -> tuple[Solutions, ComplexArray, NDArray[np.bool_]]:
-    """Return the motions of the dampers, the observed displacement, and whether balls are at rest, (L, F, S)."""
-    solutions = solve(masses, transfer.frequency, number * transfer.gain, transfer.drive, levels)
+    """Return the motions with balls at rest added, the observed displacement, and whether balls are at rest, (L, F, S)."""
     at_rest = levels[:, None, None] * transfer.drive
     omega = 2 * np.pi * transfer.frequency
     reach = 2 * np.abs(at_rest).max(axis=-1) / omega**2
@@ -220,7 +251,8 @@ def _motions(
     moved = np.moveaxis(solutions.acceleration, 1, 0)  # (F, L, S, P)
     with np.errstate(divide="ignore", invalid="ignore"):
         logs = np.log(np.abs(moved)) - masses.log_acceleration(omega.reshape(-1, 1, 1, 1))
-        mass, _ = masses.evaluate(transfer.frequency, np.nan_to_num(logs, nan=masses.limits[0]))
+        curves = masses.curves(transfer.frequency)
+        mass, _ = curves.evaluate(np.arange(omega.size), np.nan_to_num(logs, nan=masses.limits[0]))
     mass = np.where(np.moveaxis(rests, 1, 0)[..., None], 0.0, mass)
     force = -number * mass * moved
     bare = transfer.bare[:, None] * levels

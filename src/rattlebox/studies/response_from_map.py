@@ -89,9 +89,10 @@ def response_from_map(
         level and frequency: `bare_amplitude` without dampers. Over `at`, `number` and `level`: `peak` [m], the largest
         amplitude, and `peak_frequency`; NaN if the response may be larger where the map does not cover it. Over `at`,
         `number`, `mode` and `map_amplitude`, that of the damper with the largest motion: `damping_ratio` and
-        `mode_frequency`. Over `at` and `number`: `mass_ratio` of the particles to the effective mass of the structure
-        for an impact at their point, 1 / sum of squared mode shapes. What the map does not cover is NaN. The attribute
-        `warnings` counts it.
+        `mode_frequency`. `peak_interval` and `damping_ratio_interval` are half of the 95 % intervals that follow from those
+        of the map, from the scatter of its cycles; NaN where it has none. Over `at` and `number`: `mass_ratio` of the
+        particles to the effective mass of the structure for an impact at their point, 1 / sum of squared mode shapes. What
+        the map does not cover is NaN. The attribute `warnings` counts it.
 
     Raises
     ------
@@ -137,13 +138,8 @@ def response_from_map(
     hertz = _frequencies(frequencies, table.masses, model, dampers.shapes, max(numbers))
     name, shape = _observed(model, point or places[0][0], dampers.direction, point)
     transfer = Transfer(model, hertz, dampers.shapes, load.force, load.base, shape)
-    parts = [
-        [
-            MapResponse.of(transfer.at([dampers.points.index(name) for name in place]), table, count, levels)
-            for count in numbers
-        ]
-        for place in places
-    ]
+    each = [transfer.at([dampers.points.index(name) for name in place]) for place in places]
+    parts = [[MapResponse.of(one, table, count, levels) for count in numbers] for one in each]
     about = {
         "title": "Response from a loss map",
         "study": "response_from_map",
@@ -398,12 +394,22 @@ def _dataset(
                 gather("peak_error"),
                 _described("1", f"relative change of the peak {half}"),
             ),
+            "peak_interval": (
+                peak,
+                gather("peak_interval"),
+                _described("m", "half of the 95 % interval of the peak, from the map"),
+            ),
             "mass_ratio": (
                 over[:2],
                 gather("mass_ratio"),
                 _described("1", "mass of the dampers over the effective mass for an impact"),
             ),
             "damping_ratio": (modal, gather("damping_ratio"), _described("1", "damping ratio of the mode")),
+            "damping_ratio_interval": (
+                modal,
+                gather("damping_ratio_interval"),
+                _described("1", "half of the 95 % interval of the damping ratio, from the map"),
+            ),
             "mode_frequency": (modal, gather("mode_frequency"), _described("Hz", "natural frequency of the mode")),
         },
         axes

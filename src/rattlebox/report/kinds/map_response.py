@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -43,19 +43,28 @@ def _answer(response: xr.Dataset) -> Iterator[str]:
         ends = " to ".join(amount(float(end), unit) for end in response.map_amplitude.values[[0, -1]])
         best = np.unravel_index(int(np.nanargmax(low.values)), low.shape)
         at, number = (response[name].values[place] for name, place in zip(low.dims, best, strict=True))
+        least = ratios.sel(at=at, number=number).argmin("map_amplitude")
+        half = response.damping_ratio_interval.sel(mode=mode, at=at, number=number)[least]
+        around = _half(half, low.values[best], "%")
         yield (
             f"Mode {mode}: the least damping ratio over amplitudes of the damper from {ends} is largest, "
-            f"{amount(float(low.values[best]), '%', 3)}, with {counted(int(number), 'damper')} at {at}."
+            f"{amount(float(low.values[best]), '%', 3)}{around}, with {counted(int(number), 'damper')} at {at}."
         )
     peaks = response.peak.isel(level=-1)
     if np.isfinite(peaks.values).any():
         least = np.unravel_index(int(np.nanargmin(peaks.values)), peaks.shape)
         at, number = (response[name].values[place] for name, place in zip(peaks.dims, least, strict=True))
+        around = _half(response.peak_interval.isel(level=-1).values[least], peaks.values[least], "m")
         level = amount(float(response["level"][-1]), unit_of(response["level"]))
         yield (
             f"At {level} the peak amplitude of {response.attrs['point']} is smallest, "
-            f"{amount(float(peaks.values[least]), 'm')}, with {counted(int(number), 'damper')} at {at}."
+            f"{amount(float(peaks.values[least]), 'm')}{around}, with {counted(int(number), 'damper')} at {at}."
         )
+
+
+def _half(value: Any, of: float, unit: str) -> str:
+    """Return half of a 95 % interval as text; nothing if it is unknown or negligible."""
+    return f" ± {amount(float(value), unit, 2)} (95 % interval of the map)" if value > 1e-4 * of else ""
 
 
 def _pictures(response: xr.Dataset) -> Iterator[Picture]:
@@ -78,8 +87,16 @@ def _tables(response: xr.Dataset) -> Iterator[Table]:
             ratios = [one.damping_ratio.sel(mode=mode).values for mode in modes]
             shares = [_range(values) for values in ratios]
             peak = float(one.peak.isel(level=-1))
-            rows.append((str(at), str(number), amount(peak, "m") if np.isfinite(peak) else MISSING, *shares))
-    header = ("points", "number", "peak at the highest level", *(f"damping ratio, mode {mode}" for mode in modes))
+            half = float(one.peak_interval.isel(level=-1))
+            text = amount(peak, "m") if np.isfinite(peak) else MISSING
+            rows.append((str(at), str(number), text, amount(half, "m", 2) if np.isfinite(half) else MISSING, *shares))
+    header = (
+        "points",
+        "number",
+        "peak at the highest level",
+        "± (95 %)",
+        *(f"damping ratio, mode {mode}" for mode in modes),
+    )
     note = f"{len(rows) - _MAX_ROWS} more are in the dataset." if len(rows) > _MAX_ROWS else ""
     yield Table("Dampers", header, rows[:_MAX_ROWS], note, numbers=True)
 
