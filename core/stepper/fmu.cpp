@@ -35,9 +35,10 @@ struct Instance {
     Log3 log3 = nullptr;
     void* environment = nullptr;
 
-    void report(const char* message) const {
-        if (log2) log2(environment, name.c_str(), error, "logStatusError", "%s", message);
-        if (log3) log3(environment, error, "logStatusError", message);
+    void report(const char* message, Outcome status = error) const {
+        const char* category = status == warning ? "logStatusWarning" : "logStatusError";
+        if (log2) log2(environment, name.c_str(), status, category, "%s", message);
+        if (log3) log3(environment, status, category, message);
     }
 };
 
@@ -160,7 +161,10 @@ int choose(void* instance, const unsigned* references, std::size_t n, const Inte
     });
 }
 int step(void* instance, double time, double length) {
-    return guarded(instance, [&](Instance& i) { i.fmu.step(time, length); });
+    return guarded(instance, [&](Instance& i) {
+        i.fmu.step(time, length);
+        for (const std::string& text : i.fmu.warnings()) i.report(text.c_str(), warning);
+    });
 }
 int begin(void* instance, double time) {
     return guarded(instance, [&](Instance& i) { i.fmu.set_origin(time); });

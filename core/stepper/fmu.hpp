@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -30,8 +31,18 @@ enum Reference : unsigned {
 // To which end of a step the values of the inputs belong.
 enum InputTime : int { start = 1, end = 2 };
 
+// A value that contacts should not exceed: of the overlap or the approach speed with this index.
+struct Limit {
+    bool speed = false;
+    std::size_t index = 0;
+    real value = 0;
+    std::string text; // what happens beyond it
+    bool exceeded = false;
+};
+
 class Fmu {
     std::vector<std::uint8_t> packed_;
+    std::vector<Limit> limits_;
     bool by_velocity_; // whether the inputs are velocities
     Options options_;
     Components gravity_{};
@@ -51,6 +62,26 @@ class Fmu {
                 bytes.insert(bytes.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(n));
         if (bytes.empty()) throw std::runtime_error(path + " cannot be read");
         return bytes;
+    }
+
+    // Lines of quantity, index, value and text, after a comment. A value is the integer with the same bits,
+    // because importers may have set a locale with a decimal comma.
+    static std::vector<Limit> read_limits(const std::string& path) {
+        std::vector<std::uint8_t> bytes = read(path);
+        bytes.push_back(0);
+        std::vector<Limit> limits;
+        for (char* line = std::strtok(reinterpret_cast<char*>(bytes.data()), "\n"); line;
+             line = std::strtok(nullptr, "\n")) {
+            if (*line == '#') continue;
+            char quantity[16];
+            unsigned long long index, value;
+            int begin = 0;
+            if (std::sscanf(line, "%15s %llu %llu %n", quantity, &index, &value, &begin) < 3)
+                throw std::runtime_error(path + " is damaged");
+            limits.push_back({std::strcmp(quantity, "speed") == 0, static_cast<std::size_t>(index),
+                              std::bit_cast<real>(static_cast<std::uint64_t>(value)), line + begin});
+        }
+        return limits;
     }
 
     std::size_t count() const {
@@ -94,8 +125,8 @@ class Fmu {
 
 public:
     explicit Fmu(const std::string& resources)
-        : packed_(read(resources + "/case.bin")), by_velocity_(read(resources + "/input").at(0) == 'v'),
-          stepper_(packed_.data(), packed_.size()) {
+        : packed_(read(resources + "/case.bin")), limits_(read_limits(resources + "/limits")),
+          by_velocity_(read(resources + "/input").at(0) == 'v'), stepper_(packed_.data(), packed_.size()) {
         gravity_ = stepper_.gravity();
         input_.assign(count(), 0.0);
         before_ = input_;
@@ -111,6 +142,7 @@ public:
         before_ = input_;
         length_ = work_ = loss_ = origin_ = 0;
         began_ = false;
+        for (Limit& limit : limits_) limit.exceeded = false;
     }
 
     // Sets the time of the start.
@@ -198,6 +230,20 @@ public:
         length_ = length;
         work_ += stepper_.result().work;
         loss_ += stepper_.result().loss;
+    }
+
+    // Returns the texts of the limits that contacts have exceeded since the last call; each of them once.
+    std::vector<std::string> warnings() {
+        std::vector<std::string> texts;
+        const Extremes extremes = stepper_.extremes();
+        for (Limit& limit : limits_) {
+            const std::vector<real>& largest = limit.speed ? extremes.speed : extremes.overlap;
+            if (limit.exceeded || limit.index >= largest.size() || !(largest[limit.index] > limit.value))
+                continue;
+            for (Limit& other : limits_) other.exceeded |= other.text == limit.text;
+            texts.push_back(limit.text);
+        }
+        return texts;
     }
 
     std::vector<std::uint8_t> save() {

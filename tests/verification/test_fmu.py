@@ -30,13 +30,13 @@ def ball(**changes: Any) -> rb.ImpactDamper:
     return rb.ImpactDamper(**{**given, **changes})
 
 
-def box() -> rb.ParticleDamper:
+def box(softening: float = 1e3) -> rb.ParticleDamper:
     """A box of balls with friction."""
     return rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="6 mm", count=50),
         cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
         contact=rb.Tsuji(restitution=0.75),
-        softening=1e3,
+        softening=softening,
     )
 
 
@@ -302,6 +302,38 @@ def test_bad_values_return_an_error_and_a_message(fmi: int, tmp_path: Path, caps
             assert reason in capsys.readouterr().out
         own.step(1e-3, 1e-3, velocity=0.1)
         assert np.isfinite(own.get("force")[0])
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+@pytest.mark.parametrize(
+    ("system", "gentle", "hard", "reason"),
+    [
+        (ball, 0.1, 40.0, "overlaps in"),
+        (
+            lambda: ball(contact=rb.Tsuji(restitution=rb.Tabulated(speeds=[0.1, 1], values=[0.9, 0.6]))),
+            0.2,
+            3.0,
+            "table of restitution",
+        ),
+        (lambda: box(softening=10), 0.05, 20.0, "fewer than 20 steps"),
+    ],
+    ids=["deep overlap", "table", "few steps"],
+)
+def test_contacts_beyond_the_model_are_reported_once(
+    system: Any, gentle: float, hard: float, reason: str, fmi: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The importer's log gets one warning when contacts leave the range of the model, and none before."""
+    with unit(tmp_path, system(), fmi) as own:
+        own.initialize()
+        velocity = "velocity" if "velocity" in own.reference else "velocity_z"
+        for k in range(120):
+            sign = 1 if k // 20 % 2 else -1
+            if k == 60:
+                assert "warning" not in capsys.readouterr().out.lower()
+            own.step(k * 1e-3, 1e-3, **{velocity: sign * (gentle if k < 60 else hard)})
+        lines = [line for line in capsys.readouterr().out.splitlines() if reason in line]
+        assert len(lines) == 1 and "warning" in lines[0].lower()
+        assert np.isfinite(own.get("stored")[0])
 
 
 @pytest.mark.parametrize("fmi", VERSIONS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
+import struct
 import uuid
 import zipfile
 from collections.abc import Iterator
@@ -23,6 +24,7 @@ from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
 from rattlebox.prepare.component import PackedComponent, pack_component
 
+from .run_notes import validity_limits
 from .stepper import component_case
 
 AXES = "xyz"
@@ -158,6 +160,7 @@ def fmu_and_notes(
         **{f"binaries/{folder}/{name}{file.suffix}": file.read_bytes() for folder, file in libraries.items()},
         "resources/case.bin": packed.data,
         "resources/input": input.encode(),
+        "resources/limits": _limits(case, packed).encode(),
         "documentation/index.html": _page(name, variables, packed.notes, list(libraries)).encode(),
     }
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -170,6 +173,15 @@ def fmu_and_notes(
     finally:
         whole.unlink(missing_ok=True)
     return path, packed.notes
+
+
+def _limits(case: Case, packed: PackedComponent) -> str:
+    """Return the validity limits of the contacts, as `read_limits` in core/stepper/fmu.hpp reads them."""
+    lines = ["# quantity, index, bits of the value (the same in every locale), text"]
+    for limit in validity_limits(case, packed.prepared):
+        bits = int.from_bytes(struct.pack("<d", limit.value), "little")
+        lines.append(f"{limit.quantity} {limit.index} {bits} {limit.text}")
+    return "\n".join([*lines, ""])
 
 
 def _variables(packed: PackedComponent, by: str) -> Iterator[Variable]:
@@ -268,7 +280,7 @@ def _description_2(name: str, token: str, variables: list[Variable]) -> str:
         + _units()
         + '<TypeDefinitions><SimpleType name="InputTime"><Enumeration><Item name="start" value="1"/>'
         + '<Item name="end" value="2"/></Enumeration></SimpleType></TypeDefinitions>\n'
-        + '<LogCategories><Category name="logStatusError"/></LogCategories>\n'
+        + '<LogCategories><Category name="logStatusWarning"/><Category name="logStatusError"/></LogCategories>\n'
         + '<DefaultExperiment startTime="0" stopTime="1" stepSize="1e-4"/>\n'
         + "<ModelVariables>\n"
         + "\n".join(rows)
@@ -292,7 +304,7 @@ def _description_3(name: str, token: str, variables: list[Variable]) -> str:
         + _units()
         + '<TypeDefinitions><EnumerationType name="InputTime"><Item name="start" value="1"/><Item name="end" value="2"/>'
         + "</EnumerationType></TypeDefinitions>\n"
-        + '<LogCategories><Category name="logStatusError"/></LogCategories>\n'
+        + '<LogCategories><Category name="logStatusWarning"/><Category name="logStatusError"/></LogCategories>\n'
         + '<DefaultExperiment startTime="0" stopTime="1" stepSize="1e-4"/>\n'
         + "<ModelVariables>\n"
         + "\n".join(rows)

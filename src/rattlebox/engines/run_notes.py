@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from rattlebox.core import _core
 from rattlebox.model.contacts import Contact, Linear, TabulatedNormal
 from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.restitutions import Tabulated
-from rattlebox.prepare.time_step import MAX_OVERLAP
+from rattlebox.prepare.time_step import MAX_OVERLAP, MIN_STEPS_PER_CONTACT, contact_limits
 from rattlebox.results.quantities import quantity
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.model.dampers import ImpactDamper
     from rattlebox.model.particle_damper import ParticleDamper
+    from rattlebox.prepare.particles import Prepared
     from rattlebox.results.arrays import Table
 
 MAX_LINEAR_OVERLAP = 0.1
@@ -83,16 +86,101 @@ def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[n
         first += count
 
 
+@dataclass(frozen=True)
+class ContactLimit:
+    """A value that contacts of a component should not exceed.
+
+    Attributes
+    ----------
+    quantity
+        "overlap" or "speed": of approach [m/s]. Overlaps are in m in impact dampers, over the radius in particle dampers.
+    index
+        Contact (impact dampers, those of one damper after the other) or damper (particle dampers).
+    value
+        The limit.
+    text
+        What happens beyond it, and what to try.
+    """
+
+    quantity: Literal["overlap", "speed"]
+    index: int
+    value: float
+    text: str
+
+
+def validity_limits(case: Case, prepared: Prepared | None) -> Iterator[ContactLimit]:
+    """Yield the limits within which the contacts of a component are valid.
+
+    Parameters
+    ----------
+    case
+        Case of the component.
+    prepared
+        Preparation of a case with particle dampers; None for impact dampers.
+    """
+    if prepared is not None:
+        yield from _limits_of_particles(prepared)
+        return
+    first = 0
+    for index, damper in enumerate(case.impact_dampers):
+        name = " ".join(damper.label(index).split())
+        radii, shares = _overlap_limits(damper)
+        for k, law in enumerate(_contact_laws(damper)):
+            yield ContactLimit("overlap", first + k, radii[k] * shares[k], _deep(name, shares[k]))
+            if isinstance(law, TabulatedNormal):
+                text = f"overlaps in {name} exceed the measured force curve, which is extrapolated: extend the curve"
+                yield ContactLimit("overlap", first + k, law.overlap[-1], text)
+            yield from _limit_of_table(law, name, first + k)
+        first += len(radii)
+
+
+def _limits_of_particles(prepared: Prepared) -> Iterator[ContactLimit]:
+    """Yield the limits of each particle damper: overlap, speed for the time step, and tables of restitution."""
+    case, step = prepared.case, prepared.step
+    for index, (damper, table) in enumerate(zip(case.particle_dampers, prepared.tables, strict=True)):
+        name = " ".join(damper.label(index).split())
+        yield ContactLimit("overlap", index, MAX_OVERLAP, _deep(name, MAX_OVERLAP))
+
+        def steps(log_speed: float, damper: ParticleDamper = damper, table: Any = table) -> float:
+            limits = contact_limits(case, damper, table, 10**log_speed, 1.0)
+            return min(limit.duration for limit in limits) / step.dt - MIN_STEPS_PER_CONTACT
+
+        slowest, fastest = -6.0, 6.0
+        if steps(slowest) > 0 > steps(fastest):
+            speed = 10 ** float(brentq(steps, slowest, fastest, xtol=1e-6))
+            yield ContactLimit(
+                "speed",
+                index,
+                speed,
+                f"approach speeds in {name} leave fewer than {MIN_STEPS_PER_CONTACT:g} steps in a contact: export the "
+                "damper with a motion that is as fast, or with a shorter step",
+            )
+        for contact in dict.fromkeys(entry.contact for entry in table.entries):
+            yield from _limit_of_table(contact, name, index)
+
+
+def _deep(name: str, share: float) -> str:
+    """Return the text of the limit of overlaps."""
+    return (
+        f"overlaps in {name} exceed {100 * share:g} % of the radius, above which the contact law does not hold: use a "
+        "stiffer contact or slower impacts"
+    )
+
+
+def _limit_of_table(contact: Contact, name: str, index: int) -> Iterator[ContactLimit]:
+    """Yield the last speed of a table of restitution."""
+    law = contact.impact_restitution
+    if isinstance(law, Tabulated) and len(law.speeds) > 1:
+        text = f"approach speeds in {name} exceed the table of restitution, whose last value is used: extend the table"
+        yield ContactLimit("speed", index, law.speeds[-1], text)
+
+
 def _deep_overlaps(
     damper: ImpactDamper, name: str, contacts: NDArray[np.int_], overlaps: NDArray[np.float64]
 ) -> Iterator[str]:
     """Yield a warning if an overlap exceeds the limit for its contact law."""
-    radii = [ball.half for ball in damper.balls]
-    at_walls, among_balls = damper.contact, damper.ball_contact or damper.contact
-    laws = [at_walls, *[among_balls] * (len(radii) - 1), at_walls]
-    smaller = [radii[0], *np.minimum(radii[:-1], radii[1:]), radii[-1]]
-    limits = np.array([MAX_LINEAR_OVERLAP if isinstance(law, Linear) else MAX_OVERLAP for law in laws])
-    ratios = overlaps / np.asarray(smaller)[contacts]
+    radii, limits = _overlap_limits(damper)
+    ratios = overlaps / radii[contacts]
     excess = ratios / limits[contacts]
     if np.any(excess > 1):
         worst = int(np.nanargmax(excess))
@@ -100,6 +188,18 @@ def _deep_overlaps(
             f"warning: overlaps in {name} reach {100 * ratios[worst]:.3g} % of the radius; the contact law holds below "
             f"{100 * limits[contacts[worst]]:g} %: use a stiffer contact or slower impacts"
         )
+
+
+def _contact_laws(damper: ImpactDamper) -> list[Contact]:
+    """Return the contact law of each contact of a damper, from wall to wall."""
+    return [damper.contact, *[damper.ball_contact or damper.contact] * (len(damper.balls) - 1), damper.contact]
+
+
+def _overlap_limits(damper: ImpactDamper) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the smaller radius [m] of each contact of a damper, and the largest allowed overlap over it."""
+    radii = [ball.half for ball in damper.balls]
+    limits = [MAX_LINEAR_OVERLAP if isinstance(law, Linear) else MAX_OVERLAP for law in _contact_laws(damper)]
+    return np.array([radii[0], *np.minimum(radii[:-1], radii[1:]), radii[-1]]), np.array(limits)
 
 
 def _fast_impacts(
