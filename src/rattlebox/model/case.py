@@ -130,7 +130,8 @@ class Case(Part):
         names: set[str] = set()
         for index, damper in enumerate(self.dampers):
             with at("dampers", index):
-                for each in damper.each() if isinstance(damper, ParticleDamper) else (damper,):
+                first = len(names)
+                for each in damper.each() if isinstance(damper, ParticleDamper) else self._each(damper):
                     label = each.label(len(names))
                     if label in names:
                         raise Hint(f"two dampers are called {label!r}", "different names")
@@ -138,7 +139,7 @@ class Case(Part):
                 if isinstance(damper, ImpactDamper):
                     self._check_clearance(damper)
                     self._check_starts(damper)
-                    self._check_laws(damper, index)
+                    self._check_laws(damper, first)
                 else:
                     self._check_particle_laws(damper)
         return self
@@ -303,8 +304,19 @@ class Case(Part):
 
     @property
     def impact_dampers(self) -> tuple[ImpactDamper, ...]:
-        """The impact dampers."""
-        return tuple(damper for damper in self.dampers if isinstance(damper, ImpactDamper))
+        """The impact dampers, identical ones (`ImpactDamper.number`) one by one."""
+        return tuple(each for damper in self.dampers if isinstance(damper, ImpactDamper) for each in self._each(damper))
+
+    def _each(self, damper: ImpactDamper) -> tuple[ImpactDamper, ...]:
+        """Return the identical dampers that an impact damper stands for."""
+        if damper.number == 1:
+            return (damper,)
+        with at("point"):
+            shape = self.modes.shape(damper.point)
+        displacement = self.modes.q0
+        axes = max(shape.ndim, displacement.ndim)  # 1, or more in a batch of variants
+        pair = [part.reshape(*part.shape, *(1,) * (axes - part.ndim)) for part in (shape, displacement)]
+        return damper.each(np.sum(pair[0] * pair[1], axis=0))
 
     @cached_property
     def particle_dampers(self) -> tuple[ParticleDamper, ...]:

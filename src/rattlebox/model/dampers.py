@@ -19,8 +19,12 @@ from .contacts import AnyContact
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of
 from .materials import AnyMaterial, AnyWall
+from .particle_damper import MAX_DAMPERS
 from .signals import as_several
-from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse, text
+from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, Whole, parse, text
+
+_GOLDEN = (math.sqrt(5) - 1) / 2
+"""The fractional parts of its multiples are evenly spread, for any number of them."""
 
 
 class Sphere(Part):
@@ -127,6 +131,9 @@ class ImpactDamper(Part):
         Component of gravity along the line [m/s^2].
     point
         Point of the structure; needed if there are several.
+    number
+        Number of identical dampers at the point. The first has the given start, the others start at other places between
+        the walls, evenly spread: with the same start all would move in step, like a single heavier one.
     name
         Name in results and messages; default "damper", "damper2", ...
 
@@ -165,6 +172,7 @@ class ImpactDamper(Part):
     ball_contact: AnyContact | None = None
     gravity: Acceleration = 0.0
     point: str | None = None
+    number: Annotated[Whole, Field(ge=1, le=MAX_DAMPERS)] = 1
 
     @model_validator(mode="before")
     @classmethod
@@ -213,9 +221,43 @@ class ImpactDamper(Part):
                 )
         return self
 
+    @model_validator(mode="after")
+    def _starts_apart(self) -> ImpactDamper:
+        if self.number > 1 and isinstance(self.start, list):
+            raise Hint(
+                f"{self.number} dampers start at different places, and a list of starts is for one",
+                "start = 0, or a list of dampers",
+                ["start"],
+            )
+        if self.number > 1 and not self.clearance:
+            raise Hint(
+                f"{self.number} dampers without a gap would move in step", "a damper with their mass", ["number"]
+            )
+        return self
+
     def label(self, index: int) -> str:
         """Return the name of the damper; by default it has the number of the damper in the case."""
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")
+
+    def each(self, cavity: Any = 0.0) -> tuple[ImpactDamper, ...]:
+        """Return the identical dampers that this one stands for (see `number`), each with its own start.
+
+        Parameters
+        ----------
+        cavity
+            Displacement of the cavity at the start [m].
+        """
+        if self.number == 1:
+            return (self,)
+        half = 0.5 * self.clearance
+        first = (self.positions0[0] - cavity) / half
+        dampers = [self.model_copy(update={"number": 1})]
+        for index in range(1, self.number):
+            place = (first + 1 + 2 * _GOLDEN * index) % 2 - 1 + cavity / half
+            start = place if np.ndim(place) else float(place)
+            name = f"{self.name}{index + 1}" if self.name else ""
+            dampers.append(self.model_copy(update={"number": 1, "name": name, "start": start}))
+        return tuple(dampers)
 
     @property
     def row(self) -> float:

@@ -301,7 +301,7 @@ def _problem(case: Case, axes: int = 0) -> _core.Problem:
         ],
         contacts=[
             _contact(case, index, pair, place)
-            for index in range(len(case.dampers))
+            for index in range(len(case.impact_dampers))
             for place, pair in enumerate(contact_pairs(case, index))
         ],
         sample_times=np.zeros(0),

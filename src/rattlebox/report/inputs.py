@@ -73,8 +73,11 @@ def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:
     """Yield mass, mass ratio, clearance or fill of a damper."""
     damper = case.dampers[number]
     if isinstance(damper, ImpactDamper):
-        mass, points = float(np.sum(damper.masses)), [damper.point]
-        yield "= mass of the balls", amount(mass, "kg")
+        mass, points = float(np.sum(damper.masses)), [damper.point] * damper.number
+        each = ", each" if damper.number > 1 else ""
+        if each:
+            yield "= identical dampers", f"{damper.number}, {amount(mass * damper.number, 'kg')} of balls in all"
+        yield f"= mass of the balls{each}", amount(mass, "kg")
         yield "= clearance", f"{amount(damper.clearance, 'm')}, twice the gap"
     else:
         mass, points = float(damper.contents.mass.sum()), [each.point for each in damper.each()]

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError, RattleboxError
+from rattlebox._util.narrow import instance
 from rattlebox.model.case import Case
+from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, all_paths, get
@@ -249,7 +251,7 @@ class _Columns:
     def gap(self, start: Parameter) -> Column:
         """Return the gap of the damper of a start position [m]."""
         number = int(start.place[1])
-        damper = self.case.impact_dampers[number]
+        damper = instance(self.case.dampers[number], ImpactDamper)
         own = {place[2:]: column for place, column in self.found.items() if place[:2] == ("dampers", number)}
         length, gap = own.get(("cavity_length",)), own.get(("gap",), np.array(damper.clearance / 2))
         wholes: set[Place] = {("balls",), *(("balls", ball) for ball in range(len(damper.balls)))}
