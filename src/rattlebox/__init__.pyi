@@ -75,6 +75,7 @@ from rattlebox.model.structures import Shaker as Shaker
 from rattlebox.model.tuned_mass import TunedMass as TunedMass
 from rattlebox.plots.basins import plot_basins as plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation as plot_bifurcation
+from rattlebox.plots.calibration import plot_calibration as plot_calibration
 from rattlebox.plots.case import plot_case as plot_case
 from rattlebox.plots.compare import plot_comparison as plot_comparison
 from rattlebox.plots.damping_curve import plot_damping_curve as plot_damping_curve
@@ -95,6 +96,11 @@ from rattlebox.report.write import write_report as write_report
 from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots
+from rattlebox.studies.calibrate import calibrate as calibrate
+from rattlebox.studies.calibration_data import BounceTimes as BounceTimes
+from rattlebox.studies.calibration_data import Drops as Drops
+from rattlebox.studies.calibration_data import RingDown as RingDown
+from rattlebox.studies.calibration_data import ShakerLoss as ShakerLoss
 from rattlebox.studies.check_softening import check_softening as check_softening
 from rattlebox.studies.compare import compare as compare
 from rattlebox.studies.damping_curve import damping_curve as damping_curve

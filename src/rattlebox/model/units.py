@@ -102,6 +102,7 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "N m": {"N m": (1, 1), "N*m": (1, 1), "Nm": (1, 1), "kN m": (1e3, 1), "N mm": (1, 1e3)},
     "kg/m": {"kg/m": (1, 1), "g/m": (1, 1e3), "t/m": (1e3, 1), "kg/mm": (1e3, 1)},
     "kg/m^2": {"kg/m^2": (1, 1), "g/m^2": (1, 1e3), "t/m^2": (1e3, 1)},
+    "J": {"J": (1, 1), "mJ": (1, 1e3), "uJ": (1, 1e6), "µJ": (1, 1e6)},
 }
 
 _DENSITIES = {"m/s^2": ("m^2/s^3", "m^2/s^4/Hz", "(m/s^2)^2/Hz"), "N": ("N^2/Hz",), "m": ("m^2/Hz",)}
@@ -114,12 +115,14 @@ _NAMES = {
     "m/s": "velocity", "m/s^2": "acceleration", "Hz": "frequency", "Pa": "pressure or modulus", "kg/m^3": "density",
     "rad": "angle", "kg^-0.5": "mass-normalised mode shape", "rad/s": "angular velocity",
     "N m^2": "bending stiffness", "N m": "bending stiffness per width", "kg/m": "mass per length", "kg/m^2": "mass per area",
+    "J": "energy",
 }  # fmt: skip
 
 _EXAMPLES = {
     "m": "0.4 mm", "s": "1 ms", "kg": "20 kg", "N": "5 kN", "N/m": "80 kN/m", "N s/m": "25.3 N s/m", "m/s": "0.1 m/s",
     "m/s^2": "9.81 m/s^2", "Hz": "10 Hz", "Pa": "200 GPa", "kg/m^3": "7850 kg/m^3", "rad": "90 deg", "rad/s": "10 rad/s",
     "N m^2": "350 N m^2", "N m": "1.2 kN m", "kg/m": "7.8 kg/m", "kg/m^2": "5 kg/m^2",
+    "J": "2 mJ",
 }  # fmt: skip
 
 

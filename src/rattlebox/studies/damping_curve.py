@@ -52,7 +52,7 @@ _FAST = 0.05
 
 
 @dataclass(frozen=True)
-class _Mode:
+class CurveMode:
     """The mode whose damping is computed.
 
     Attributes
@@ -80,6 +80,7 @@ class _Mode:
 
     @property
     def frequency(self) -> float:
+        """Natural frequency [Hz]."""
         return self.omega / (2 * math.pi)
 
 
@@ -171,12 +172,12 @@ def damping_curve(
     True
     """
     levels, about, cases = _prepared(case, amplitudes, way, mode, point, packings)
-    remarks = _Remarks()
+    remarks = Remarks()
     run = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
     if way == "shaking":
         ratios = _from_shaking(cases, about, levels, cycles, run, remarks)
     else:
-        ratios = _from_decay(cases, about, levels, way, run, remarks)
+        ratios = ratios_of_decays(cases, about, levels, way, run, remarks)
     result = _dataset(ratios, levels, about, way)
     if way != "shaking":
         remarks.warnings += _fast_decay(result)
@@ -218,17 +219,17 @@ def damping_curve_cases(
 
 def _prepared(
     case: Case, amplitudes: Sequence[Any] | Spaced, way: Way, mode: int, point: str | None, packings: int
-) -> tuple[FloatArray, _Mode, list[Case]]:
+) -> tuple[FloatArray, CurveMode, list[Case]]:
     """Return the amplitudes, the mode and the case with each random start."""
     if way not in WAYS:
         raise Hint(f"way = {way!r} is not a method of this function", nearest(str(way), WAYS))
     count = whole_number(packings, "packings", 1)
-    return read_amplitudes(amplitudes), _mode(case, mode, point), _starts(case, count)
+    return read_amplitudes(amplitudes), mode_of(case, mode, point), random_starts(case, count)
 
 
 @dataclass
-class _Remarks:
-    """Warnings of runs, and names of the validity limits that they exceeded."""
+class Remarks:
+    """Warnings of the runs of damping curves, and names of the validity limits that they exceeded."""
 
     warnings: tuple[str, ...] = ()
     exceeded: tuple[str, ...] = ()
@@ -267,7 +268,21 @@ def read_amplitudes(amplitudes: Sequence[Any] | Spaced) -> FloatArray:
     return levels
 
 
-def _mode(case: Case, number: int, point: str | None) -> _Mode:
+def mode_of(case: Case, number: int, point: str | None) -> CurveMode:
+    """Return the mode of a damping curve.
+
+    Parameters
+    ----------
+    case
+        Case with the structure.
+    number, point
+        See `damping_curve`.
+
+    Raises
+    ------
+    CaseError
+        If the structure has no such mode or point, or the mode does not move the point.
+    """
     modes = case.structure.modes()
     if not modes.stiffness.size:
         raise Hint(f"a {case.structure.kind} structure has no modes", "SDOF, Modal, Matrices or a built-in structure")
@@ -282,7 +297,7 @@ def _mode(case: Case, number: int, point: str | None) -> _Mode:
         raise Hint(f"mode {number} does not move the point {name!r}", "another point")
     omega = math.sqrt(modes.stiffness[index])
     spatial = name in modes.spatial
-    return _Mode(
+    return CurveMode(
         number=index,
         omega=omega,
         ratio=float(modes.decay[index]) / omega,
@@ -292,8 +307,21 @@ def _mode(case: Case, number: int, point: str | None) -> _Mode:
     )
 
 
-def _starts(case: Case, count: int) -> list[Case]:
-    """Return copies of the case with different random initial states."""
+def random_starts(case: Case, count: int) -> list[Case]:
+    """Return copies of the case without loads, with different random initial states.
+
+    Parameters
+    ----------
+    case
+        The case.
+    count
+        Number of copies.
+
+    Raises
+    ------
+    CaseError
+        If the initial state has no random part.
+    """
     rng = np.random.default_rng(case.seed)
     cases, random = [], not case.dampers
     for number in range(count):
@@ -319,14 +347,36 @@ def _starts(case: Case, count: int) -> list[Case]:
 # ---- free decays
 
 
-def _from_decay(
+def ratios_of_decays(
     cases: list[Case],
-    mode: _Mode,
+    mode: CurveMode,
     levels: FloatArray,
     way: Way,
     evaluate: Evaluate,
-    remarks: _Remarks,
+    remarks: Remarks,
 ) -> FloatArray:
+    """Return the damping ratio of each start at each amplitude from free decays, (starts, A); NaN where none is known.
+
+    Parameters
+    ----------
+    cases
+        Case with each start.
+    mode
+        The mode.
+    levels : (A,) float
+        Amplitudes [m].
+    way
+        "decay" or "energy".
+    evaluate
+        Function that simulates cases and returns what another function makes of each run; see `evaluate_cases`.
+    remarks
+        Gets the warnings of the runs.
+
+    Raises
+    ------
+    CaseError
+        If a run fails.
+    """
     highest = float(band_edges(levels)[1][-1])
     begin = _MARGIN * highest
     for _ in range(_TRIALS):
@@ -364,7 +414,7 @@ class _Row(NamedTuple):
     largest: float = math.inf
 
 
-def _decay(run: Run, mode: _Mode, levels: FloatArray, way: Way) -> _Row:
+def _decay(run: Run, mode: CurveMode, levels: FloatArray, way: Way) -> _Row:
     """Return the damping ratio of a free decay at each amplitude."""
     row = _row(run)
     if row.failure:
@@ -389,7 +439,7 @@ def _row(run: Run) -> _Row:
     return _Row("" if run.ok else run.message, notes, tuple(exceeded), np.zeros(0))
 
 
-def _initial_velocity(case: Case, mode: _Mode, amplitude: float) -> Case:
+def _initial_velocity(case: Case, mode: CurveMode, amplitude: float) -> Case:
     """Return the case with zero displacement and the velocity of the mode."""
     modes = case.structure.modes()
     velocity = np.zeros(modes.stiffness.size)
@@ -399,7 +449,7 @@ def _initial_velocity(case: Case, mode: _Mode, amplitude: float) -> Case:
     return case.model_copy(update={"structure": structure, "output": output})
 
 
-def _modal_part(run: Run, mode: _Mode) -> FloatArray:
+def _modal_part(run: Run, mode: CurveMode) -> FloatArray:
     """Return the contribution of the mode to the motion of the point, (T,); with tuned masses the total motion."""
     if not run.case.tuned_masses:
         return np.asarray(mode.shape * run.motion.modal_displacement.values[:, mode.number])
@@ -411,7 +461,7 @@ def _modal_part(run: Run, mode: _Mode) -> FloatArray:
     )
 
 
-def _other_motion(found: FloatArray, mode: _Mode) -> tuple[str, ...]:
+def _other_motion(found: FloatArray, mode: CurveMode) -> tuple[str, ...]:
     """Return a warning if the frequency of the decay is not that of the mode."""
     change = np.abs(found / mode.frequency - 1)
     if not np.nanmax(change, initial=0.0) > _OTHER_FREQUENCY:
@@ -423,7 +473,9 @@ def _other_motion(found: FloatArray, mode: _Mode) -> tuple[str, ...]:
     )
 
 
-def _energy_ratios(run: Run, time: FloatArray, motion: FloatArray, bands: xarray.Dataset, mode: _Mode) -> FloatArray:
+def _energy_ratios(
+    run: Run, time: FloatArray, motion: FloatArray, bands: xarray.Dataset, mode: CurveMode
+) -> FloatArray:
     """Return half of the mean of dW / E over the phase in which each band is passed."""
     decay = smooth_decay(time, motion)
     # 1 / E, limited far below the bands, where the decay ends in rounding errors.
@@ -448,11 +500,11 @@ def _energy_ratios(run: Run, time: FloatArray, motion: FloatArray, bands: xarray
 
 def _from_shaking(
     cases: list[Case],
-    mode: _Mode,
+    mode: CurveMode,
     levels: FloatArray,
     cycles: tuple[int, int],
     evaluate: Evaluate,
-    remarks: _Remarks,
+    remarks: Remarks,
 ) -> FloatArray:
     variants, owners = _shaken_variants(cases, mode, levels, cycles)
     skip, kept = cycles
@@ -465,7 +517,7 @@ def _from_shaking(
 
 
 def _shaken_variants(
-    cases: list[Case], mode: _Mode, levels: FloatArray, cycles: tuple[int, int]
+    cases: list[Case], mode: CurveMode, levels: FloatArray, cycles: tuple[int, int]
 ) -> tuple[list[Case], list[tuple[int, int]]]:
     """Return a case for each damper at each amplitude, and the numbers of its start and amplitude."""
     skip, kept = whole_number(cycles[0], "cycles[0]", 1), whole_number(cycles[1], "cycles[1]", 1)
@@ -490,7 +542,7 @@ def _lost_since(run: Run, begin: float) -> _Row:
     return _row(run)._replace(values=np.array([work]))
 
 
-def _on_shaker(case: Case, damper: Any, mode: _Mode, moved: FloatArray, duration: float) -> Case:
+def _on_shaker(case: Case, damper: Any, mode: CurveMode, moved: FloatArray, duration: float) -> Case:
     size = float(np.linalg.norm(moved))
     motion: dict[str, Any] = {"amplitude": size * mode.omega**2, "frequency": mode.frequency, "unit": "m/s^2"}
     if moved.size == 3:
@@ -506,7 +558,7 @@ def _on_shaker(case: Case, damper: Any, mode: _Mode, moved: FloatArray, duration
     )
 
 
-def _tuned(case: Case, mode: _Mode) -> float:
+def _tuned(case: Case, mode: CurveMode) -> float:
     """Return the damping ratio that tuned masses add at the frequency of the mode, whose change is neglected."""
     total = 0.0
     modes = case.structure.modes()
@@ -566,7 +618,7 @@ def _change_in_half_a_cycle(mean: FloatArray, levels: FloatArray) -> FloatArray:
     return result
 
 
-def _dataset(ratios: FloatArray, levels: FloatArray, mode: _Mode, way: Way) -> xarray.Dataset:
+def _dataset(ratios: FloatArray, levels: FloatArray, mode: CurveMode, way: Way) -> xarray.Dataset:
     import xarray
     from scipy.special import stdtrit
 

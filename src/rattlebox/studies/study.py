@@ -287,7 +287,8 @@ def known_measures(measures: Any) -> list[Any]:
     return list(measures)
 
 
-def _whole_cycles(cycles: Any, least: int) -> tuple[int, int]:
+def whole_cycles(cycles: Any, least: int = 1) -> tuple[int, int]:
+    """Return the numbers of cycles to skip and to evaluate; raise if they are not whole or too few are evaluated."""
     try:
         skip, count = (int(number) for number in cycles)
         whole = (skip, count) == tuple(cycles)
@@ -349,8 +350,8 @@ else:
     TimeLimit = Annotated[PositiveTime, Field(examples=["10 min"])]
     Kilograms = PositiveMass
 
-Cycles = Annotated[tuple[int, int], BeforeValidator(partial(_whole_cycles, least=1))]
-CyclesToCompare = Annotated[tuple[int, int], BeforeValidator(partial(_whole_cycles, least=2))]
+Cycles = Annotated[tuple[int, int], BeforeValidator(partial(whole_cycles, least=1))]
+CyclesToCompare = Annotated[tuple[int, int], BeforeValidator(partial(whole_cycles, least=2))]
 Fraction = Annotated[Number, Field(gt=0, lt=1)]
 Count = Annotated[Whole, Field(ge=1)]
 Seed = Annotated[Whole, Field(ge=0)]

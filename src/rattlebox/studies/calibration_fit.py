@@ -1,0 +1,220 @@
+"""Intervals of calibrated parameters, and statements about what the data do not determine."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import chdtrc, fdtri
+
+from rattlebox.results.quantities import amount
+
+from .calibration_space import NORMAL, Space
+from .response_surface import Agreement, Region, Surfaces
+
+FloatArray = NDArray[np.float64]
+
+_CORRELATED = 0.8
+"""Correlation of two parameters above which the data do not tell them apart, if both are wide."""
+_WIDE = 0.2
+"""Share of its range above which the interval of a parameter is wide."""
+_FLAT = 0.25
+"""Share of the threshold below which the data do not depend on a parameter."""
+_UNLIKELY = 0.01
+"""Probability of the data below which the model does not explain them."""
+_KEPT = 20.0
+"""chi^2 above its minimum up to which parameters stay in the next round."""
+_MARGIN = 0.15
+"""Share of its width by which the region of the next round is enlarged at each end."""
+_WORTHWHILE = 0.7
+"""Share of the region that the next round must leave; otherwise it has the same region."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Fit of simulated to measured values in a region of the space.
+
+    Attributes
+    ----------
+    space
+        Ranges of the parameters.
+    low, high : (d,) float
+        Corners of the region, as points of the space.
+    agreement
+        chi^2 over the region.
+    """
+
+    space: Space
+    low: FloatArray
+    high: FloatArray
+    agreement: Agreement
+
+    @classmethod
+    def of(
+        cls,
+        space: Space,
+        corners: tuple[FloatArray, FloatArray],
+        points: FloatArray,
+        simulated: FloatArray,
+        measured: FloatArray,
+        error: FloatArray,
+        sets: NDArray[np.int64],
+    ) -> Fit:
+        """Return the fit to simulated values.
+
+        Parameters
+        ----------
+        space
+            Ranges of the parameters.
+        corners
+            Corners of the region.
+        points : (N, d) float
+            Points of the space in the region.
+        simulated : (N, M) float
+            Values at these points.
+        measured, error, sets
+            See `Agreement`.
+        """
+        low, high = corners
+        surfaces = Surfaces.fit((points - low) / (high - low), simulated)
+        return cls(space, low, high, Agreement(surfaces, measured, error, sets, space.priors(low, high)))
+
+    @cached_property
+    def region(self) -> Region:
+        """chi^2 on a grid over the plausible part of the region."""
+        return self.agreement.explore()
+
+    @cached_property
+    def threshold(self) -> float:
+        """chi^2 above its minimum at the limits of the 95 % intervals."""
+        return float(fdtri(1, self.agreement.surfaces.freedom, 0.95))
+
+    @cached_property
+    def scatter(self) -> FloatArray:
+        """Standard deviation of a simulated value about its surface, (M,)."""
+        return np.asarray(np.sqrt((self.agreement.surfaces.errors**2).mean(axis=0)))
+
+    @property
+    def best(self) -> FloatArray:
+        """Parameters of the smallest chi^2, (d,)."""
+        return np.asarray(self.space.values(self.low + (self.high - self.low) * self.region.best))
+
+    @cached_property
+    def fitted(self) -> FloatArray:
+        """Values of the surfaces at the best parameters, (M,)."""
+        return np.asarray(self.agreement.surfaces.evaluate(self.region.best[None])[0])
+
+    @cached_property
+    def limits(self) -> FloatArray:
+        """Limits of the 95 % intervals as points of the space, (d, 2)."""
+        ends = np.array([self.region.limits(axis, self.threshold) for axis in range(self.space.size)])
+        return np.asarray(self.low[:, None] + (self.high - self.low)[:, None] * ends)
+
+    @property
+    def intervals(self) -> FloatArray:
+        """Limits of the 95 % intervals of the parameters, (d, 2)."""
+        return np.stack([self.space.value(axis, ends) for axis, ends in enumerate(self.limits)])
+
+    @cached_property
+    def bounded(self) -> NDArray[np.bool_]:
+        """Whether the data bound each parameter below and above within its range, (d, 2)."""
+        return np.stack([self.limits[:, 0] > 1e-6, self.limits[:, 1] < 1 - 1e-6], axis=1)
+
+    @cached_property
+    def chi2(self) -> float:
+        """Smallest chi^2."""
+        return float(self.region.chi2.min())
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of chi^2."""
+        return self.agreement.measured.size + len(self.space.known) - self.space.size
+
+    @property
+    def probability(self) -> float:
+        """Probability of a larger chi^2 if the model is right; NaN without degrees of freedom."""
+        return float(chdtrc(self.freedom, self.chi2)) if self.freedom > 0 else math.nan
+
+    def along(self, axis: int, places: FloatArray) -> FloatArray:
+        """Return values of a parameter from coordinates in the region."""
+        return self.space.value(axis, self.low[axis] + (self.high - self.low)[axis] * places)
+
+    def narrowed(self) -> tuple[FloatArray, FloatArray]:
+        """Return the corners of the region of the next round."""
+        low, high = self.low.copy(), self.high.copy()
+        width = high - low
+        for axis in range(self.space.size):
+            inside = np.flatnonzero(self.region.profile(axis) <= _KEPT)
+            first, last = self.region.axes[axis][inside[0]], self.region.axes[axis][inside[-1]]
+            margin = max(_MARGIN * (last - first), 0.02)
+            low[axis] = self.low[axis] + width[axis] * max(first - margin, 0.0)
+            high[axis] = self.low[axis] + width[axis] * min(last + margin, 1.0)
+        if np.prod(high - low) > _WORTHWHILE * np.prod(width):
+            return self.low, self.high
+        return low, high
+
+    # ---- statements
+
+    def undetermined(self) -> Iterator[str]:
+        """Yield statements about parameters that the data do not determine or tell apart."""
+        for axis, path in enumerate(self.space.paths):
+            below, above = self.bounded[axis]
+            if below and above:
+                continue
+            if below or above:
+                side, end = ("above", self.space.high) if below else ("below", self.space.low)
+                yield (
+                    f"warning: the data do not bound {path} {side}: its interval ends at the end of the range, "
+                    f"{amount(float(end[axis]), self.space.units[axis])}"
+                )
+            elif float(self.region.profile(axis).max()) < _FLAT * self.threshold:
+                yield f"warning: the data do not depend on {path}: any value in its range fits"
+            else:
+                yield f"warning: the data do not bound {path} within its range; try: further data, or a wider range"
+        widths = self.limits[:, 1] - self.limits[:, 0]
+        for i, j in itertools.combinations(range(self.space.size), 2):
+            if abs(self.region.correlation[i, j]) > _CORRELATED and min(widths[i], widths[j]) > _WIDE:
+                yield self._not_apart(i, j)
+
+    def _not_apart(self, i: int, j: int) -> str:
+        """Return a statement about two parameters that the data do not tell apart."""
+        one, other = self.space.paths[i], self.space.paths[j]
+        correlation = float(self.region.correlation[i, j])
+        line = (
+            f"warning: the data cannot tell {one} and {other} apart: a larger {one} with a "
+            f"{'larger' if correlation > 0 else 'smaller'} {other} gives the same losses (correlation {correlation:.2f})"
+        )
+        if not (self.space.is_log[i] or self.space.is_log[j]):
+            factor, value, half = self.combination(i, j)
+            unit = self.space.units[i].removeprefix("1")
+            sign = "+" if factor > 0 else "-"
+            line += f"; determined is {one} {sign} {abs(factor):.2g} {other} = {value:.3g} ± {half:.2g} {unit}".rstrip()
+        return line + "; try: one of them from another measurement, such as rb.Drops, as known"
+
+    def combination(self, i: int, j: int) -> tuple[float, float, float]:
+        """Return the best-known sum of two parameters p_i + k p_j: k, its value and half of the width of its interval."""
+        factor, mean, deviation = self.region.combination(i, j)
+        scale = (self.high - self.low) * (self.space.high - self.space.low)
+        origin = self.space.low + self.low * (self.space.high - self.space.low)
+        ratio = factor * scale[i] / scale[j]
+        value = origin[i] + ratio * origin[j] + mean * scale[i]
+        return float(ratio), float(value), float(NORMAL * deviation * scale[i])
+
+    def disagreement(self) -> Iterator[str]:
+        """Yield a warning if the model does not explain the data, or nothing shows whether it does."""
+        if self.freedom < 1:
+            yield (
+                "warning: as many parameters as data, so that nothing shows whether the model explains them; try: losses at "
+                "more amplitudes"
+            )
+        elif self.probability < _UNLIKELY:
+            yield (
+                f"warning: no parameters in these ranges explain the data: chi^2 is {self.chi2:.3g} with {self.freedom} "
+                "degrees of freedom, and the intervals mean nothing; try: wider ranges, larger uncertainties, or a case "
+                "that is closer to the experiment (damping without particles, fill, direction, softening)"
+            )

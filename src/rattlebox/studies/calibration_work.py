@@ -1,0 +1,344 @@
+"""Simulations of measured losses: each sample of the parameters with a random start of its own."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox._util.exceptions import RattleboxError
+from rattlebox.engines.simulate import simulate_many
+from rattlebox.model.harmonics import Harmonic
+from rattlebox.model.space import unit_vector
+from rattlebox.model.structures import Shaker
+from rattlebox.prepare.time_step import WARNINGS
+from rattlebox.results.quantities import amount
+
+from .axes import read_axes
+from .budget import RunGroup, time_of_particle_runs
+from .calibration_data import Losses, RingDown, ShakerLoss
+from .case_digest import describe_case
+from .damping_curve import Remarks, damping_curve_cases, mode_of, random_starts, ratios_of_decays
+from .particle_work import ParticleWork
+from .work import Values
+from .work_of_case import work_of_case
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+    from .grid import Grid
+
+FloatArray = NDArray[np.float64]
+
+_AMPLITUDE, _FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
+Proceed = Callable[..., bool]
+"""Function that returns False when the runs must stop."""
+
+
+class Point(NamedTuple):
+    """Place of a measured value: its measure, the amplitude with its SI unit, and the frequency, NaN for a decay [Hz]."""
+
+    measure: str
+    amplitude: float
+    unit: str
+    frequency: float
+
+    def __str__(self) -> str:
+        hertz = "" if math.isnan(self.frequency) else f" and {amount(self.frequency, 'Hz')}"
+        return f"the {self.measure.replace('_', ' ')} at {amount(self.amplitude, self.unit)}{hertz}"
+
+
+@dataclass(frozen=True, eq=False)
+class Decay:
+    """Simulation of a ring-down.
+
+    Attributes
+    ----------
+    data
+        The measurement.
+    levels : (M,) float
+        Amplitudes as displacements [m].
+    """
+
+    data: RingDown
+    levels: FloatArray
+
+    @classmethod
+    def of(cls, data: RingDown, case: Case) -> Decay:
+        """Return the simulation of a measurement; raise if the case has no such mode or point."""
+        mode = mode_of(case, data.mode, data.point)
+        return cls(data, data.amplitude / mode.omega**2 if data.unit == "m/s^2" else data.amplitude)
+
+    @property
+    def measured(self) -> FloatArray:
+        """Measured values, (M,)."""
+        values: FloatArray = self.data.damping_ratio
+        return values
+
+    def simulate(self, case: Case, threads: int, proceed: Proceed) -> tuple[FloatArray, int]:
+        """Return the simulated values of a start, (M,), and exceeded limits as bits in the order of `WARNINGS`."""
+
+        def evaluate(cases: Sequence[Case], row_of: Callable[..., Any]) -> list[Any]:
+            return [row_of(simulate_many([each], threads=threads, progress=proceed)[0]) for each in cases]
+
+        mode, remarks = mode_of(case, self.data.mode, self.data.point), Remarks()
+        ratios = ratios_of_decays([case], mode, self.levels, "decay", evaluate, remarks)
+        return ratios[0], sum(2**bit for bit, name in enumerate(WARNINGS) if name in remarks.exceeded)
+
+    def runs(self, case: Case) -> list[Case]:
+        """Return the cases of the runs of a start."""
+        return damping_curve_cases(case, self.levels.tolist(), mode=self.data.mode, point=self.data.point, packings=1)
+
+    def check(self, case: Case) -> None:
+        """Raise if the case cannot be simulated."""
+
+    def points(self) -> list[Point]:
+        """Return the place of each value."""
+        return [Point("damping_ratio", level, "m", math.nan) for level in self.levels.tolist()]
+
+    def describe(self) -> dict[str, Any]:
+        """Return what is simulated, in JSON types."""
+        return {"kind": "ring-down", "levels": self.levels.tolist(), "mode": self.data.mode, "point": self.data.point}
+
+
+@dataclass(frozen=True, eq=False)
+class Shaken:
+    """Simulation of losses on a shaker.
+
+    Attributes
+    ----------
+    data
+        The measurement.
+    grid
+        Points of the measurement, for a case on the shaker.
+    direction
+        Direction of the shaker, for dampers in 3-D.
+    """
+
+    data: ShakerLoss
+    grid: Grid
+    direction: Any
+
+    @classmethod
+    def of(cls, data: ShakerLoss, case: Case) -> Shaken:
+        """Return the simulation of a measurement; raise if the damper cannot be shaken."""
+        direction: Any = None
+        if case.particle_dampers:
+            direction = tuple(unit_vector(case.particle_dampers[0].direction).tolist())
+            (*_, motion) = (None, *case.shaker_motion)
+            if motion is not None and getattr(motion, "direction", None) is not None:
+                direction = motion.direction
+        on_shaker = _on_shaker(case, data, direction)
+        points = {"datum": {_AMPLITUDE: data.amplitude.tolist(), _FREQUENCY: data.frequency.tolist()}}
+        return cls(data, read_axes(on_shaker, points, source="data"), direction)
+
+    @property
+    def measured(self) -> FloatArray:
+        """Measured values, (M,)."""
+        values: FloatArray = self.data.loss
+        return values
+
+    def _work(self, case: Case) -> Any:
+        shaken = _on_shaker(case, self.data, self.direction)
+        return work_of_case(shaken, self.grid, measures=[self.data.measure], cycles=self.data.cycles)
+
+    def check(self, case: Case) -> None:
+        """Raise if the case cannot be simulated."""
+        self._work(case).validate()
+
+    def simulate(self, case: Case, threads: int, proceed: Proceed) -> tuple[FloatArray, int]:
+        """Return the simulated values of a start, (M,), and exceeded limits as bits in the order of `WARNINGS`."""
+        work = self._work(case)
+        found = work.run(0, work.size, threads=threads, cancelled=lambda: not proceed())
+        if found is None:
+            return np.full(work.size, np.nan), 0
+        warnings = found.get("warnings")
+        return found[self.data.measure], 0 if warnings is None else int(np.bitwise_or.reduce(warnings))
+
+    def runs(self, case: Case) -> list[Case]:
+        """Return the cases of the runs of a start."""
+        work = self._work(case)
+        if isinstance(work, ParticleWork):
+            return [work.variant(index) for index in range(work.size)]
+        return [work.grid.case_at(work.case, index) for index in range(work.size)]
+
+    def points(self) -> list[Point]:
+        """Return the place of each value."""
+        data = self.data
+        pairs = zip(data.amplitude.tolist(), data.frequency.tolist(), strict=True)
+        return [Point(data.measure, amplitude, data.unit, frequency) for amplitude, frequency in pairs]
+
+    def describe(self) -> dict[str, Any]:
+        """Return what is simulated, in JSON types."""
+        data = self.data
+        return {
+            "kind": "shaker",
+            "measure": data.measure,
+            "amplitude": [f"{value!r} {data.unit}" for value in data.amplitude.tolist()],
+            "frequency": data.frequency.tolist(),
+            "cycles": list(data.cycles),
+            "direction": None if self.direction is None else list(self.direction),
+        }
+
+
+def _on_shaker(case: Case, data: ShakerLoss, direction: Any) -> Case:
+    """Return a case with its dampers on a shaker at the first point of the data."""
+    motion: dict[str, Any] = {
+        "amplitude": f"{float(data.amplitude[0])!r} {data.unit}",
+        "frequency": float(data.frequency[0]),
+    }
+    if direction is not None:
+        motion["direction"] = direction
+    dampers = tuple(damper.model_copy(update={"point": None}) for damper in case.dampers)
+    parts = {
+        "structure": Shaker(motion=Harmonic(**motion)),
+        "dampers": dampers,
+        "tuned_masses": (),
+        "loads": (),
+        "base": (),
+    }
+    return case.model_copy(update=parts)
+
+
+Simulation = Decay | Shaken
+
+
+def simulation_of(data: Losses, case: Case) -> Simulation:
+    """Return the simulation of a measurement.
+
+    Parameters
+    ----------
+    data
+        The measurement.
+    case
+        Case with the damper.
+
+    Raises
+    ------
+    CaseError
+        If the case cannot show what was measured.
+    """
+    if isinstance(data, RingDown):
+        return Decay.of(data, case)
+    return Shaken.of(data, case)
+
+
+@dataclass(eq=False)
+class CalibrationWork:
+    """Simulations of all measurements over samples of the parameters.
+
+    Attributes
+    ----------
+    case, grid
+        Base case, and the samples of its parameters.
+    simulations
+        Simulation of each measurement.
+    first
+        Number of the random start of the first sample.
+    """
+
+    case: Case
+    grid: Grid
+    simulations: Sequence[Simulation]
+    first: int = 0
+
+    @property
+    def size(self) -> int:
+        """Number of samples."""
+        return self.grid.size
+
+    @property
+    def block(self) -> int:
+        """Preferred number of samples in a block."""
+        return 1 if self.case.particle_dampers else 4
+
+    @property
+    def count(self) -> int:
+        """Number of measured values."""
+        return sum(each.measured.size for each in self.simulations)
+
+    @cached_property
+    def outputs(self) -> dict[str, tuple[tuple[tuple[str, int], ...], str, dict[str, Any]]]:
+        """Further dimensions, number type and attributes of each output."""
+        flags = {
+            "long_name": "exceeded validity limits",
+            "flag_masks": [2**bit for bit in range(len(WARNINGS))],
+            "flag_meanings": " ".join(WARNINGS),
+        }
+        return {
+            "simulated": ((("datum", self.count),), "float64", {"long_name": "simulated value"}),
+            "warnings": ((), "int16", flags),
+        }
+
+    def coords(self) -> dict[str, Any]:
+        """Return the coordinates of the dimensions beyond the grid: none."""
+        return {}
+
+    def describe(self) -> dict[str, Any]:
+        """Return a description of everything except the grid, in JSON types."""
+        simulations = [each.describe() for each in self.simulations]
+        return {**describe_case(self.case, self.grid.columns), "simulations": simulations, "first": self.first}
+
+    @cached_property
+    def _starts(self) -> list[Case]:
+        return random_starts(self.case, self.first + self.size)[self.first :]
+
+    def variant(self, index: int) -> Case:
+        """Return the case of a sample.
+
+        Raises
+        ------
+        CaseError
+            If its values are not valid together.
+        """
+        return self.grid.case_at(self._starts[index], index)
+
+    def run(
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
+    ) -> Values | None:
+        """Return the outputs of samples start to stop; None soon after `cancelled` returns True."""
+
+        def proceed(*_: int) -> bool:
+            return not (cancelled and cancelled())
+
+        simulated, warnings = np.full((stop - start, self.count), np.nan), np.zeros(stop - start, np.int16)
+        for row, index in enumerate(range(start, stop)):
+            first = 0
+            for each in self.simulations:
+                own = slice(first, first + each.measured.size)
+                first = own.stop
+                try:
+                    simulated[row, own], exceeded = each.simulate(self.variant(index), threads, proceed)
+                except RattleboxError:  # see `reason`
+                    continue
+                warnings[row] |= exceeded
+                if not proceed():
+                    return None
+        return {"simulated": simulated, "warnings": warnings}
+
+    def reason(self, index: int) -> str:
+        """Return why a sample has no result, or ""."""
+        for each in self.simulations:
+            try:
+                each.simulate(self.variant(index), 1, lambda *_: True)
+            except RattleboxError as error:
+                return str(error)
+        return ""
+
+    def predict(self) -> tuple[float, float]:
+        """Return the processor time of all samples [s], and the share of a processor that the timed runs had."""
+        if not self.case.particle_dampers:
+            before = time.process_time()
+            for each in self.simulations:
+                each.simulate(self.variant(0), 1, lambda *_: True)
+            return (time.process_time() - before) * self.size, 1.0
+        cases = [run for each in self.simulations for run in each.runs(self.variant(0))]
+        groups = (RunGroup.of(each, self.size, self.size) for each in cases)
+        times, share = time_of_particle_runs([group for group in groups if group])
+        return sum(times), share
