@@ -237,8 +237,7 @@ class Calibration:
     def _unit_notes(self) -> Iterator[str]:
         for each in self.simulations:
             if each.data.unit is None:
-                largest = amount(float(each.data.amplitude.max()), "m")
-                yield f"note: amplitude has no unit, m is assumed: the largest is {largest}"
+                yield f"note: amplitude has no unit, m is assumed: the largest is {each.data.amplitude.max():.4g} m"
 
     # ---- result
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rattlebox.analysis.damping_curve import damping_over_amplitude
 from rattlebox.model.dampers import Sphere
-from rattlebox.model.errors import Hint, at, nearest, one_of
+from rattlebox.model.errors import Hint, at, nearest, one_of, several
 from rattlebox.model.units import parse, plain, whole_number
 from rattlebox.results.quantities import amount
 
@@ -233,11 +233,11 @@ class BounceTimes:
 
     def __post_init__(self) -> None:
         given = self.times
-        several = isinstance(given, (list, tuple)) and not _has_shared_unit(given) and all(map(_is_row, given))
-        rows = list(given) if several and given else [given]
+        is_nested = isinstance(given, (list, tuple)) and not _has_shared_unit(given) and all(map(_is_row, given))
+        rows = list(given) if is_nested and given else [given]
         columns = []
         for number, row in enumerate(rows):
-            place = ("times", number) if several else ("times",)
+            place = ("times", number) if is_nested else ("times",)
             columns.append(read_column(place, row, ("s",), -np.inf))
             with at(*place):
                 _check_contacts(columns[-1].values)
@@ -254,7 +254,7 @@ def _check_contacts(times: FloatArray) -> None:
     """Raise if contacts of one drop are too few or not those of one ball."""
     if times.size < 3:
         raise Hint(
-            f"{times.size} contacts have {times.size - 1} flights, but two are needed for one restitution",
+            f"{several(times.size, 'contact')} cannot give a restitution, the ratio of two flights",
             "three contacts or more, none omitted",
         )
     flights = np.diff(times)

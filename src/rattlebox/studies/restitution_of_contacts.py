@@ -228,9 +228,9 @@ def _unit_notes(data: Sequence[Contacts]) -> Iterator[str]:
         name, si = ("height", "m") if isinstance(each, Drops) else ("times", "s")
         largest = float(each.height.max()) if isinstance(each, Drops) else float(max(row[-1] for row in each.times))
         if each.unit is None:
-            yield f"note: {name} has no unit, {si} is assumed: the largest is {amount(largest, si)}"
+            yield f"note: {name} has no unit, {si} is assumed: the largest is {largest:.4g} {si}"
         if isinstance(each, Drops) and largest > _HIGH_DROP:
-            yield f"warning: a drop from {amount(largest, 'm')}; check the unit of height"
+            yield f"warning: a drop from {largest:.4g} m; check the unit of height"
 
 
 def _same_values(half: float) -> Iterator[str]:
