@@ -85,12 +85,15 @@ class Call(NamedTuple):
         Kind of the study file with these arguments; "" if no study file can start it.
     remarks
         What the call lacks, such as functions of the user.
+    first
+        Source of the first argument in place of the case, which follows as `case`, if there is one.
     """
 
     function: str
     arguments: Mapping[str, Any] = {}
     kind: str = ""
     remarks: tuple[str, ...] = ()
+    first: str = ""
 
 
 def nothing(result: Any) -> Iterable[Any]:

@@ -71,7 +71,7 @@ def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
         script = _comparison_script(names)
         commands = tuple(f"rattlebox run {file} -o {file.removesuffix('.toml')}" for file in names.values())
         return Recipe((*commands, "python script.py"), (*files, File("script.py", script, script)))
-    script = _script(call)
+    script = _script(call, bool(cases))
     files.append(File("script.py", script, script))
     if call.function == "simulate":
         return Recipe(("rattlebox run case.toml -o out", "python script.py"), tuple(files))
@@ -87,10 +87,16 @@ def _file_name(number: int, count: int) -> str:
     return "case.toml" if count == 1 else f"case_{number + 1}.toml"
 
 
-def _script(call: Call) -> str:
-    lines = ["import rattlebox as rb", "", 'case = rb.Case.from_file("case.toml")']
-    arguments = "".join(f"\n    {name}={_literal(value)}," for name, value in call.arguments.items())
-    arguments = f"\n    case,{arguments}\n" if arguments else "case"
+def _script(call: Call, has_case: bool) -> str:
+    lines = ["import rattlebox as rb", ""]
+    positional = [call.first] if call.first else []
+    if has_case:
+        lines.append('case = rb.Case.from_file("case.toml")')
+        positional.append("case")
+    named = "".join(f"\n    {name}={_literal(value)}," for name, value in call.arguments.items())
+    arguments = ", ".join(positional)
+    if named or call.first:
+        arguments = "".join(f"\n    {each}," for each in positional) + named + "\n"
     lines += [*(f"# {remark}" for remark in call.remarks), f"result = rb.{call.function}({arguments})"]
     return "\n".join([*lines, 'rb.write_report(result, "report.html")', ""])
 

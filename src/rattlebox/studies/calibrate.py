@@ -12,7 +12,7 @@ from rattlebox.model.errors import Hint, at
 from rattlebox.model.units import parse, whole_number
 
 from .calibration_by_simulation import Calibration
-from .calibration_data import Contacts, Losses, read_data
+from .calibration_data import Contacts, Losses, read_data, source_of
 from .calibration_space import Space
 from .calibration_work import simulation_of
 from .restitution_of_contacts import restitution_of
@@ -134,7 +134,7 @@ def calibrate(
         for name, value in {"case": case, "parameters": parameters, "known": known, "store": store}.items():
             if value is not None:
                 raise Hint("drops and bounces give the restitution without simulations", f"no {name}", [name])
-        return restitution_of(contacts).assign_attrs(study=KIND)
+        return restitution_of(contacts).assign_attrs(study=KIND, data=[source_of(each) for each in contacts])
     if not isinstance(case, Case) or not case.dampers:
         raise Hint(
             "losses are compared with simulations, which need a case with a damper",
@@ -154,7 +154,8 @@ def calibrate(
     )
     calibration.validate()
     calibration.check_budget(None if budget is None else _seconds(budget))
-    return save_result(calibration.result(), KIND, store)
+    result = calibration.result().assign_attrs(data=[source_of(each) for each in losses])
+    return save_result(result, KIND, store)
 
 
 def _seconds(budget: Any) -> float:

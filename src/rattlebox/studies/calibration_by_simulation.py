@@ -297,10 +297,12 @@ class Calibration:
             chi2=fit.chi2,
             degrees_of_freedom=fit.freedom,
             p_value=fit.probability,
-            runs=len(values),
+            samples=len(values),
+            runs=self.runs,
             checks=self.checks,
             seed=self.seed,
             known=json.dumps(space.known),
+            log=[path for path, is_log in zip(space.paths, space.is_log, strict=True) if is_log],
         )
 
     def _profiles(self, fit: Fit) -> dict[str, Any]:

@@ -470,3 +470,43 @@ def read_data(data: Any) -> tuple[list[Contacts], list[Losses]]:
             ["data"],
         )
     return contacts, losses
+
+
+def source_of(data: Contacts | Losses) -> str:
+    """Return the Python source of a measurement, with numbers in SI units.
+
+    Parameters
+    ----------
+    data
+        The measurement.
+    """
+    if isinstance(data, Drops):
+        parts = {"height": (data.height, "m"), "rebound": (data.rebound, "m"), "ball": data.ball, "error": data.error}
+    elif isinstance(data, BounceTimes):
+        parts = {"times": [times.tolist() for times in data.times], "error": data.error}
+    elif isinstance(data, RingDown):
+        parts = {
+            "amplitude": (data.amplitude, data.unit or "m"),
+            "damping_ratio": data.damping_ratio,
+            "error": data.error,
+            "mode": data.mode,
+            "point": data.point,
+        }
+    else:
+        parts = {
+            "amplitude": (data.amplitude, data.unit),
+            "frequency": data.frequency,
+            data.measure: data.loss,
+            "error": data.error,
+            "cycles": data.cycles,
+        }
+    words = [f"{name}={_source(value)}" for name, value in parts.items() if value is not None]
+    return f"rb.{type(data).__name__}({', '.join(words)})"
+
+
+def _source(value: Any) -> str:
+    if isinstance(value, Sphere):
+        return f"rb.Sphere(radius={value.half!r}, mass={value.weight!r}, material='steel')"
+    if isinstance(value, tuple) and isinstance(value[0], np.ndarray):
+        return f"({value[0].tolist()!r}, {value[1]!r})"
+    return repr(value.tolist() if isinstance(value, np.ndarray) else value)

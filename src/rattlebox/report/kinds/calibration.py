@@ -1,0 +1,189 @@
+"""Report about a calibration of contact parameters."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.plots.calibration import plot_calibration
+from rattlebox.report import study_words as words
+from rattlebox.report.numbers import between
+from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
+from rattlebox.results.case_words import counted, dampers_words, joined
+from rattlebox.results.quantities import MISSING, amount
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rattlebox.model.case import Case
+
+
+def _by_simulation(result: xr.Dataset) -> bool:
+    return "simulated" in result
+
+
+def _cases(result: xr.Dataset) -> Mapping[str, Case]:
+    return words.cases_of(result) if _by_simulation(result) else {}
+
+
+def _names(result: xr.Dataset) -> list[str]:
+    return [str(path).removeprefix("damper.").replace(".", " ").replace("_", " ") for path in result.parameter.values]
+
+
+def _question(result: xr.Dataset) -> str:
+    if not _by_simulation(result):
+        return f"Which restitution do {counted(result.sizes['impact'], 'measured impact')} show?"
+    measures = joined([each.replace("_", " ") for each in dict.fromkeys(result.measure.values.tolist())])
+    try:
+        system = dampers_words(words.cases_of(result)[""])
+    except ValueError:  # CaseError
+        system = "the damper"
+    data = counted(result.sizes["datum"], "measured value")
+    return f"Which {joined(_names(result))} of {system} follow from {data} of {measures}?"
+
+
+def _answer(result: xr.Dataset) -> Iterator[str]:
+    for k, name in enumerate(_names(result)):
+        unit = str(result.unit.values[k])
+        value, lower, upper = (float(result[each][k]) for each in ("value", "lower", "upper"))
+        yield f"The {name} is {amount(value, unit, 3)} (95 % interval {between(lower, upper, unit)})."
+    if not _by_simulation(result):
+        slow, fast = float(result.approach_speed.min()), float(result.approach_speed.max())
+        ends = amount(slow, "m/s", 3) + (f" to {amount(fast, 'm/s', 3)}" if fast > 1.001 * slow else "")
+        yield f"It holds for approach speeds of {ends}."
+        return
+    freedom = int(result.attrs["degrees_of_freedom"])
+    if freedom > 0:
+        yield (
+            f"At these values chi² is {float(result.attrs['chi2']):.3g} with {counted(freedom, 'degree')} of freedom; a "
+            f"larger one has a probability of {amount(float(result.attrs['p_value']), '%', 2)}."
+        )
+    for line in _list(result.attrs.get("undetermined")):
+        yield words.capitalised(line.removeprefix("warning: ").partition("; try:")[0]) + "."
+
+
+def _list(value: Any) -> list[str]:
+    """Return an attribute as a list of texts; a file holds a list of one as text."""
+    if value is None:
+        return []
+    return [str(each) for each in ([value] if isinstance(value, str) else value) if str(each)]
+
+
+def _pictures(result: xr.Dataset) -> Iterator[Picture]:
+    if not _by_simulation(result):
+        caption = "Restitution of each impact over its approach speed, with the mean and its 95 % interval."
+    else:
+        caption = (
+            "Simulated values at the result over the measured ones, with bars of two standard deviations; and "
+            + (
+                "the region of the parameters that agree with the data: the line is the threshold of the 95 % intervals."
+                if result.sizes["parameter"] == 2
+                else "chi² over each parameter, the least over all others; the line is the threshold of the 95 % interval."
+            )
+        )
+    yield Picture(caption, partial(plot_calibration, result, size="page"))
+
+
+def _tables(result: xr.Dataset) -> Iterator[Table]:
+    if not _by_simulation(result):
+        return
+    rows: list[tuple[str, ...]] = []
+    for k in range(result.sizes["parameter"]):
+        unit = str(result.unit.values[k])
+        one = result.isel(parameter=k)
+        bounds = "yes" if bool(one.is_lower_bounded & one.is_upper_bounded) else "no"
+        searched = between(float(one.smallest), float(one.largest), unit)
+        interval = between(float(one.lower), float(one.upper), unit)
+        rows.append((str(result.parameter.values[k]), amount(float(one.value), unit, 3), interval, searched, bounds))
+    header: tuple[str, ...] = ("parameter", "value", "95 % interval", "range", "bounded by the data")
+    yield Table("Parameters", header, rows, numbers=True)
+    rows = []
+    for k in range(result.sizes["datum"]):
+        one = result.isel(datum=k)
+        unit = "J" if str(one.measure.item()) == "loss_per_cycle" else "1"
+        hertz = float(one.frequency)
+        place = amount(float(one.amplitude), str(one.amplitude_unit.item()))
+        values = [amount(float(one[name]), unit, 3) for name in ("measured", "error", "check", "check_deviation")]
+        own = str(one.measure.item()).replace("_", " ")
+        rows.append((own, place, amount(hertz, "Hz") if np.isfinite(hertz) else MISSING, *values))
+    header = ("measure", "amplitude", "frequency", "measured", "uncertainty", "simulated", "scatter of packings")
+    note = "Simulated: mean of further packings at the result, which did not enter the fit."
+    yield Table("Data", header, rows, note, numbers=True)
+
+
+def _limits(result: xr.Dataset) -> Iterator[Limit]:
+    if not _by_simulation(result):
+        yield Limit(
+            "statistical error",
+            counted(result.sizes["impact"], "impact"),
+            "",
+            "The interval is that of Student's t over the impacts. An error that all readings share is not in it.",
+        )
+        exponent = float(result.exponent)
+        if np.isfinite(exponent):
+            yield Limit(
+                "speed",
+                f"as v^{exponent:.2g} ± {float(result.exponent_interval):.1g}",
+                "",
+                "Exponent of a power law through the impacts. One value holds for its speeds only if this is 0.",
+            )
+        return
+    yield Limit(
+        "samples",
+        f"{result.attrs['samples']} samples, {result.attrs['checks']} checks",
+        "",
+        "Response surfaces through the samples, whose errors and the scatter of random packings are in the intervals.",
+    )
+    apart = np.abs(result.check - result.fitted) / np.hypot(result.error, result.scatter)
+    yield Limit(
+        "response surface",
+        f"{float(apart.max()):.2g} standard deviations, largest",
+        "",
+        "Difference from further packings at the result. Beyond about 1 use narrower ranges.",
+    )
+    yield Limit(
+        "model",
+        "assumed to be right",
+        "",
+        "Errors of all other inputs, such as fill, cavity, direction, softening and the damping without particles, shift "
+        "the values, which then repeat this measurement but hold for no other one.",
+    )
+    yield from (limit for limit in words.study_limits(result) if limit.name != "statistical error")
+
+
+def _call(result: xr.Dataset) -> Call:
+    data = _list(result.attrs.get("data"))
+    source = data[0] if len(data) == 1 else f"[{', '.join(data)}]"
+    if not _by_simulation(result):
+        return Call("calibrate", first=source)
+    ends = zip(result.parameter.values.tolist(), result.smallest.values, result.largest.values, strict=True)
+    arguments: dict[str, Any] = {"parameters": {path: (float(low), float(high)) for path, low, high in ends}}
+    known = json.loads(str(result.attrs["known"]))
+    if known:
+        arguments["known"] = {path: tuple(pair) for path, pair in known.items()}
+    if logs := _list(result.attrs.get("log")):
+        arguments["log"] = logs
+    return Call(
+        "calibrate",
+        arguments
+        | {"runs": int(result.attrs["runs"]), "checks": int(result.attrs["checks"]), "seed": int(result.attrs["seed"])},
+        first=source,
+    )
+
+
+KIND = Kind(
+    name="Calibration",
+    cases=_cases,
+    question=_question,
+    answer=_answer,
+    call=_call,
+    pictures=_pictures,
+    tables=_tables,
+    warnings=lambda result: _list(result.attrs.get("warnings")),
+    limits=_limits,
+    about=words.study_about,
+)
