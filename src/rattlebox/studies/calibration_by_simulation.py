@@ -97,6 +97,11 @@ class Calibration:
         """Place of each value."""
         return [point for each in self.simulations for point in each.points()]
 
+    @property
+    def least_runs(self) -> int:
+        """Smallest number of samples with values for the surfaces and the covariance of their scatter."""
+        return max(least_points(self.space.size), int(np.bincount(self.sets).max()) + _MORE_RUNS)
+
     def validate(self) -> None:
         """Raise if the data or the runs do not suffice, or the case cannot be simulated.
 
@@ -113,9 +118,10 @@ class Calibration:
                 "losses at several amplitudes, or fewer parameters",
                 ["data"],
             )
-        needed = max(least_points(self.space.size), int(np.bincount(self.sets).max()) + _MORE_RUNS)
-        if self.runs < needed:
-            raise Hint(f"runs = {self.runs} are too few for these data and parameters", f"runs = {needed} or more")
+        if self.runs < self.least_runs:
+            raise Hint(
+                f"runs = {self.runs} are too few for these data and parameters", f"runs = {self.least_runs} or more"
+            )
         case = self._work(self.space.corners, 0).variant(0)
         for each in self.simulations:
             each.check(case)
@@ -175,11 +181,12 @@ class Calibration:
             points = np.concatenate([points, self.space.points(columns)])
             values = np.concatenate([values, found.simulated.values])
             flags = np.concatenate([flags, found.warnings.values.astype(np.int64)])
-            self._check_missing(work, found.simulated.values)
             used = np.isfinite(values).all(axis=1)
             used &= ((points >= corners[0] - 1e-9) & (points <= corners[1] + 1e-9)).all(axis=1)
+            self._check_missing(work, found.simulated.values, int(used.sum()))
             fit = Fit.of(self.space, corners, points[used], values[used], self.measured, self.error, self.sets)
             corners = fit.narrowed()
+        self.warnings += fit.cut()
         checks = self._further_runs(fit.best)
         undetermined = list(fit.undetermined())
         warnings = [
@@ -194,8 +201,8 @@ class Calibration:
             undetermined=undetermined, warnings=warnings
         )
 
-    def _check_missing(self, work: CalibrationWork, values: FloatArray) -> None:
-        """Raise if too many samples have no value, and warn if some have none."""
+    def _check_missing(self, work: CalibrationWork, values: FloatArray, used: int) -> None:
+        """Raise if too many samples of a round have no value or too few are left, and warn if some have none."""
         missing = ~np.isfinite(values)
         bad = np.flatnonzero(missing.any(axis=1))
         if not bad.size:
@@ -204,8 +211,8 @@ class Calibration:
             f"{bad.size} of {len(values)} samples have no simulated value, most often of "
             f"{self.points[int(np.argmax(missing.sum(axis=0)))]}"
         )
-        reason = work.reason(int(bad[0])).replace("\n", "\n  ")
-        if bad.size > _MOST_MISSING * len(values):
+        reason = work.reason(int(bad[0])).partition("\n  try: ")[0].replace("\n", "\n  ")
+        if bad.size > _MOST_MISSING * len(values) or used < self.least_runs:
             raise Hint(
                 f"{line}" + (f"; the first one: {reason}" if reason else ""),
                 "a longer duration of the case, so that decays pass all amplitudes; or other amplitudes or ranges",
@@ -213,16 +220,22 @@ class Calibration:
         self.warnings.append(f"warning: {line}, and are left out" + (f": {reason}" if reason else ""))
 
     def _further_runs(self, best: FloatArray) -> FloatArray:
-        """Return simulated values of further packings at the result, (checks, M)."""
+        """Return simulated values of further packings at the result, (C, M); NaN if fewer than two have values."""
         values = {path: [value] * self.checks for path, value in zip(self.space.paths, best.tolist(), strict=True)}
         grid = read_axes(self.case, {"sample": values}, source="parameters")
         work = CalibrationWork(self.case, grid, self.simulations, _ROUNDS * self.runs)
-        found: FloatArray = run_work(work, **self.where, progress=self.progress).simulated.values
-        return found
+        store = None if self.store is None else self.store / "checks"
+        found: FloatArray = run_work(work, **self.where, store=store, progress=self.progress).simulated.values
+        complete = found[np.isfinite(found).all(axis=1)]
+        if len(complete) < len(found):
+            self.warnings.append(
+                f"warning: {len(found) - len(complete)} of {len(found)} further packings have no value"
+            )
+        return complete if len(complete) > 1 else np.full((2, self.measured.size), np.nan)
 
     def _misfit(self, fit: Fit, checks: FloatArray) -> Iterator[str]:
         """Yield a warning if the surfaces differ from further packings at the result."""
-        mean, own = np.nanmean(checks, axis=0), np.nanstd(checks, axis=0, ddof=1) / math.sqrt(self.checks)
+        mean, own = checks.mean(axis=0), checks.std(axis=0, ddof=1) / math.sqrt(len(checks))
         total = np.sqrt(np.diag(fit.agreement.covariance))
         apart = np.abs(mean - fit.fitted)
         doubtful = np.flatnonzero((apart > 3 * own) & (apart > 0.5 * total))
@@ -230,7 +243,7 @@ class Calibration:
             k = int(doubtful[np.argmax(apart[doubtful] / total[doubtful])])
             share = amount(float(apart[k] / abs(mean[k])), "%", 2)
             yield (
-                f"warning: at the result the response surface differs by {share} from {self.checks} further packings for "
+                f"warning: at the result the response surface differs by {share} from {len(checks)} further packings for "
                 f"{self.points[k]}; try: narrower ranges around the result, or more runs"
             )
 
@@ -265,8 +278,8 @@ class Calibration:
             "error": of("datum", self.error, "standard uncertainty of the measured value"),
             "fitted": of("datum", fit.fitted, "value of the response surface at the result"),
             "scatter": of("datum", fit.scatter, "standard deviation of a simulated value"),
-            "check": of("datum", np.nanmean(checks, axis=0), "mean of further packings at the result"),
-            "check_deviation": of("datum", np.nanstd(checks, axis=0, ddof=1), "standard deviation of these packings"),
+            "check": of("datum", checks.mean(axis=0), "mean of further packings at the result"),
+            "check_deviation": of("datum", checks.std(axis=0, ddof=1), "standard deviation of these packings"),
             "simulated": of(("sample", "datum"), values, "simulated value"),
             "exceeded": (
                 "sample",

@@ -205,6 +205,16 @@ class Fit:
         value = origin[i] + ratio * origin[j] + mean * scale[i]
         return float(ratio), float(value), float(NORMAL * deviation * scale[i])
 
+    def cut(self) -> Iterator[str]:
+        """Yield a warning for each parameter whose interval ends where the samples end, within its range."""
+        for axis, path in enumerate(self.space.paths):
+            edges = ((self.limits[axis, 0], self.low[axis], 0.0), (self.limits[axis, 1], self.high[axis], 1.0))
+            if any(abs(limit - edge) < 1e-6 and abs(edge - end) > 1e-6 for limit, edge, end in edges):
+                yield (
+                    f"warning: the interval of {path} ends at the region of the last samples, and may be too narrow; "
+                    "try: more runs"
+                )
+
     def disagreement(self) -> Iterator[str]:
         """Yield a warning if the model does not explain the data, or nothing shows whether it does."""
         if self.freedom < 1:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rattlebox.model.errors import Hint, at, nearest
 
 from .axes import materials_in
+from .calibration_data import read_column
 from .parameter import Parameter
 from .response_surface import Known
 
@@ -94,7 +95,7 @@ class Space:
             if path not in paths:
                 raise Hint(f"log = {path!r} is not one of the parameters", nearest(str(path), paths))
         low_ends, high_ends = np.array(ends, float).T
-        return cls(paths, units, low_ends, high_ends, np.isin(paths, logs), _known(known or {}, paths))
+        return cls(paths, units, low_ends, high_ends, np.isin(paths, logs), _known(known or {}, paths, units))
 
     @property
     def size(self) -> int:
@@ -147,8 +148,8 @@ class Space:
         return {path: (first, last) for path, first, last in ends}
 
 
-def _known(given: Any, paths: list[str]) -> dict[str, tuple[float, float]]:
-    """Return values and half widths of known parameters."""
+def _known(given: Any, paths: list[str], units: list[str]) -> dict[str, tuple[float, float]]:
+    """Return values and half widths of known parameters in SI units."""
     example = '{"damper.contact.restitution": (0.80, 0.02)}'
     if not isinstance(given, Mapping):
         raise Hint(
@@ -159,13 +160,15 @@ def _known(given: Any, paths: list[str]) -> dict[str, tuple[float, float]]:
         with at("known"):
             if path not in paths:
                 raise Hint(f"{path!r} is not one of the parameters", nearest(str(path), paths))
-            try:
-                value, half = (float(each) for each in pair)
-            except (TypeError, ValueError):
-                value = half = math.nan
-            if not (math.isfinite(value) and 0 < half < math.inf):
+            if not isinstance(pair, (tuple, list)) or len(pair) != 2:
                 raise Hint(
                     f"{path}: {pair!r:.60} is not a pair (value, half of the width of its 95 % interval)", example
                 )
+        unit = units[paths.index(path)]
+        value, half = read_column(
+            ("known", path), list(pair), () if unit == "1" else (unit,), -math.inf
+        ).values.tolist()
+        if not half > 0:
+            raise Hint(f"half of the width, {half:g}, is not greater than zero", example, ["known", path])
         found[path] = value, half
     return found
