@@ -18,6 +18,7 @@ PAGES = (
     "how-to/analysis",
     "how-to/basins",
     "how-to/bifurcation",
+    "how-to/calibration",
     "how-to/design",
     "how-to/fills",
     "how-to/fmu",
@@ -46,6 +47,7 @@ FIELDS = DOCS / "reference" / "case_file.md"
 SEARCHES = (
     "co-simulation",
     "90 % full",
+    "coefficient of restitution from a drop test",
     "contact law",
     "energy balance",
     "install",
