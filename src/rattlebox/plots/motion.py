@@ -11,25 +11,9 @@ from matplotlib.figure import Figure
 from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
-from ..results.summary import largest_points
-from .style import (
-    FAINT,
-    INK,
-    SERIES_COLOURS,
-    SERIES_STYLES,
-    Scale,
-    Size,
-    StyledFigure,
-    figure_style,
-    label,
-    legend_above,
-    pen,
-    scaled,
-    shorten,
-    time_axis,
-)
+from .panels import MAX_SERIES, draw_largest, draw_line, time_panels, time_window
+from .style import FAINT, INK, Scale, Size, figure_style, label, legend_above, pen, scaled, shorten, time_axis
 
-MAX_SERIES = len(SERIES_COLOURS)
 MAX_NAME_LETTERS = 14
 WALL_DISTANCE = 3.0  # a wall farther away than this multiple of the balls' travel is not drawn
 
@@ -68,8 +52,7 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
     moving = arrays.mode_frequency.size > 0 or not filled
     panels = int(moving) + len(filled) + int(with_particles)
     with figure_style(size):
-        figure = StyledFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
-        axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
+        figure, axes = time_panels(size, panels)
         time = scaled(arrays.time[window], "s")
         free_panels = iter(axes)
         if moving:
@@ -95,7 +78,7 @@ def _draw_centre_of_mass(axes: Axes, arrays: RunArrays, damper: int, window: sli
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
     length = scaled(x, "m")
     for k, name in enumerate(AXES):
-        _line(axes, arrays.time[window] / time.divisor, x[:, k] / length.divisor, k, f"along {name}")
+        draw_line(axes, arrays.time[window] / time.divisor, x[:, k] / length.divisor, k, f"along {name}")
     label(axes, "y", "Shift of particles", length.unit)
     legend_above(axes)
 
@@ -105,41 +88,10 @@ def _draw_contacts(axes: Axes, run: Run, window: slice, time: Scale) -> None:
     arrays = run.arrays
     for k, name in enumerate(arrays.dampers[:MAX_SERIES]):
         text = name if len(arrays.dampers) > 1 else None
-        _line(axes, arrays.time[window] / time.divisor, run.ledger.coordination[window, k], k, text)
+        draw_line(axes, arrays.time[window] / time.divisor, run.ledger.coordination[window, k], k, text)
     axes.set_ylim(bottom=0.0)
     label(axes, "y", "Contacts per particle", "")
     legend_above(axes)
-
-
-def _line(axes: Axes, x: Any, y: Any, series: int, name: str | None) -> None:
-    style = {"color": SERIES_COLOURS[series], "linestyle": SERIES_STYLES[series], "linewidth": pen()}
-    axes.plot(x, y, label=name, **style)
-
-
-def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
-    """Return the output times between two times; all if `between` is None.
-
-    Parameters
-    ----------
-    arrays
-        Arrays of the run.
-    between
-        First and last time [s].
-
-    Raises
-    ------
-    ValueError
-        If no output time lies within `between`.
-    """
-    if between is None:
-        return slice(0, arrays.time.size)
-    first, last = np.searchsorted(arrays.time, between[0]), np.searchsorted(arrays.time, between[1], "right")
-    if first >= last:
-        raise ValueError(
-            f"between = {between}: the run has no output time in this interval\n"
-            f"  try: times from {arrays.time[0]:g} s to {arrays.time[-1]:g} s"
-        )
-    return slice(int(first), int(last))
 
 
 def label_panel(axes: Axes, name: str) -> None:
@@ -189,18 +141,9 @@ def draw_structure(axes: Axes, arrays: RunArrays, window: slice, time: Scale, le
     time, length
         Scales of the axes.
     """
-    x = arrays.displacement[window]
-    axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-    for k, point in enumerate(largest_points(np.abs(x).max(axis=0), MAX_SERIES)):
-        axes.plot(
-            arrays.time[window] / time.divisor,
-            x[:, point] / length.divisor,
-            color=SERIES_COLOURS[k],
-            linestyle=SERIES_STYLES[k],
-            label=arrays.points[point] if len(arrays.points) > 1 else None,
-        )
+    displacement = arrays.displacement[window] / length.divisor
+    draw_largest(axes, arrays.time[window] / time.divisor, displacement, arrays.points)
     label(axes, "y", "Displacement", length.unit)
-    legend_above(axes)
 
 
 def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, window: slice, time: Scale, length: Scale) -> None:
@@ -229,14 +172,9 @@ def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, window: slice, time:
     for wall in (wall for wall in (-half, half) if low - travel <= wall <= high + travel):
         axes.axhline(wall / length.divisor, color=INK, linewidth=pen(0.5), zorder=3)
     for k in range(min(len(own), MAX_SERIES)):
-        axes.plot(
-            arrays.time[window] / time.divisor,
-            x[:, k] / length.divisor,
-            color=SERIES_COLOURS[(k + 1) % MAX_SERIES],
-            linestyle=SERIES_STYLES[k],
-            linewidth=pen(),
-            label=f"ball {k + 1}" if len(own) > 1 else None,
-        )
+        name = f"ball {k + 1}" if len(own) > 1 else None
+        position = x[:, k] / length.divisor
+        draw_line(axes, arrays.time[window] / time.divisor, position, k, name, colour=(k + 1) % MAX_SERIES)
     axes.margins(y=0.12)
     label(axes, "y", "Position in cavity", length.unit)
     legend_above(axes)

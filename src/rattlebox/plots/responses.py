@@ -12,22 +12,8 @@ from matplotlib.figure import Figure
 from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
-from ..results.summary import largest_points
-from .motion import MAX_SERIES, time_window
-from .style import (
-    FAINT,
-    SERIES_COLOURS,
-    SERIES_STYLES,
-    Scale,
-    Size,
-    StyledFigure,
-    figure_style,
-    label,
-    legend_above,
-    pen,
-    scaled,
-    time_axis,
-)
+from .panels import draw_largest, time_panels, time_window
+from .style import Scale, Size, figure_style, label, scaled, time_axis
 
 QUANTITIES = {
     "displacement": ("Displacement", "m"),
@@ -99,25 +85,13 @@ def plot_responses(
     if not panels:
         raise ValueError("of is empty\n  try: " + ", ".join(QUANTITIES))
     with figure_style(size):
-        count = len(panels)
-        figure = StyledFigure(size, 0.14 + 0.36 * count if size == "column" else 0.1 + 0.2 * count)
-        axes = list(np.ravel(figure.subplots(count, 1, sharex=True)))
+        figure, axes = time_panels(size, len(panels))
         time = scaled(arrays.time[window], "s")
         for axis, panel in zip(axes, panels, strict=True):
             values = panel.values[window]
             scale = scaled(values, panel.unit) if panel.unit in ("m", "m/s", "N") else Scale(1.0, panel.unit)
-            axis.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-            for k, line in enumerate(largest_points(np.abs(values).max(axis=0), MAX_SERIES)):
-                axis.plot(
-                    arrays.time[window] / time.divisor,
-                    values[:, line] / scale.divisor,
-                    color=SERIES_COLOURS[k],
-                    linestyle=SERIES_STYLES[k],
-                    linewidth=pen(),
-                    label=panel.names[line] if len(panel.names) > 1 else None,
-                )
+            draw_largest(axis, arrays.time[window] / time.divisor, values / scale.divisor, panel.names)
             label(axis, "y", panel.text, scale.unit)
-            legend_above(axis)
         time_axis(axes[-1], arrays.time[window], time)
         figure.align_ylabels(axes)
     return figure

@@ -1,0 +1,99 @@
+"""Panels over a common time axis, and the lines that they show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ..results import RunArrays
+from ..results.summary import largest_points
+from .style import FAINT, SERIES_COLOURS, SERIES_STYLES, Size, StyledFigure, legend_above, pen
+
+MAX_SERIES = len(SERIES_COLOURS)
+
+
+def time_panels(size: Size, count: int) -> tuple[StyledFigure, list[Axes]]:
+    """Return a figure with panels below each other that share their time axis.
+
+    Parameters
+    ----------
+    size
+        Width of the figure: "column", "page" or "slide".
+    count
+        Number of panels.
+    """
+    figure = StyledFigure(size, 0.14 + 0.36 * count if size == "column" else 0.1 + 0.2 * count)
+    return figure, list(np.ravel(figure.subplots(count, 1, sharex=True)))
+
+
+def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
+    """Return the output times between two times; all if `between` is None.
+
+    Parameters
+    ----------
+    arrays
+        Arrays of the run.
+    between
+        First and last time [s].
+
+    Raises
+    ------
+    ValueError
+        If no output time lies within `between`.
+    """
+    if between is None:
+        return slice(0, arrays.time.size)
+    first, last = np.searchsorted(arrays.time, between[0]), np.searchsorted(arrays.time, between[1], "right")
+    if first >= last:
+        raise ValueError(
+            f"between = {between}: the run has no output time in this interval\n"
+            f"  try: times from {arrays.time[0]:g} s to {arrays.time[-1]:g} s"
+        )
+    return slice(int(first), int(last))
+
+
+def draw_line(axes: Axes, x: Any, y: Any, series: int, name: str | None, *, colour: int | None = None) -> None:
+    """Draw one of several lines in the colour and dashes of its number.
+
+    Parameters
+    ----------
+    axes
+        Axes to draw on.
+    x, y
+        Points in the units of the axes, (n,).
+    series
+        Number of the line.
+    name
+        Text for the legend; None for no entry.
+    colour
+        Number of the colour; default `series`.
+    """
+    axes.plot(
+        x,
+        y,
+        color=SERIES_COLOURS[series if colour is None else colour],
+        linestyle=SERIES_STYLES[series],
+        linewidth=pen(),
+        label=name,
+    )
+
+
+def draw_largest(axes: Axes, x: Any, y: Any, names: Sequence[str]) -> None:
+    """Draw lines about zero, of many lines those with the largest values, with a legend if there are several.
+
+    Parameters
+    ----------
+    axes
+        Axes to draw on.
+    x, y
+        Points in the units of the axes, (n,) and (n, lines).
+    names
+        Names of the lines.
+    """
+    axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
+    for k, line in enumerate(largest_points(np.abs(y).max(axis=0), MAX_SERIES)):
+        draw_line(axes, x, y[:, line], k, names[line] if len(names) > 1 else None)
+    legend_above(axes)
