@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Self
 
@@ -22,7 +22,7 @@ from .gather_variants import gather_values, gather_variants
 from .grid import Grid
 from .impact_work import ImpactWork, with_intervals
 from .measures import MEASURES, check_names, name_of
-from .work import Values
+from .work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
     import xarray
@@ -111,7 +111,7 @@ class ContinuationWork(AlongLast, ImpactWork):
                     "harmonics without start and stop, the slowest one first, the others at multiples of its frequency",
                 )
 
-    def step(self, before: _States | None, members: Members, cancelled: Callable[[], bool] | None) -> Values | None:
+    def step(self, before: _States | None, members: Members, cancelled: Cancelled) -> Values | None:
         """Run one variant of each chain.
 
         Parameters
@@ -142,27 +142,9 @@ class ContinuationWork(AlongLast, ImpactWork):
         return {**values, "state": after.state, "lead": after.lead}
 
     def run(
-        self,
-        start: int,
-        stop: int,
-        *,
-        threads: int = 1,
-        cancelled: Callable[[], bool] | None = None,
-        before: Values | None = None,
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Cancelled = None, before: Values | None = None
     ) -> Values | None:
-        """Run variants of one chain.
-
-        Parameters
-        ----------
-        start, stop
-            First variant and the one after the last, in C order of the grid.
-        threads
-            Not used: each variant depends on the one before it.
-        cancelled
-            Function called about fifty times a second; the work stops if it returns True.
-        before
-            Outputs of the preceding variant; None at the beginning of the chain.
-        """
+        """Run a range of variants of one chain; see `ChainedWork.run`. `threads` has no effect."""
         states = None if before is None else _States(before["state"][-1:], before["lead"][-1:])
         results: dict[int, Values] = {}
         for index in self.order(start, stop):
@@ -185,9 +167,7 @@ class _States:
 class _Step:
     """One variant of each chain, run from the states before it."""
 
-    def __init__(
-        self, work: ContinuationWork, before: _States | None, members: Members, cancelled: Callable[[], bool] | None
-    ) -> None:
+    def __init__(self, work: ContinuationWork, before: _States | None, members: Members, cancelled: Cancelled) -> None:
         self._cancelled, self._count = cancelled, len(members)
         shape, output = work.grid.shape, work.output
         self._variants = gather_variants(work.packed, shape, members)
@@ -211,7 +191,7 @@ class _Step:
             0,
             count,
             output,
-            progress=lambda _: not (self._cancelled and self._cancelled()),
+            progress=proceed_unless(self._cancelled),
         )
         return None if values is None else with_intervals(values, output)
 

@@ -13,7 +13,7 @@ from rattlebox._util.progress import progress_bar
 from rattlebox.engines.simulate import simulate_many
 
 from .backends import make_backend
-from .work import Block, Cancelled, Chain, Values
+from .work import Block, Cancelled, Chain, Values, proceed_unless
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -66,9 +66,7 @@ class _Cases:
     evaluate: Callable[[Run], Any]
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
-        def proceed(*_: int) -> bool:
-            return not (cancelled and cancelled())
-
+        proceed = proceed_unless(cancelled)
         found = np.empty(stop - start, object)
         for number in range(start, stop):
             (run,) = simulate_many([self.cases[number]], threads=threads, progress=proceed)

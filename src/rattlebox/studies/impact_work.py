@@ -21,7 +21,7 @@ from rattlebox.prepare.pack import Batch, pack_parts
 from .case_work import CaseWork, Extra
 from .measures import INTERVAL, MEASURES, interval_of
 from .observed import Observed
-from .work import Values
+from .work import Cancelled, Values, proceed_unless
 
 
 @dataclass
@@ -108,34 +108,9 @@ class ImpactWork(CaseWork):
         """Return a description of everything except the grid, in JSON types."""
         return {**super().describe(), **{name: getattr(self, name) for name in ("motion", "last", "state")}}
 
-    def run(
-        self,
-        start: int,
-        stop: int,
-        *,
-        threads: int = 1,
-        cancelled: Callable[[], bool] | None = None,
-    ) -> Values | None:
-        """Run a range of variants.
-
-        Parameters
-        ----------
-        start, stop
-            First variant and the one after the last, in C order of the grid.
-        threads
-            Number of threads.
-        cancelled
-            Function called about fifty times a second; the work stops if it returns True.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Each output, (stop - start, ...); None if the work was cancelled.
-        """
-
-        def proceed(*_: int) -> bool:
-            return not (cancelled and cancelled())
-
+    def run(self, start: int, stop: int, *, threads: int = 1, cancelled: Cancelled = None) -> Values | None:
+        """Run a range of variants; see `Work.run`."""
+        proceed = proceed_unless(cancelled)
         result = self._run_core(start, stop, threads, proceed)
         if result is None or not self.functions:
             return result

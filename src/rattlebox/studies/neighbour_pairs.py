@@ -8,7 +8,7 @@ and for Hamiltonian systems, Meccanica 15, 9-20 and 21-30, doi:10.1007/BF0212823
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
 
 from .gather_variants import gather_values, gather_variants
+from .work import Cancelled
 
 if TYPE_CHECKING:
     from rattlebox.studies.kinds.lyapunov import LyapunovWork
@@ -54,9 +55,7 @@ class Pairs:
         Function that returns True when the work must stop.
     """
 
-    def __init__(
-        self, task: LyapunovWork, start: int, stop: int, threads: int, cancelled: Callable[[], bool] | None
-    ) -> None:
+    def __init__(self, task: LyapunovWork, start: int, stop: int, threads: int, cancelled: Cancelled) -> None:
         self._task, self._threads, self._cancelled = task, threads, cancelled
         self._count = stop - start
         shape = task.grid.shape

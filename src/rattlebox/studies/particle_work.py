@@ -31,7 +31,7 @@ from rattlebox.results.schema import variables
 
 from .case_work import CaseWork, Extra
 from .measures import INTERVAL, MEASURES, MOST_BATCHES, interval_of
-from .work import Values
+from .work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
     import xarray
@@ -226,34 +226,9 @@ class ParticleWork(CaseWork):
         """Preferred number of variants in a block."""
         return 1
 
-    def run(
-        self,
-        start: int,
-        stop: int,
-        *,
-        threads: int = 1,
-        cancelled: Callable[[], bool] | None = None,
-    ) -> Values | None:
-        """Run a range of variants.
-
-        Parameters
-        ----------
-        start, stop
-            First variant and the one after the last, in C order of the grid.
-        threads
-            Number of threads of each run.
-        cancelled
-            Function called about fifty times a second; the work stops if it returns True.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Each output, (stop - start,); None if the work was cancelled.
-        """
-
-        def proceed(*_: int) -> bool:
-            return not (cancelled and cancelled())
-
+    def run(self, start: int, stop: int, *, threads: int = 1, cancelled: Cancelled = None) -> Values | None:
+        """Run a range of variants; see `Work.run`."""
+        proceed = proceed_unless(cancelled)
         rows = {}
         for index in range(start, stop):
             try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -23,7 +22,7 @@ from .case_work import Extra
 from .measures import INTERVAL
 from .orbits import period_of
 from .particle_work import ParticleWork
-from .work import Values
+from .work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -156,36 +155,10 @@ class ParticleContinuation(AlongLast, ParticleResponse):
         return {"study": "continuation", **super().describe()}
 
     def run(
-        self,
-        start: int,
-        stop: int,
-        *,
-        threads: int = 1,
-        cancelled: Callable[[], bool] | None = None,
-        before: Values | None = None,
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Cancelled = None, before: Values | None = None
     ) -> Values | None:
-        """Run variants of one chain.
-
-        Parameters
-        ----------
-        start, stop
-            First variant and the one after the last, in C order of the grid.
-        threads
-            Number of threads of each run.
-        cancelled
-            Function called about fifty times a second; the work stops if it returns True.
-        before
-            Outputs and state of the preceding variant; None at the beginning of the chain.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Each output, (stop - start,), and the state at the end of the last variant, repeated for all.
-        """
-
-        def proceed(*_: int) -> bool:
-            return not (cancelled and cancelled())
-
+        """Run a range of variants of one chain; see `ChainedWork.run`. The state is that at the end of the last one."""
+        proceed = proceed_unless(cancelled)
         end = None if before is None else EndState.from_arrays(before)
         rows = {}
         for index in self.order(start, stop):

@@ -21,6 +21,17 @@ Cancelled = Callable[[], bool] | None
 """Function that returns True when the work must stop; work calls it about fifty times a second."""
 
 
+def proceed_unless(cancelled: Cancelled) -> Callable[..., bool]:
+    """Return a progress function that stops a run when the work is cancelled.
+
+    Parameters
+    ----------
+    cancelled
+        Function that returns True when the work must stop.
+    """
+    return lambda *_: not (cancelled and cancelled())
+
+
 class VariantGrid(Protocol):
     """Variants along the dimensions of a study; see `rattlebox.studies.grid.Grid`."""
 
@@ -65,7 +76,22 @@ class Work(Protocol):
         """Return what is computed of each variant, in JSON types; a store refuses work that differs in it."""
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
-        """Return the outputs of variants start to stop, variants first; None soon after `cancelled` returns True."""
+        """Run a range of variants.
+
+        Parameters
+        ----------
+        start, stop
+            First variant and the one after the last, in C order of the grid.
+        threads
+            Number of threads.
+        cancelled
+            Function that returns True when the work must stop.
+
+        Returns
+        -------
+        dict of str to array, or None
+            Each output, (stop - start, ...); None if the work was cancelled.
+        """
 
 
 @runtime_checkable
@@ -89,7 +115,20 @@ class ChainedWork(Work, Protocol):
     def run(
         self, start: int, stop: int, *, threads: int, cancelled: Cancelled, before: Values | None = None
     ) -> Values | None:
-        """Return the outputs of variants start to stop; `before` holds those of the variant that precedes them."""
+        """Run a range of variants of one chain; see `Work.run`.
+
+        Parameters
+        ----------
+        start, stop, threads, cancelled
+            See `Work.run`.
+        before
+            Outputs and state of the preceding variant; None at the beginning of the chain.
+
+        Returns
+        -------
+        dict of str to array, or None
+            Outputs and states, (stop - start, ...); None if the work was cancelled.
+        """
 
 
 class Block(NamedTuple):

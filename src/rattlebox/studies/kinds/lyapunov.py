@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import KW_ONLY
 from dataclasses import dataclass as plain_dataclass
 from functools import cached_property
@@ -33,6 +33,7 @@ from rattlebox.studies.study import (
     Study,
     study_function,
 )
+from rattlebox.studies.work import Cancelled, Values
 
 if TYPE_CHECKING:
     import xarray
@@ -242,10 +243,8 @@ class LyapunovWork:
         """The variants as a sweep."""
         return ImpactWork(self.case, self.grid, skip=self.skip, cycles=self.cycles)
 
-    def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
-    ) -> Mapping[str, NDArray[Any]] | None:
-        """Run a range of variants; return None if the work was cancelled."""
+    def run(self, start: int, stop: int, *, threads: int = 1, cancelled: Cancelled = None) -> Values | None:
+        """Run a range of variants; see `Work.run`."""
         pairs = Pairs(self, start, stop, threads, cancelled)
         growth = pairs.growth()
         if growth is None:
