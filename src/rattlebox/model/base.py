@@ -8,7 +8,15 @@ from inspect import Signature
 from reprlib import Repr
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, WithJsonSchema, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetJsonSchemaHandler,
+    ValidationError,
+    WithJsonSchema,
+    model_serializer,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
@@ -212,3 +220,14 @@ def _toml_value(value: Any) -> str:
         )
         return "{ " + ", ".join(rows) + " }"
     return json.dumps(value)
+
+
+class FilePart(Part):
+    """Part with fields that may be read from a file; a case file then names the file in their place."""
+
+    @model_serializer(mode="wrap")
+    def _without_file_fields(self, handler: Any) -> Any:
+        data = handler(self)
+        for name in self.fields_from_file():
+            data.pop(name, None)
+        return data

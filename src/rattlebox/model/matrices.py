@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_serializer, model_validator
+from pydantic import Field, model_validator
 
 from rattlebox._util.exceptions import DataError
 from rattlebox.exchange.read.matrix_market import read_matrix
 from rattlebox.exchange.read.modes_in_file import listed
 
+from .base import FilePart
 from .elementwise import Vector
 from .errors import Hint, at, nearest
 from .files import absolute, check_finite, existing, read_arrays
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from typing import Self
 
 
-class Matrices(DampedModes):
+class Matrices(FilePart, DampedModes):
     """Structure defined by its matrices, M z'' + C z' + K z = F, and reduced to modes.
 
     C is any symmetric, positive semidefinite matrix. If it is not diagonal in the modes of the undamped structure, it
@@ -133,14 +134,6 @@ class Matrices(DampedModes):
     def _where(self, name: str) -> list[str]:
         """The field that gives a matrix, for messages."""
         return ["file"] if self.file else [name]
-
-    @model_serializer(mode="wrap")
-    def _file_stands_for_matrices(self, handler: Any) -> Any:
-        data = handler(self)
-        if self.file is not None:
-            for name in self.file_fields:
-                data.pop(name, None)
-        return data
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Matrices:

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import DataError
 
-from .base import Part
+from .base import FilePart, Part
 from .cavities import AnyCavity, Box, SphericalCavity
 from .elementwise import Vector
 from .errors import Hint, at, several
@@ -177,7 +177,7 @@ def _table(columns: int, unit: str, what: str) -> Any:
 Row = tuple[float, float, float]
 
 
-class Positions(Packing):
+class Positions(FilePart, Packing):
     """Particles at given positions, species after species.
 
     Parameters
@@ -230,14 +230,6 @@ class Positions(Packing):
     def where(self) -> str:
         """Field with the positions, for messages."""
         return "file" if self.file else "positions"
-
-    @model_serializer(mode="wrap")
-    def _without_file_fields(self, handler: Any) -> Any:
-        data = handler(self)
-        if self.file is not None:
-            for name in self.file_fields:
-                data.pop(name, None)
-        return data
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Positions:

@@ -14,6 +14,7 @@ from rattlebox._util.exceptions import DataError
 from rattlebox.exchange.read.ground_motion import read_ground_motion
 from rattlebox.exchange.read.universal import read_functions
 
+from .base import FilePart
 from .elementwise import Vector
 from .errors import Hint, at
 from .files import absolute, existing
@@ -125,7 +126,7 @@ def _column(value: Any) -> tuple[float, ...]:
     return tuple(array.tolist())
 
 
-class Record(Sampled):
+class Record(FilePart, Sampled):
     """A record with linear interpolation between its points; it must cover the whole run.
 
     Linear interpolation between samples at a rate R multiplies the amplitude at frequency f by
@@ -241,11 +242,10 @@ class Record(Sampled):
         return ("file",) if self.file else ("times",)
 
     @model_serializer(mode="wrap")
-    def _without_numbers_of_file(self, handler: Any) -> Any:
+    def _without_file_fields(self, handler: Any) -> Any:
         data = handler(self)
-        if self.file is not None:
-            for name in self.file_fields:
-                data.pop(name, None)
+        for name in self.fields_from_file():
+            data.pop(name, None)
         if self._unit_is_assumed:
             data.pop("unit", None)
         return data

@@ -16,7 +16,6 @@ from pydantic import (
     PrivateAttr,
     WithJsonSchema,
     field_validator,
-    model_serializer,
     model_validator,
 )
 
@@ -24,7 +23,7 @@ from rattlebox._util.narrow import present
 
 from .also_accepts import AlsoAccepts
 from .any_signal import AnySignal
-from .base import Part
+from .base import FilePart, Part
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of, several
 from .files import absolute
@@ -250,7 +249,7 @@ def _one_each(value: Any) -> Any:
     return value
 
 
-class Modal(StructurePart):
+class Modal(FilePart, StructurePart):
     """Structure defined by its modes, in the case or in a file.
 
     Parameters
@@ -400,13 +399,6 @@ class Modal(StructurePart):
     def fields_from_file(self) -> tuple[str, ...]:
         """Return the fields that were read from the file."""
         return self._read
-
-    @model_serializer(mode="wrap")
-    def _without_file_fields(self, handler: Any) -> Any:
-        data = handler(self)
-        for name in self._read:
-            data.pop(name, None)
-        return data
 
     @model_validator(mode="after")
     def _same_lengths(self) -> Self:

@@ -25,6 +25,11 @@ from .particles import Prepared, pack_particles, prepare
 IDLE = _core.Harmonic(amplitude=0.0, frequency=0.0, phase=0.0, start=0.0, stop=0.0)
 """Signal of an input, whose values come with the steps."""
 
+_EMPTY = np.zeros(0)
+_NO_MODES = dict.fromkeys(
+    ("mode_decay", "mode_stiffness", "mode_coupling", "mode_displacement", "mode_velocity"), _EMPTY
+)
+"""Fields of a problem of the core without a structure."""
 
 LIGHT, HEAVY = 0.03, 0.3
 """Mass in a damper over the effective mass of its structure. Up to `LIGHT`, the reaction of the structure within a step does
@@ -131,22 +136,17 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
 def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
     problem = pack(case)
     if alone:
-        nothing = np.zeros(0)
         (damper,) = problem.dampers
         problem = problem.replace(
-            mode_decay=nothing,
-            mode_stiffness=nothing,
-            mode_coupling=nothing,
-            mode_displacement=nothing,
-            mode_velocity=nothing,
+            **_NO_MODES,
             dampers=[
                 damper.replace(
-                    shape=nothing,
+                    shape=_EMPTY,
                     position=np.asarray(damper.position) - case.modes.q0 @ np.asarray(damper.shape),
                     velocity=np.asarray(damper.velocity) - velocity,
                 )
             ],
-            loads=[_core.Load(signal=IDLE, shape=nothing, base=True)],
+            loads=[_core.Load(signal=IDLE, shape=_EMPTY, base=True)],
         )
     points = () if alone else tuple(name for name in case.modes.shapes if name not in case.modes.spatial)
     rows = [list(map(float, case.modes.shape(name))) for name in points]
@@ -168,14 +168,9 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
     start = np.zeros(3)
     if alone:
         start[:] = velocity
-        nothing = np.zeros(0)
         (cavity,) = problem.cavities
         problem = problem.replace(
-            mode_decay=nothing,
-            mode_stiffness=nothing,
-            mode_coupling=nothing,
-            mode_displacement=nothing,
-            mode_velocity=nothing,
+            **_NO_MODES,
             cavities=[
                 cavity.replace(
                     shape=np.zeros((0, 3)),
@@ -183,7 +178,7 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
                     velocity=np.asarray(cavity.velocity) - start,
                 )
             ],
-            loads=[_core.Load(signal=IDLE, shape=nothing, base=True)] * 3,
+            loads=[_core.Load(signal=IDLE, shape=_EMPTY, base=True)] * 3,
             load_directions=np.eye(3),
         )
     points = () if alone else tuple(case.modes.shapes)
