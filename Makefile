@@ -71,13 +71,13 @@ sanitize-memory: setup
 
 sanitize-threads: export TSAN_OPTIONS := halt_on_error=1
 sanitize-threads: setup
-	$(call sanitized,tsan,-fsanitize=thread) tests/verification/dem/test_bits.py -k 'not another_process and not held_up'
+	$(call sanitized,tsan,-fsanitize=thread) tests/verification/dem/test_bits.py -k 'not another_process'
 
 # Branch coverage of each package by the fast tests; `make mutate` needs its data.
 coverage: export COVERAGE_FILE := build/coverage
 coverage: setup
 	mkdir -p build
-	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m 'not slow' --cov=rattlebox --cov-branch --cov-context=test --cov-report= \
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m 'not slow and not browser' --cov=rattlebox --cov-branch --cov-context=test --cov-report= \
 	    --junitxml=build/tests.xml
 	for package in $(filter-out __pycache__,$(notdir $(patsubst %/,%,$(wildcard src/rattlebox/*/)))); do \
 	    echo "$$package: $$($(BIN)/coverage report --format=total --include="src/rattlebox/$$package/*") %"; done
