@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import time
 import tracemalloc
@@ -52,29 +53,43 @@ def followed(wanted: dict[str, Any], message: str, way: int) -> dict[str, Any]:
     return {**wanted, **ways[way % len(ways)]}
 
 
-@pytest.mark.parametrize("way", [0, pytest.param(1, marks=pytest.mark.slow), pytest.param(2, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("gravity", [UP, (0, 0, 0)], ids=["gravity", "no gravity"])
-@pytest.mark.parametrize("packing", PACKINGS.values(), ids=PACKINGS)
-@pytest.mark.parametrize(
-    "particles",
-    [
-        {"diameter": "8 mm", "fill_ratio": 0.9},
-        {"diameter": "8 mm", "fill_ratio": 0.6},
-        {"diameter": "3 mm", "fill_ratio": 0.7},
-        {"diameter": "8 mm", "count": 10_000},
-        {
-            "distribution": rb.NormalSizes(mean="5 mm", deviation="1 mm", smallest="3 mm", largest="8 mm"),
-            "fill_ratio": 0.75,
-        },
-    ],
-    ids=["8 mm 0.9", "8 mm 0.6", "3 mm 0.7", "8 mm 10000", "mixed 0.75"],
-)
-@pytest.mark.parametrize("cavity", CAVITIES)
+PARTICLES: dict[str, dict[str, Any]] = {
+    "8 mm 0.9": {"diameter": "8 mm", "fill_ratio": 0.9},
+    "8 mm 0.6": {"diameter": "8 mm", "fill_ratio": 0.6},
+    "3 mm 0.7": {"diameter": "3 mm", "fill_ratio": 0.7},
+    "8 mm 10000": {"diameter": "8 mm", "count": 10_000},
+    "mixed 0.75": {
+        "distribution": rb.NormalSizes(mean="5 mm", deviation="1 mm", smallest="3 mm", largest="8 mm"),
+        "fill_ratio": 0.75,
+    },
+}
+GRAVITIES = {"gravity": UP, "no gravity": (0, 0, 0)}
+TAKE_SECONDS = {("8 mm 0.6", "compacted"), ("3 mm 0.7", "compacted"), ("3 mm 0.7", "settled")}
+"""Fills that take seconds, by particles and packing."""
+
+
+def fills() -> list[Any]:
+    """Return all fills and ways; those whose particles take seconds to place are slow, but for one cavity."""
+    result = []
+    for names in itertools.product(CAVITIES, PARTICLES, PACKINGS, GRAVITIES, range(3)):
+        cavity, particles, packing, gravity, way = names
+        seconds = (particles, packing) in TAKE_SECONDS and (cavity, gravity) != ("sphere", "gravity")
+        marks = [pytest.mark.slow] if seconds or way > 0 else []
+        result.append(pytest.param(*names, id="-".join(map(str, names)), marks=marks))
+    return result
+
+
+@pytest.mark.parametrize(("cavity", "particles", "packing", "gravity", "way"), fills())
 def test_hints_for_fills_lead_to_a_case_that_runs(
-    cavity: str, particles: dict[str, Any], packing: Any, gravity: Any, way: int
+    cavity: str, particles: str, packing: str, gravity: str, way: int
 ) -> None:
     """Whichever of the ways that a message names is taken, there are at most two messages before the cavity is filled."""
-    wanted = {"cavity": CAVITIES[cavity], "particles": particles, "packing": packing, "gravity": gravity}
+    wanted = {
+        "cavity": CAVITIES[cavity],
+        "particles": PARTICLES[particles],
+        "packing": PACKINGS[packing],
+        "gravity": GRAVITIES[gravity],
+    }
     for _ in range(3):
         try:
             attempt(wanted)
