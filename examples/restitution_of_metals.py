@@ -5,7 +5,7 @@ For users who have no measurement: restitution of pairs of balls from the yield 
 
 The law of Jackson and Green is compared with rebounds of an alumina ball from two steel blocks of known hardness at 10 m/s,
 0.63 at 300 HV and 0.86 at 700 HV (Journal of the Material Testing Research Association of Japan 69, no. 1, abstract).
-Where it has no value, impacts are faster than those that it was fitted to.
+The law has no value for impacts faster than those to which it was fitted.
 
 :doc:`/guide/restitution_and_friction` explains it.
 """

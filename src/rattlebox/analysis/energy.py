@@ -55,6 +55,15 @@ def specific_damping_capacity(dissipated: T, stored: T) -> T:
     ValueError
         If an energy is not finite, or the stored energy is not above zero.
 
+    Notes
+    -----
+    psi = D / U, with the energy D dissipated in a cycle and the largest stored energy U.
+
+    References
+    ----------
+    E. E. Ungar and E. M. Kerwin (1962), Loss factors of viscoelastic systems in terms of energy concepts, J. Acoust. Soc.
+    Am. 34, 954-957, doi:10.1121/1.1918227.
+
     Examples
     --------
     >>> specific_damping_capacity(0.2, 0.5)
@@ -86,6 +95,15 @@ def loss_factor(dissipated: T, stored: T) -> T:
     ------
     ValueError
         If an energy is not finite, or the stored energy is not above zero.
+
+    Notes
+    -----
+    eta = D / (2 pi U), with the energy D dissipated in a cycle and the largest stored energy U.
+
+    References
+    ----------
+    E. E. Ungar and E. M. Kerwin (1962), Loss factors of viscoelastic systems in terms of energy concepts, J. Acoust. Soc.
+    Am. 34, 954-957, doi:10.1121/1.1918227.
 
     Examples
     --------

@@ -321,6 +321,10 @@ def transmissibility(
     ------
     ValueError
         As `transfer_function`, and if the units of the two signals differ.
+
+    References
+    ----------
+    J. S. Bendat and A. G. Piersol (2010), Random Data, 4th ed., Wiley, chapter 6, doi:10.1002/9781118032428.
     """
     if units_of(base) != units_of(response):
         raise ValueError(

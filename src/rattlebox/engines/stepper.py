@@ -236,15 +236,37 @@ class Stepper:
         return self._motion(point, velocity=False)
 
     def velocity(self, point: str | None = None) -> Any:
-        """Return the velocity at the end of the last step [m/s], like `displacement`."""
+        """Return the velocity at the end of the last step.
+
+        Parameters
+        ----------
+        point
+            As for `displacement`.
+
+        Returns
+        -------
+        float or (3,) ndarray
+            Velocity [m/s], with the components of `displacement`.
+        """
         return self._motion(point, velocity=True)
 
     def save(self) -> bytes:
-        """Return the state. A stepper that restores it continues with the same bits."""
+        """Return the state. A stepper that restores it continues with the same bits.
+
+        Returns
+        -------
+        bytes
+            State, for `restore` of a stepper of the same case.
+        """
         return bytes(self._core.save())
 
     def restore(self, state: bytes) -> None:
         """Continue from a saved state of the same case.
+
+        Parameters
+        ----------
+        state
+            State from `save`.
 
         Raises
         ------

@@ -378,6 +378,11 @@ class Case(Part):
         path
             A TOML file. Files named in it are relative to its folder.
 
+        Returns
+        -------
+        Case
+            The case.
+
         Raises
         ------
         CaseError
@@ -408,6 +413,11 @@ class Case(Part):
         folder
             Folder of files named in it; default the current folder.
 
+        Returns
+        -------
+        Case
+            The case.
+
         Raises
         ------
         CaseError
@@ -427,6 +437,11 @@ class Case(Part):
             Name of the file in messages.
         folder
             Folder of files named in it; default the current folder.
+
+        Returns
+        -------
+        Case
+            The case.
 
         Raises
         ------
@@ -451,6 +466,11 @@ class Case(Part):
         ----------
         most
             Largest number of characters; the rest is left out.
+
+        Returns
+        -------
+        str
+            Text in TOML.
         """
         text = self._toml(str, _shortened)
         return text if len(text) <= most else f"{text[:most]}\n... {len(text) - most} more characters"
@@ -479,11 +499,30 @@ class Case(Part):
         return replaced(self, values)
 
     def to_toml(self) -> str:
-        """Return the text of a case file from which an equal case is read; it has the full paths of other files."""
+        """Return the text of a case file from which an equal case is read; it has the full paths of other files.
+
+        Returns
+        -------
+        str
+            Text in TOML.
+        """
         return self._toml(str)
 
     def to_file(self, path: str | os.PathLike[str]) -> None:
-        """Write a case file from which an equal case is read; it has the paths of other files relative to its folder."""
+        """Write a case file from which an equal case is read; it has the paths of other files relative to its folder.
+
+        Parameters
+        ----------
+        path
+            File to write; the new file replaces an existing one when it is complete.
+
+        Raises
+        ------
+        DataError
+            If the file cannot be written.
+        ResourceError
+            If no space is left on the disk.
+        """
         folder = Path(path).absolute().parent
         text = self._toml(lambda file: _relative(file, folder))
         with atomic_write(path, "make room and write the case again") as name:
@@ -497,7 +536,13 @@ class Case(Part):
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
-        """Return the JSON Schema of case files."""
+        """Return the JSON Schema of case files.
+
+        Returns
+        -------
+        dict
+            Schema in JSON types.
+        """
         schema = cls.model_json_schema(mode="validation")
         properties = schema["properties"]
         properties["materials"] = {

@@ -146,10 +146,15 @@ class Matrices(FilePart, DampedModes):
         **options
             points, influence, displacement, velocity.
 
+        Returns
+        -------
+        Matrices
+            The structure.
+
         Raises
         ------
         CaseError
-            When a matrix is missing or describes no structure, naming the file and what it holds.
+            If a matrix is missing or describes no structure; the message names the file and lists its content.
         """
         return cls(**{"file": os.fspath(path), **options})
 

@@ -26,6 +26,11 @@ class EventDriven(Part):
         Largest number of flights and contacts; a run that reaches it ends with the status "too_many_events".
     collocation
         Whether single Hertz contacts are solved by collocation; False integrates them step by step, which is slower.
+
+    References
+    ----------
+    E. Hairer, S. P. Nørsett and G. Wanner (1993), Solving Ordinary Differential Equations I, 2nd ed., Springer, section II.5
+    (DOP853), doi:10.1007/978-3-540-78862-1.
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
@@ -45,6 +50,11 @@ class TwoStep(Part):
     inner
         "rk4": one Runge-Kutta step; "dopri5": an adaptive solution within each step, with the default tolerances of MATLAB's
         ode45.
+
+    References
+    ----------
+    J. R. Dormand and P. J. Prince (1980), A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6, 19-26,
+    doi:10.1016/0771-050X(80)90013-3.
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
@@ -66,6 +76,15 @@ class Newton(Part):
         they do not rebound if they approach more slowly than this part of the largest speed of a ball in its cavity so far.
     max_events
         Largest number of flights and impacts.
+
+    Notes
+    -----
+    An impact exchanges momentum in no time: the bodies separate with v' = e(v) v, their approach speed v times the
+    restitution e.
+
+    References
+    ----------
+    B. Brogliato (2016), Nonsmooth Mechanics, 3rd ed., Springer, doi:10.1007/978-3-319-28664-8.
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
@@ -96,6 +115,11 @@ class Dem(Part):
         Interval between checkpoints in wall-clock time [s], if the run has a checkpoint file; default ten minutes.
     checkpoint_every
         Interval between checkpoints in simulated time [s], in place of `checkpoint`.
+
+    References
+    ----------
+    P. A. Cundall and O. D. L. Strack (1979), A discrete numerical model for granular assemblies, Géotechnique 29, 47-65,
+    doi:10.1680/geot.1979.29.1.47.
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)

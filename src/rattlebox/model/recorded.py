@@ -261,6 +261,11 @@ class Record(FilePart, Sampled):
         **options
             Other fields: columns, dt, unit, scale, point, direction.
 
+        Returns
+        -------
+        Record
+            The record.
+
         Raises
         ------
         CaseError

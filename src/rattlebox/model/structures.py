@@ -383,6 +383,11 @@ class Modal(FilePart, StructurePart):
         **options
             points, mode_count, damping_ratio, mass_unit, modal_masses, participation.
 
+        Returns
+        -------
+        Modal
+            The structure.
+
         Raises
         ------
         DataError

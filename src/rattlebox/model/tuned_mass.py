@@ -86,6 +86,11 @@ class TunedMass(Part):
         **options
             Other arguments of the class: point, direction, name.
 
+        Returns
+        -------
+        TunedMass
+            The tuned mass.
+
         Raises
         ------
         CaseError
@@ -113,6 +118,11 @@ class TunedMass(Part):
         ----------
         structure, mass, mode, **options
             As in `den_hartog`.
+
+        Returns
+        -------
+        TunedMass
+            The tuned mass.
 
         Raises
         ------

@@ -18,7 +18,7 @@ class Picture(NamedTuple):
     Attributes
     ----------
     caption
-        What the figure shows, in one or two sentences.
+        Content of the figure, in one or two sentences.
     draw
         Function that draws the figure.
     """
@@ -61,9 +61,9 @@ class Limit(NamedTuple):
     here
         Value in this result, with its unit.
     allowed
-        What is allowed, or "" where no limit exists.
+        Largest allowed value; "" where no limit exists.
     meaning
-        What the limit means for the reader, and how to check it.
+        Meaning of the limit for the reader, and how to check it.
     """
 
     name: str
@@ -84,7 +84,7 @@ class Call(NamedTuple):
     kind
         Kind of the study file with these arguments; "" if no study file can start it.
     remarks
-        What the call lacks, such as functions of the user.
+        Arguments that the call lacks, such as functions of the user.
     first
         Source of the first argument in place of the case, which follows as `case`, if there is one.
     """

@@ -45,7 +45,7 @@ class Recipe(NamedTuple):
     files
         Files that they use.
     remarks
-        What is missing.
+        Sentences about arguments that are missing.
     """
 
     commands: tuple[str, ...]

@@ -196,7 +196,7 @@ def _levels(level: Any) -> tuple[FloatArray, str]:
     levels, unit = _quantities(level, ("N", "m/s^2"), "level")
     if unit is None:
         raise Hint(
-            f"{level!r:.60} has no unit, which tells a force from an acceleration of the base",
+            f"{level!r:.60} has no unit, which distinguishes a force from an acceleration of the base",
             '"5 N" or "5 m/s^2"',
             ["level"],
         )
