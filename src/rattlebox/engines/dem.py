@@ -101,7 +101,7 @@ def continue_dem(
     """Run a case with particle dampers from the end of another run.
 
     Particles, contacts with their history and the structure continue, and so does a harmonic load if the run before lasted
-    whole cycles. Time, work and losses count from the begin.
+    whole cycles. Time, work and losses count from the beginning.
 
     Parameters
     ----------

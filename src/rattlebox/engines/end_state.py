@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rattlebox.core import _core
 
 _FROM_ZERO = ("time", "load_work", "base_work", "viscous_loss")
-"""Samples that the core counts from the begin of a continued run."""
+"""Samples that the core counts from the beginning of a continued run."""
 
 LOSSES = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 """Samples that the core continues to count."""

@@ -108,7 +108,7 @@ class SineSweep(Polyline):
     amplitude
         Peak value at all frequencies, with its unit.
     first_frequency, last_frequency
-        Frequencies at the begin and at the end [Hz]; a downward sweep has the lower one last.
+        Frequencies at the beginning and at the end [Hz]; a downward sweep has the lower one last.
     sweep_rate
         "2 oct/min", "1 oct/s", "1 dec/min" (logarithmic), "5 Hz/s" or "100 Hz/min" (linear).
     duration

@@ -213,7 +213,7 @@ def _spectrum(record: Sampled) -> tuple[float, Vector, Vector] | None:
     step = (times[-1] - times[0]) / (times.size - 1)
     if times.size < _FEWEST_POINTS or np.max(np.abs(np.diff(times) - step)) > 1e-3 * step:
         return None
-    # The Fourier series repeats the record. A step between its end and its begin would add power at all frequencies.
+    # The Fourier series repeats the record. A step between its end and its beginning would add power at all frequencies.
     values = values - np.linspace(values[0], values[-1], values.size)
     power = np.abs(np.fft.rfft(values[:-1]))[1:] ** 2
     if not power.any():

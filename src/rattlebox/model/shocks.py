@@ -58,7 +58,7 @@ class HalfSine(Shock):
 
 
 class Sawtooth(Shock, Polyline):
-    """A sawtooth pulse: a linear rise to the peak at the end, or a linear fall from the peak at the begin.
+    """A sawtooth pulse: a linear rise to the peak at the end, or a linear fall from the peak at the beginning.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Sawtooth(Shock, Polyline):
     duration, start
         Length D and begin of the pulse [s].
     peak
-        "terminal", at the end, or "initial", at the begin; the pulse has a jump there.
+        "terminal", at the end, or "initial", at the beginning; the pulse has a jump there.
 
     Notes
     -----

@@ -211,7 +211,7 @@ def film_particles(
                     writer.grab_frame()
                     report.advance(number + 1, len(snapshots))
             except BaseException:
-                _let_go(writer)
+                _close_quietly(writer)
                 raise
             writer.finish()
     return path
@@ -228,8 +228,8 @@ def _checked_pixels(pixels: tuple[int, int]) -> tuple[int, int]:
     return width, height
 
 
-def _let_go(writer: Any) -> None:
-    """End FFmpeg without a word: what it has to say is that it was stopped, or has no picture yet."""
+def _close_quietly(writer: Any) -> None:
+    """Close FFmpeg without its message that it was stopped or has no picture yet."""
     log = logging.getLogger("matplotlib.animation")
     before, log.disabled = log.disabled, True
     try:
@@ -258,7 +258,7 @@ def _end(run: Run) -> Frame:
 
 
 def _cavities(dampers: Sequence[Mapping[str, Any]]) -> list[tuple[str, Cavity]]:
-    """Names and forms of cavities, of a case whose other files need not be there."""
+    """Return names and shapes of the cavities of a case, whose other files may be missing."""
     form: TypeAdapter[Cavity] = TypeAdapter(AnyCavity)
     return [
         (damper.get("name") or f"damper {number}", form.validate_python(damper["cavity"]))
@@ -292,7 +292,7 @@ def outline(cavity: Cavity, view: Array = VIEW) -> list[Array]:
 
 
 def _arc(first: Array, second: Array) -> Array:
-    """A circle of radius 1 from one direction by another, (73, 3)."""
+    """Return a circle of radius 1 from one direction through another, (73, 3)."""
     angle = np.linspace(0, 2 * np.pi, 73)
     return np.asarray(np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second))
 
@@ -307,7 +307,7 @@ class _Panel:
 
 
 class _Scene:
-    """A figure that shows one frame of several."""
+    """Figure that shows one frame of several."""
 
     def __init__(
         self,
@@ -365,7 +365,7 @@ class _Scene:
         bar.outline.set_visible(False)
 
     def _extent(self, k: int) -> tuple[float, float, float, float]:
-        """Edges of a panel that holds the cavity wherever it goes."""
+        """Return the edges of a panel that contains the cavity at all times."""
         corners = np.concatenate(outline(self._cavities[k][1], self._view)) @ self._view.T
         moves = self._moves[:, k] @ self._view.T
         low, high = corners.min(axis=0) + moves.min(axis=0), corners.max(axis=0) + moves.max(axis=0)
@@ -382,7 +382,7 @@ class _Scene:
             (drawn,) = axes.plot([], [], color=INK, linewidth=pen(0.7), alpha=0.6 if behind else 1.0)
             drawn.set_zorder(1 if behind else 3)
             lines.append((drawn, line))
-        _ruler(axes, extent)
+        _draw_scale_bar(axes, extent)
         axes.set_xlim(extent[0], extent[1])
         axes.set_ylim(extent[2], extent[3])
         axes.set_aspect("equal")
@@ -417,8 +417,8 @@ class _Scene:
             panel.axes.set_title(f"{name}{frame.time / time.divisor:.4g} {time.unit}")
 
 
-def _ruler(axes: Axes, extent: tuple[float, float, float, float]) -> None:
-    """A length to measure by, at the lower left."""
+def _draw_scale_bar(axes: Axes, extent: tuple[float, float, float, float]) -> None:
+    """Draw a scale bar at the lower left."""
     left, right, bottom, top = extent
     about = 0.25 * (right - left)
     length = max(step for step in np.outer(10.0 ** np.arange(-7, 3), [1, 2, 5]).ravel() if step <= about)

@@ -56,7 +56,7 @@ class Described(NamedTuple):
 
 @dataclass(frozen=True)
 class Section:
-    """Everything that the page shows about one result.
+    """Content of the page about one result.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class Section:
 
 
 def section(result: Any, title: str, case: Case | None, question: str | None) -> Section:
-    """Return what the page shows about a result.
+    """Return the section of the page about a result.
 
     Parameters
     ----------

@@ -219,7 +219,7 @@ def extremes(study: xr.Dataset, name: str) -> str:
 
 
 def capitalised(text: str) -> str:
-    """Return a text with a capital letter at its begin.
+    """Return a text with a capital letter at its beginning.
 
     Parameters
     ----------

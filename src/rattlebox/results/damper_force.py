@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
-    """Return the force on each cavity, averaged between output times: what the momentum of its balls lacks.
+    """Return the force on each cavity, averaged between output times, from the balance of momentum of its balls.
 
     Samples of `cavity_force` miss most of the short contacts.
 
