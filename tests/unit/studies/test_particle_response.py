@@ -13,7 +13,7 @@ import rattlebox as rb
 from rattlebox.studies.runner import Stopped
 
 STRUCTURE = rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping="20 N s/m")
-QUICK: dict[str, Any] = {"cycles": (10, 12), "samples": 16, "progress": False}
+QUICK: dict[str, Any] = {"cycles": (5, 6), "samples": 16, "progress": False}
 
 
 def bits(data: xarray.Dataset) -> dict[str, bytes]:

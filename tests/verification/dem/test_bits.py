@@ -271,7 +271,7 @@ def test_contacts_of_a_stopped_run_are_refused() -> None:
         assert len(dem.contacts(0).first) > 50
 
 
-@pytest.mark.parametrize("threads", [1, 2, 3])
+@pytest.mark.parametrize("threads", [1, pytest.param(2, marks=pytest.mark.slow), 3])
 def test_a_run_that_is_stopped_again_and_again_gives_the_same_bits(threads: int) -> None:
     """After a stop at any step all workers are at the same step, and the run continues with the same bits."""
     case = shaken("Hertz", rate=500.0, duration=0.1)  # many times as long as it takes to be heard

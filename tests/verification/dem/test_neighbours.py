@@ -131,11 +131,20 @@ def of_sizes(cavity: Any, sizes: dict[str, int], speed: float) -> Any:
     return rb.Case(structure=rb.Fixed(), damper=damper, duration=0.01, output=rb.Output(rate=20e3))
 
 
-@pytest.mark.parametrize("cavity", ["box", "flat box", "sphere"])
+TWO_SIZES = {"1.5 mm": 1500, "14 mm": 4}
+FIVE_SIZES = {"1.2 mm": 800, "1.9 mm": 600, "3 mm": 60, "7 mm": 8, "13 mm": 2}
+
+
 @pytest.mark.parametrize(
-    "sizes",
-    [{"1.5 mm": 1500, "14 mm": 4}, {"1.2 mm": 800, "1.9 mm": 600, "3 mm": 60, "7 mm": 8, "13 mm": 2}],
-    ids=["two", "five"],
+    ("cavity", "sizes"),
+    [
+        pytest.param("flat box", TWO_SIZES, id="flat box-two"),
+        pytest.param("sphere", FIVE_SIZES, id="sphere-five"),
+        pytest.param("flat box", FIVE_SIZES, id="flat box-five", marks=pytest.mark.slow),
+        pytest.param("sphere", TWO_SIZES, id="sphere-two", marks=pytest.mark.slow),
+        pytest.param("box", TWO_SIZES, id="box-two", marks=pytest.mark.slow),
+        pytest.param("box", FIVE_SIZES, id="box-five", marks=pytest.mark.slow),
+    ],
 )
 def test_nothing_is_missed_among_a_few_large_and_many_small(cavity: str, sizes: dict[str, int]) -> None:
     """The same with fine cells for the small spheres and coarse levels for the large ones."""
