@@ -47,6 +47,8 @@ class LossTable:
         Harmonics 2 to N + 1 of the force over the acceleration of the cavity [kg].
     variation : (K, J) float or None
         Variation of the first harmonic of the force from cycle to cycle over the acceleration of the cavity [kg].
+    softening, softening_change : (K, J) float or None
+        Softening of each run, and its estimated effect on the loss in a cycle over m V^2; NaN where it is unknown.
     is_doubtful : (K, J) bool
         Whether the run exceeded a validity limit.
     axis : (3,) float or None
@@ -56,7 +58,7 @@ class LossTable:
     case
         Case of the map as TOML; "" if it is unknown.
     limits
-        Names of the validity limits.
+        Names of the validity limits that runs exceeded.
     """
 
     masses: MassTable
@@ -64,6 +66,8 @@ class LossTable:
     interval: FloatArray | None
     harmonics: FloatArray | None
     variation: FloatArray | None
+    softening: FloatArray | None
+    softening_change: FloatArray | None
     is_doubtful: NDArray[np.bool_]
     axis: FloatArray | None
     clearance: float
@@ -115,10 +119,12 @@ class LossTable:
             np.stack([data[name].values for name in intervals], axis=2) if set(intervals) <= set(data) else None,
             data.force_harmonics.values / acceleration[..., None] if "force_harmonics" in data else None,
             data.force_variation.values / acceleration if "force_variation" in data else None,
+            data.softening.values if "softening" in data else None,
+            data.softening_change.values if "softening_change" in data else None,
             data.warnings.values > 0 if "warnings" in data else np.zeros(mass.shape, bool),
             *_axis_and_clearance(text),
             text,
-            str(data.warnings.attrs.get("flag_meanings", "")) if "warnings" in data else "",
+            _exceeded(data.warnings) if "warnings" in data else "",
         )
 
     @cached_property
@@ -133,6 +139,15 @@ class LossTable:
             return []
         half = np.nan_to_num(self.interval)
         return [replace(self.masses, mass=self.masses.mass + step) for step in (half[..., 0], -1j * half[..., 1])]
+
+    @cached_property
+    def unsoftened(self) -> MassTable | None:
+        """Apparent masses whose m'' is smaller by the estimated effect of softening; None if it is unknown somewhere."""
+        if self.softening_change is None or not np.isfinite(self.mass):
+            return None
+        change = np.where(np.isnan(self.masses.mass), 0.0, self.softening_change)
+        shift = 1j * change * self.mass / np.pi
+        return replace(self.masses, mass=self.masses.mass + shift) if np.isfinite(change).all() else None
 
     def has_interval(self, frequency: FloatArray, amplitude: FloatArray) -> NDArray[np.bool_]:
         """Return whether the map has intervals around each amplitude; the arguments are those of `interpolate`."""
@@ -175,6 +190,12 @@ def _place(nodes: FloatArray, x: FloatArray) -> tuple[NDArray[np.intp], FloatArr
         return np.zeros(x.shape, np.intp), np.zeros(x.shape)
     k = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
     return k, np.clip((x - nodes[k]) / (nodes[k + 1] - nodes[k]), 0.0, 1.0)
+
+
+def _exceeded(warnings: xarray.DataArray) -> str:
+    """Return the names of the validity limits that runs of a map exceeded."""
+    names = str(warnings.attrs.get("flag_meanings", "")).split()
+    return " ".join(name for bit, name in enumerate(names) if (warnings.values.astype(int) & 1 << bit).any())
 
 
 def _open_file(path: Any) -> xarray.Dataset:

@@ -132,6 +132,8 @@ class MapResponse:
         Largest amplitude [m], its frequency [Hz], and its relative change with half of the map.
     peak_interval : (L,) float
         Half of the 95 % interval of the peak that follows from those of the map [m].
+    softening_error : (L,) float
+        Relative change of the peak without the estimated effect of softening.
     mode_frequency, damping_ratio, damping_ratio_interval : (m, K) float
         Natural frequency [Hz] and damping ratio of the modes, and half of the 95 % interval of the latter.
     """
@@ -147,6 +149,7 @@ class MapResponse:
     peak_frequency: FloatArray
     peak_error: FloatArray
     peak_interval: FloatArray
+    softening_error: FloatArray
     mode_frequency: FloatArray
     damping_ratio: FloatArray
     damping_ratio_interval: FloatArray
@@ -203,6 +206,9 @@ class MapResponse:
             own = np.nan_to_num(frequency, nan=masses.frequency[0]).ravel()
             has = table.has_interval(own, np.broadcast_to(masses.amplitude, ratio.shape).ravel())
             ratio_interval = np.where(has.reshape(ratio.shape), np.hypot(*ratios), np.nan)
+        softening_error = np.full(peak.shape, np.nan)
+        if table.unsoftened is not None:
+            softening_error = np.abs(changed(table.unsoftened)[1] / peak - 1)
         known = np.moveaxis(each, 1, 0)
         doubtful = table.interpolate(table.is_doubtful.astype(float), transfer.frequency, known)
         near = np.asarray(((doubtful > 0) & np.isfinite(known)).any(axis=(-2, -1)))
@@ -228,6 +234,7 @@ class MapResponse:
             where,
             np.where(np.isfinite(peak), np.max(peak_errors, axis=0), np.nan),
             peak_interval,
+            softening_error,
             frequency,
             ratio,
             ratio_interval,

@@ -40,6 +40,14 @@ _OUTPUTS: dict[str, tuple[Extra, str, dict[str, Any]]] = {
         {"units": "N", "long_name": "variation of the first harmonic of the force from cycle to cycle"},
     ),
 }
+_SOFTENING: dict[str, tuple[Extra, str, dict[str, Any]]] = {
+    "softening": ((), "float64", {"units": "1", "long_name": "largest softening of a damper"}),
+    "softening_change": (
+        (),
+        "float64",
+        {"units": "1", "long_name": "estimated change of the loss in a cycle by softening, over m V^2"},
+    ),
+}
 _COORDS = {
     "harmonic": (
         "harmonic",
@@ -85,7 +93,7 @@ class ParticleMapWork(ParticleWork):
     @cached_property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, Any]]]:
         """Further dimensions, number type and attributes of each output."""
-        return {**super().outputs, **_OUTPUTS}
+        return {**super().outputs, **_OUTPUTS, **_SOFTENING}
 
     def coords(self) -> dict[str, Any]:
         """Return the coordinates of the further dimensions."""
@@ -101,4 +109,7 @@ class ParticleMapWork(ParticleWork):
             frequency = float(self.grid.values_at(index)[FREQUENCY])
             harmonics, variation = force_harmonics(arrays.time, momentum, frequency, HIGHEST)
             row |= {"force_harmonics": harmonics, "force_variation": variation}
+            row |= {name: run.diagnostics[name] for name in _SOFTENING}
+            if row["softening"] > 1 and not all(np.any(damper.gravity) for damper in case.particle_dampers):
+                row["softening_change"] = np.nan  # the estimate is for beds under their weight
         return row

@@ -31,6 +31,9 @@ _AT_MODES = 201
 _BETWEEN = 200
 """Default numbers of frequencies around each natural frequency, and over the range of the map."""
 
+_SOFTENED = 0.05
+"""Relative change of a peak by softening above which there is a warning."""
+
 
 def response_from_map(
     structure: StructurePart,
@@ -90,7 +93,9 @@ def response_from_map(
         amplitude, and `peak_frequency`; NaN if the response may be larger where the map does not cover it. Over `at`,
         `number`, `mode` and `map_amplitude`, that of the damper with the largest motion: `damping_ratio` and
         `mode_frequency`. `peak_interval` and `damping_ratio_interval` are half of the 95 % intervals that follow from those
-        of the map, from the scatter of its cycles; NaN where it has none. Over `at` and `number`: `mass_ratio` of the
+        of the map, from the scatter of its cycles; NaN where it has none. `peak_softening_error` is the relative change of
+        the peak without the estimated effect of the softening of the map; NaN where that is unknown. The attribute
+        `softening` has the values of the softening. Over `at` and `number`: `mass_ratio` of the
         particles to the effective mass of the structure for an impact at their point, 1 / sum of squared mode shapes. What
         the map does not cover is NaN. The attribute `warnings` counts it.
 
@@ -147,12 +152,14 @@ def response_from_map(
         "load": load.name,
         "map_case": table.case,
     }
+    if table.softening is not None and np.isfinite(table.softening).any():
+        about["softening"] = " to ".join(dict.fromkeys(f"{end(table.softening):.3g}" for end in (np.nanmin, np.nanmax)))
     axes = {
         "at": ("at", [" + ".join(place) for place in places], {"long_name": "points of the dampers"}),
         "number": ("number", numbers, _described("1", "number of dampers at each point")),
         "level": ("level", levels, _described(unit, f"amplitude of the {load.name}")),
     }
-    result = _dataset(parts, transfer, table.masses, axes, about)
+    result = _dataset(parts, transfer, table, axes, about)
     _check_coverage(result, table)
     return result
 
@@ -332,11 +339,12 @@ def _described(units: str, long_name: str) -> dict[str, str]:
 
 
 def _dataset(
-    parts: list[list[MapResponse]], transfer: Transfer, masses: MassTable, axes: dict[str, Any], about: dict[str, str]
+    parts: list[list[MapResponse]], transfer: Transfer, table: LossTable, axes: dict[str, Any], about: dict[str, str]
 ) -> xarray.Dataset:
     """Return the responses of all arrangements and numbers of dampers."""
     import xarray
 
+    masses = table.masses
     count = max(part.amplitude.shape[-1] for row in parts for part in row)
     over = ("at", "number", "level", "frequency")
 
@@ -356,6 +364,9 @@ def _dataset(
     }
     motion, peak, modal = (*over, "solution"), over[:3], (*over[:2], "mode", "map_amplitude")
     half = "with half of the map"
+    notes = [*_warnings(flags), *_softening_warnings(gather("softening_error"), about)]
+    if table.interval is not None:
+        notes += _interval_warnings(gather("peak"), gather("peak_interval"))
     return xarray.Dataset(
         {
             "amplitude": (motion, np.abs(amplitude), _described("m", f"amplitude, {about['point']}")),
@@ -399,6 +410,11 @@ def _dataset(
                 gather("peak_interval"),
                 _described("m", "half of the 95 % interval of the peak, from the map"),
             ),
+            "peak_softening_error": (
+                peak,
+                gather("softening_error"),
+                _described("1", "relative change of the peak without the estimated effect of softening"),
+            ),
             "mass_ratio": (
                 over[:2],
                 gather("mass_ratio"),
@@ -427,7 +443,7 @@ def _dataset(
                 _described(map_unit, "amplitude of the damper with the largest motion"),
             ),
         },
-        about | {"warnings": "\n".join(_warnings(flags))},
+        about | {"warnings": "\n".join(notes)},
     )
 
 
@@ -443,6 +459,30 @@ def _warnings(flags: NDArray[np.int16]) -> list[str]:
         if count := int(np.count_nonzero(flags & (1 << bit))):
             found.append(f"{count} of {flags.size} points: {text}")
     return found
+
+
+def _interval_warnings(peak: FloatArray, half: FloatArray) -> list[str]:
+    """Return a warning if peaks have no interval, although the map has some."""
+    lacking = np.isfinite(peak) & np.isnan(half)
+    if not lacking.any():
+        return []
+    return [
+        f"{np.count_nonzero(lacking)} of {peak.size} peaks have no 95 % interval: runs of the map are not steady there, or "
+        "have too few cycles"
+    ]
+
+
+def _softening_warnings(error: FloatArray, about: dict[str, str]) -> list[str]:
+    """Return a warning if the softening of the map may change peaks, or its effect is unknown."""
+    softening = about.get("softening", "1")
+    if softening == "1":
+        return []
+    if not np.isfinite(error).any():
+        return [f"the effect of softening {softening} in the map is unknown: compare its runs with rb.check_softening"]
+    largest = float(np.nanmax(error))
+    if largest < _SOFTENED:
+        return []
+    return [f"softening {softening} in the map may change a peak by {100 * largest:.2g} %, see peak_softening_error"]
 
 
 def _check_coverage(result: xarray.Dataset, table: LossTable) -> None:

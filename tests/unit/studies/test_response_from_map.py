@@ -319,7 +319,7 @@ def test_runs_that_failed_or_exceeded_a_limit() -> None:
     assert ((found.flags.values[:, 0] & 1 << names.index("not_found") > 0) == inside).all()
     limits = xarray.zeros_like(status).assign_attrs(flag_meanings="few_steps deep_overlap soft_bed enduring_contacts")
     limits[3] = 4
-    with pytest.warns(UserWarning, match="softening"):
+    with pytest.warns(UserWarning, match=r"a validity limit \(soft_bed\).* a smaller softening"):
         warned = rb.response_from_map(OSCILLATOR, loss_map.assign(warnings=limits), level=levels, frequencies=[20.0])
     bit = 1 << warned.flags.attrs["flag_meanings"].split().index("map_warning")
     near = (size >= amplitudes[2]) & (size <= amplitudes[4])
@@ -376,6 +376,7 @@ def test_parts_of_a_map_without_intervals_give_none() -> None:
     found = rb.response_from_map(OSCILLATOR, loss_map, level=levels, frequencies=np.linspace(29, 33, 81).tolist())
     known = np.isfinite(found.peak_interval)
     assert known.any() and (known == (found.peak < found.map_amplitude[9])).all()
+    assert f"{int((~known).sum())} of 13 peaks have no 95 % interval" in found.attrs["warnings"]
     has_ratio = np.isfinite(found.damping_ratio_interval.values[0, 0, 0])
     assert has_ratio.tolist() == [True] * 10 + [False] * 11
 
@@ -390,6 +391,35 @@ def test_a_dozen_arrangements_take_less_than_a_second() -> None:
         rb.response_from_map(chain(), loss_map, level="10 N", frequencies=np.linspace(10, 55, 400).tolist(), **options)
         took.append(time.process_time() - before)
     assert min(took) < 1  # 0.2 s on an idle machine
+
+
+def softened(change: float, softening: float = 20.0) -> xarray.Dataset:
+    """Return a map of 200 g of particles of constant apparent mass, with softening that may change their loss."""
+    loss_map = made_map(lambda *_: 0.1 - 0.05j)
+    parts = {"softening": softening, "softening_change": change}
+    values = {name: xarray.full_like(loss_map.effective_mass, value) for name, value in parts.items()}
+    return loss_map.assign(values | {"particle_mass": 0.2})
+
+
+def test_the_effect_of_softening_is_carried_into_the_response() -> None:
+    """The peak changes by the estimated loss of softening; a large or unknown effect is among the warnings."""
+    options: dict[str, Any] = {"level": "5 N", "frequencies": np.linspace(29, 33, 81).tolist()}
+    peak = [
+        rb.response_from_map(OSCILLATOR, made_map(lambda *_, m=m: 0.1 - 1j * m), **options).peak for m in (0.05, 0.04)
+    ]
+    found = rb.response_from_map(OSCILLATOR, softened(0.01 * np.pi / 0.2), **options)
+    assert found.peak_softening_error.item() == pytest.approx((peak[1] / peak[0]).item() - 1, rel=1e-9)
+    assert found.attrs["softening"] == "20"
+    assert found.attrs["warnings"].endswith(
+        "softening 20 in the map may change a peak by 14 %, see peak_softening_error"
+    )
+    small = rb.response_from_map(OSCILLATOR, softened(0.001), **options)
+    assert "softening" not in small.attrs["warnings"]
+    unknown = rb.response_from_map(OSCILLATOR, softened(np.nan), **options)
+    assert np.isnan(unknown.peak_softening_error).all()
+    assert "the effect of softening 20 in the map is unknown" in unknown.attrs["warnings"]
+    none = rb.response_from_map(OSCILLATOR, softened(0.0, 1.0), **options)
+    assert none.attrs["softening"] == "1" and "softening" not in none.attrs["warnings"]
 
 
 def test_no_root_between_the_amplitudes_of_the_table_is_missed() -> None:

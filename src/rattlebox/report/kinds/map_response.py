@@ -135,6 +135,17 @@ def _limits(response: xr.Dataset) -> Iterator[Limit]:
         "Largest relative change of the peak with half of the map: compute more of it.",
     )
 
+    if "softening" in response.attrs:
+        change = response.peak_softening_error.values
+        worst = amount(float(np.nanmax(change)), "%", 2) if np.isfinite(change).any() else "unknown"
+        yield Limit(
+            "softening of the map",
+            worst,
+            "",
+            f"Largest relative change of the peak without the estimated effect of softening {response.attrs['softening']}. "
+            "If it is unknown or large, compare with rb.check_softening.",
+        )
+
 
 def _call(response: xr.Dataset) -> None:
     """Return None: a response needs the dataset of its map, which the page does not hold."""

@@ -64,8 +64,10 @@ class LossMap(Study):
         Over amplitude and frequency: `loss_factor` m''/|m'|, `effective_mass` m' [kg], `damping_mass` m'' [kg],
         `reduced_loss` (loss per cycle over m V^2), `loss_per_cycle` [J], `impacts_per_cycle` (impact dampers only),
         `force_harmonics` [N] (over `harmonic`, too: amplitudes of the force on the particles), `force_variation` [N] (of
-        the complex amplitude of the first harmonic from cycle to cycle, root mean square), `status` and, for particle
-        dampers, `warnings`; `particle_mass` m [kg]. See `rb.sweep` for intervals and attributes.
+        the complex amplitude of the first harmonic from cycle to cycle, root mean square), `status`; `particle_mass` m [kg].
+        For particle dampers also `warnings`, the `softening` of each run, and `softening_change`, its estimated effect on
+        the reduced loss, NaN where it cannot be estimated (without gravity; see `rb.check_softening`). See `rb.sweep` for
+        intervals and attributes.
 
     Raises
     ------
