@@ -22,6 +22,7 @@ from support.waiting import wait_for
 import rattlebox as rb
 from rattlebox.studies.runner import Stopped, run_work
 from rattlebox.studies.stored import open_study, progress_of
+from rattlebox.studies.trial_store import count_trials
 
 SCRIPT = Path(logistic_study.__file__)
 
@@ -181,3 +182,35 @@ def test_a_killed_sweep_with_particles_continues_within_it(tmp_path: Path) -> No
     resumed = names["response"](store, lambda n, _: steps.append(n))
     assert steps[0] == done
     assert bits(resumed) == bits(names["response"](None, False))
+
+
+DESIGN = """
+import runpy, sys
+
+bar = runpy.run_path(sys.argv[1])
+
+
+def search(**options):
+    return bar["search"](bar["bar"](softening=300), ["50 um", "80 um"], 2, [0.2, 0.4], [1, 2, 3], workers=2, **options)
+"""
+
+
+def test_a_killed_design_with_particles_resumes_with_its_trials(tmp_path: Path) -> None:
+    """A search for fill and number of cavities killed twice computes the missing trials only, with the same results."""
+    script, store = str(Path(__file__).parents[3] / "examples" / "boring_bar_design.py"), tmp_path / "design.zarr"
+    command = [sys.executable, "-c", DESIGN + "\nsearch(store=sys.argv[2], progress=False)", script, str(store)]
+    done = 0
+    for _ in range(2):
+        with subprocess.Popen(command) as process:
+            wait_for(lambda least=done + 1: (count_trials(store) or 0) >= least)
+            process.kill()
+        before, done = done, count_trials(store) or 0
+        assert before < done < 6
+    names: dict[str, Any] = {}
+    exec(DESIGN.replace("sys.argv[1]", repr(script)), names)
+    steps: list[int] = []
+    resumed = names["search"](store=store, progress=lambda n, _: steps.append(n))
+    assert steps[0] == done and resumed.sizes["trial"] == 6
+    whole = names["search"](progress=False)
+    for name in ("added_mass", "damping_ratio", "damping_ratio_interval", "front"):
+        assert resumed[name].values.tobytes() == whole[name].values.tobytes(), name
