@@ -47,7 +47,7 @@ if __name__ == "__main__":
     best = response.sel(at="tip", number=4, level=1.0)
     case = rb.Case(
         structure=beam,
-        dampers=[ball.model_copy(update={"point": "tip"})] * 4,
+        damper=ball.model_copy(update={"point": "tip", "number": 4}),
         load=rb.Harmonic(amplitude="1 N", frequency="80 Hz", point="tip"),
         duration="1 s",
         method=rb.Newton(),

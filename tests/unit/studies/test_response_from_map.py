@@ -226,6 +226,43 @@ def test_peak_of_a_ball_is_that_of_the_simulation(ball_map: Any, tmp_path: Path)
     assert (share > 0.95).all()
 
 
+def test_peak_of_balls_on_three_modes_is_that_of_the_simulation() -> None:
+    """One ball, and two of them by `number`, at the top of a chain: its second mode has the peak of the stepped sine."""
+    structure, level = chain(), "8 N"
+    case = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="30 Hz")),
+        damper=ball(velocity="0.1 m/s"),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+    own = np.sqrt(structure.modes().stiffness[1]) / (2 * np.pi)
+    hertz = (own * np.linspace(0.985, 1.015, 9)).tolist()
+    loss_map = rb.loss_map(
+        case, rb.geomspace("0.2 mm", "8 mm", 31), [0.95 * own, 1.05 * own], cycles=(100, 60), progress=False
+    )
+    found = rb.response_from_map(
+        structure, loss_map, level=level, number=[1, 2], at="top", load_point="top", frequencies=hertz
+    )
+    for number in (1, 2):
+        full = rb.frequency_response(
+            rb.Case(
+                structure=structure,
+                damper=ball(velocity="0.1 m/s", number=number, point="top"),
+                load=rb.Harmonic(amplitude=level, frequency=own, point="top"),
+                duration="1 s",
+                method=rb.Newton(),
+            ),
+            hertz,
+            direction="up",
+            cycles=(150, 60),
+            progress=False,
+        )
+        one = found.sel(number=number).isel(at=0, level=0)
+        assert one.peak.item() == pytest.approx(full.amplitude.max().item(), rel=0.05)
+        assert not one.flags.sel(frequency=one.peak_frequency.item()).any()
+        assert one.peak.item() < 0.9 * one.bare_amplitude.max().item()
+
+
 def test_outside_of_the_map_is_flagged_and_not_a_number(ball_map: Any, tmp_path: Path) -> None:
     """Smaller and larger motions and other frequencies are NaN with a flag, counted, and a peak among them is unknown."""
     without_case = ball_map.drop_attrs(deep=False)
