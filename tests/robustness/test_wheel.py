@@ -36,7 +36,7 @@ def test_wheel_has_a_label_and_all_files(wheel: Path) -> None:
         names = content.namelist()
         sizes = sum(entry.file_size for entry in content.infolist())
     for part in ("_core_v1.", "_core_v3.", "_core_v4.", "_core_processor.", "rattlebox_component.so"):
-        assert sum(name.startswith(f"rattlebox/core/{part}") for name in names) == 1
+        assert sum(name.startswith(f"rattlebox/core/{part}") and name.endswith(".so") for name in names) == 1
     assert {"rattlebox/include/rattlebox.h", "rattlebox/include/dem/simulation.hpp", "rattlebox/py.typed"} <= set(names)
     assert "rattlebox/core/rattlebox_component.aarch64-linux.so" in names
     assert {name.split("/")[0].split("-")[0] for name in names} == {"rattlebox"}
