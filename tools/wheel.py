@@ -104,6 +104,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("python", nargs="*")
     options = parser.parse_args(arguments)
     pythons = options.python or [name for name in ("python3.11", "python3.12") if works(name)]
+    if missing := [name for name in pythons if not works(name)]:
+        parser.error(f"{', '.join(missing)} cannot be started; give the path of each interpreter")
     (ROOT / "dist").mkdir(exist_ok=True)
     for name in pythons:
         out = BUILD / answer(name, "'cp%d%d' % sys.version_info[:2]")
