@@ -35,6 +35,9 @@ HEDGED = 0.1
 SIZE = 2.0
 """Factor within which the size of an effect is right qualitatively."""
 
+RESAMPLES = 400
+"""Number of bootstrap samples behind an interval."""
+
 Range = tuple[float, float]
 Place = tuple[str, str]
 """Model, and order of the cases or ""."""
@@ -57,7 +60,7 @@ def exact(value: Any) -> Estimate:
     return Estimate(*[float(value)] * 5)
 
 
-def estimate(function: Callable[..., NDArray[np.float64]], *samples: Any, resamples: int = 400) -> Estimate:
+def estimate(function: Callable[..., NDArray[np.float64]], *samples: Any) -> Estimate:
     """Estimate a function of medians with its 95 % interval from bootstrap samples.
 
     Parameters
@@ -66,12 +69,10 @@ def estimate(function: Callable[..., NDArray[np.float64]], *samples: Any, resamp
         Function of one median per sample, which must accept arrays.
     *samples
         Results of the members of independent ensembles, (n,) each.
-    resamples
-        Number of bootstrap samples.
     """
     random = np.random.default_rng(1)
     arrays = [np.asarray(sample, dtype=float) for sample in samples]
-    drawn = [np.median(random.choice(array, (resamples, array.size)), axis=1) for array in arrays]
+    drawn = [np.median(random.choice(array, (RESAMPLES, array.size)), axis=1) for array in arrays]
     medians = [float(np.median(array)) for array in arrays]
     with np.errstate(invalid="ignore", divide="ignore"):
         low, high = np.quantile(function(*drawn), (0.025, 0.975))

@@ -14,7 +14,7 @@ from typing import NamedTuple, get_args
 
 from markupsafe import Markup, escape
 
-from .judge import RULE, Claim, Verdict, fit
+from .judge import RESAMPLES, RULE, Claim, Verdict, fit
 from .matrix import MARKS, best_fit, place, row
 from .models import COLOURS, SHORT
 from .reading import EQUATIONS, INTERPRETATIONS, MISPRINTS, PROVENANCE
@@ -156,6 +156,7 @@ def render(
         marks=MARKS,
         models=[(SHORT[model], colour) for model, colour in COLOURS.items()],
         rule=RULE,
+        resamples=RESAMPLES,
         provenance=PROVENANCE,
         equations=EQUATIONS,
         interpretations=INTERPRETATIONS,
@@ -190,11 +191,12 @@ _TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\blog10\b", "log<sub>10</sub>"),
     (r"(?<![\w)])-(?=[\dα-ω])", "−"),
     (r"\*\*(.+?)\*\*", r"<strong>\1</strong>"),
+    (r"(?<=\d) (?=(?:%|[kmµ]?[NsmJ]|m/s|rad/s)(?!\w))", "\N{NO-BREAK SPACE}"),
 )
 
 
 def typeset(text: str) -> Markup:
-    """Return text as HTML with typeset powers of ten, subscripts, exponents and minus signs.
+    """Return text as HTML with typeset powers of ten, subscripts, exponents, minus signs and units that stay with a number.
 
     Parameters
     ----------

@@ -282,6 +282,7 @@ def test_page_escapes_and_counts():
         ("N/m^1.5, s^-1, sqrt(K/M)", "N/m<sup>1.5</sup>, s<sup>−1</sup>, √(K/M)"),
         ("degree 9 in log10 e", "degree 9 in log<sub>10</sub> e"),
         ("-3 to 5, (-ζω), x-1, figure_02, e = 0.99", "−3 to 5, (−ζω), x-1, figure_02, e = 0.99"),
+        ("7.6 % after 5 kN in 3 motions", "7.6\N{NO-BREAK SPACE}% after 5\N{NO-BREAK SPACE}kN in 3 motions"),
     ],
 )
 def test_numbers_and_symbols_are_typeset(text, html):
