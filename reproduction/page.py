@@ -148,6 +148,8 @@ def render(
         ),
         first=[figure for figure in figures if figure.name == FIRST],
         rows=rows,
+        unprinted=sum(each.verdict == "reproduced" and not each.claim.printed for each, _ in rows),
+        reproduced=counts["reproduced"],
         counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict) if counts[verdict]],
         lessons=[lesson for figure in figures for lesson in figure.lessons],
         film="".join(figure.film for figure in figures),

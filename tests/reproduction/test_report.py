@@ -267,6 +267,7 @@ def test_page_escapes_and_counts():
     )
     counts = re.findall(r"<b>(\d+)</b><span aria-hidden=\"true\">.</span> ([a-z ]+)<", text)
     assert counts == [("2", "reproduced"), ("1", "not reproducible")]
+    assert "For 2 of the 2 reproduced claims the paper prints no number" in text
     assert "4.2 s" in text and "3 cores, 2 processes" in text
     assert "Not computed" not in text
     missing = render([made], table="t.md", missing=["7d, 7e", "A1"], cores=1, workers=1, seconds=1)
