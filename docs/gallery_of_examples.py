@@ -17,6 +17,7 @@ LONG = {
     "boring_bar_checks": "2 minutes",
     "boring_bar_design": "2 minutes",
     "panel_variants": "1 minute",
+    "stiffer_and_finer": "3 minutes",
     "two_case_files": "30 seconds",
 }
 """Scripts that `make gallery` does not run, and processor time that they take."""

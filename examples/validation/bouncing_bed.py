@@ -25,19 +25,23 @@ import rattlebox as rb
 GRAVITY, FREQUENCY = 9.81, "60 Hz"
 
 
-def masses(accelerations, restitution=0.7, friction=0.3, cycles=(30, 40)):
-    """Return effective mass and damping mass over the mass of the beads, at acceleration amplitudes in units of gravity."""
+def masses(accelerations, restitution=0.7, friction=0.3, cycles=(30, 40), seed=1, softening=300, fraction=0.025):
+    """Return effective mass and damping mass over the mass of the beads, at acceleration amplitudes in units of gravity.
+
+    The step is a fraction of the shortest contact.
+    """
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="3 mm", count=120),
         cavity=rb.Box(size=("15 mm", "15 mm", "400 mm")),  # so high that no bead reaches the lid
         contact=rb.Tsuji(restitution=restitution),
         friction=friction,
         direction="z",
-        packing=rb.Settled(seed=1),
-        softening=300,
+        packing=rb.Settled(seed=seed),
+        softening=softening,
     )
     motion = rb.Harmonic(amplitude="20 m/s^2", frequency=FREQUENCY, unit="m/s^2")
-    case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s")
+    method = rb.Dem(fraction=fraction)
+    case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s", method=method)
     levels = [GRAVITY * float(level) for level in accelerations]
     result = rb.loss_map(case, levels, [FREQUENCY], cycles=cycles, progress=False)
     parts = (result.effective_mass.values[:, 0], result.damping_mass.values[:, 0])

@@ -31,8 +31,8 @@ def clearance(density=0.6):
     return LENGTH - COUNT * np.pi / 6 * DIAMETER**3 / (density * SIDE**2)
 
 
-def losses(amplitudes, restitution=0.75, friction=0.1, cycles=(6, 10)):
-    """Return the loss per cycle over m A^2 w^2 at amplitudes [m]."""
+def losses(amplitudes, restitution=0.75, friction=0.1, cycles=(6, 10), seed=1, softening=1000, fraction=0.025):
+    """Return the loss per cycle over m A^2 w^2 at amplitudes [m]; the step is a fraction of the shortest contact."""
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter=DIAMETER, count=COUNT),
         cavity=rb.Box(size=(LENGTH, SIDE, SIDE)),
@@ -40,11 +40,12 @@ def losses(amplitudes, restitution=0.75, friction=0.1, cycles=(6, 10)):
         friction=friction,
         gravity=(0, 0, 0),
         direction="x",
-        packing=rb.Lattice(noise=1.0, seed=1),
-        softening=1000,
+        packing=rb.Lattice(noise=1.0, seed=seed),
+        softening=softening,
     )
     motion = rb.Harmonic(amplitude="10 mm", frequency=f"{FREQUENCY} Hz")
-    case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s")
+    method = rb.Dem(fraction=fraction)
+    case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s", method=method)
     result = rb.loss_map(case, list(amplitudes), [f"{FREQUENCY} Hz"], cycles=cycles, progress=False)
     return result.reduced_loss.values[:, 0]
 

@@ -29,8 +29,8 @@ SIZE = (4 * DIAMETER, 5.2 * DIAMETER, 5.2 * DIAMETER)
 FREQUENCY, START = 1.23, 10.7 * DIAMETER  # of the box with its spring [Hz], released at [m]
 
 
-def case(friction=0.1, seed=1, softening=1000, duration=12.0):
-    """Return the case with a coefficient of friction and a random packing."""
+def case(friction=0.1, seed=1, softening=1000, duration=12.0, fraction=0.025):
+    """Return the case of a coefficient of friction and a random packing; the step is a fraction of the shortest contact."""
     beads = rb.Particles(material="steel", diameter=DIAMETER, count=COUNT)
     mass = MASS_RATIO * COUNT * np.pi / 6 * DIAMETER**3 * rb.materials()["steel"].density
     return rb.Case(
@@ -47,6 +47,7 @@ def case(friction=0.1, seed=1, softening=1000, duration=12.0):
             softening=softening,
         ),
         duration=duration,
+        method=rb.Dem(fraction=fraction),
         output=rb.Output(rate="500 Hz"),
     )
 

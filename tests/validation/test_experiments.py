@@ -1,7 +1,6 @@
 """Published experiments: short versions of the scripts in examples/validation, and the scripts themselves (slow)."""
 
 import runpy
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +36,17 @@ def test_best_amplitude_is_the_clearance_over_pi():
     assert loss[0] < 0.5 * loss[1]
 
 
+def test_variants_repeat_the_number_with_other_contacts_and_steps(monkeypatch):
+    """Means and intervals of the variants are those of the values; softening and step reach the function."""
+    monkeypatch.syspath_prepend(SCRIPTS)
+    names = script("stiffer_and_finer")
+    means, errors = names["variants"](lambda seed, softening, fraction: seed + softening * fraction, 1000, 4)
+    assert means == pytest.approx([2.5 + 25, 2.5 + 12.5, 2.5 + 12.5])
+    assert errors == pytest.approx(np.std([1, 2, 3, 4], ddof=1))
+    fine = names["microgravity_decay"].case(fraction=0.0125, softening=500)
+    assert (fine.method.fraction, fine.dampers[0].softening) == (0.0125, 500)
+
+
 def test_data_set_can_be_read_and_has_units():
     """The published numbers have units, and those of the page."""
     losses = xr.open_dataset(DATA / "losses.nc").load()
@@ -48,9 +58,11 @@ def test_data_set_can_be_read_and_has_units():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["microgravity_decay", "collect_and_collide", "bouncing_bed", "six_per_cent"])
+@pytest.mark.parametrize(
+    "name", ["microgravity_decay", "collect_and_collide", "bouncing_bed", "six_per_cent", "stiffer_and_finer"]
+)
 def test_script(name, tmp_path, monkeypatch):
     """Each script asserts the numbers of the page."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "argv", [name])
+    monkeypatch.syspath_prepend(SCRIPTS)
     runpy.run_path(str(SCRIPTS / f"{name}.py"), run_name="__main__")
