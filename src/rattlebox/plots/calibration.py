@@ -115,7 +115,7 @@ def _draw_data(axes: Axes, result: xr.Dataset) -> None:
     else:
         label(axes, "x", "Number of the datum", "")
     axes.margins(x=0.08)
-    label(axes, "y", "Over the measured", "")
+    label(axes, "y", "Value over measured value", "")
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
 
 

@@ -60,7 +60,7 @@ def read_column(place: str | tuple[str | int, ...], values: Any, units: tuple[st
         values, shared = values
     if hasattr(values, "tolist") and not hasattr(values, "magnitude"):  # arrays of NumPy and xarray
         values = np.asarray(values).tolist()
-    single = isinstance(values, (str, int, float)) or not hasattr(values, "__iter__") or not np.ndim(values)
+    single = not _is_list(values)
     items = [values] if single else list(values)
     if not items:
         raise Hint("there is no value", "a list of measured values", place)
@@ -79,7 +79,12 @@ def read_column(place: str | tuple[str | int, ...], values: Any, units: tuple[st
 
 def _has_shared_unit(values: Any) -> bool:
     """Return whether values are a pair of numbers and their unit."""
-    return isinstance(values, tuple) and len(values) == 2 and isinstance(values[1], str) and np.ndim(values[0]) > 0
+    return isinstance(values, tuple) and len(values) == 2 and isinstance(values[1], str) and _is_list(values[0])
+
+
+def _is_list(values: Any) -> bool:
+    """Return whether values are several; quantities and arrays without dimensions are single."""
+    return not isinstance(values, str) and hasattr(values, "__iter__") and getattr(values, "ndim", 1) > 0
 
 
 def _pure(value: Any) -> float:
@@ -233,7 +238,7 @@ class BounceTimes:
 
     def __post_init__(self) -> None:
         given = self.times
-        is_nested = isinstance(given, (list, tuple)) and not _has_shared_unit(given) and all(map(_is_row, given))
+        is_nested = isinstance(given, (list, tuple)) and not _has_shared_unit(given) and all(map(_is_list, given))
         rows = list(given) if is_nested and given else [given]
         columns = []
         for number, row in enumerate(rows):
@@ -244,10 +249,6 @@ class BounceTimes:
         error = None if self.error is None else _uncertainty(self.error, "s")
         unit = None if any(column.unit is None for column in columns) else "s"
         _replace(self, times=tuple(column.values for column in columns), error=error, unit=unit)
-
-
-def _is_row(values: Any) -> bool:
-    return np.ndim(values) > 0 or _has_shared_unit(values)
 
 
 def _check_contacts(times: FloatArray) -> None:
@@ -483,7 +484,7 @@ def source_of(data: Contacts | Losses) -> str:
     if isinstance(data, Drops):
         parts = {"height": (data.height, "m"), "rebound": (data.rebound, "m"), "ball": data.ball, "error": data.error}
     elif isinstance(data, BounceTimes):
-        parts = {"times": [times.tolist() for times in data.times], "error": data.error}
+        parts = {"times": [(times.tolist(), "s") for times in data.times], "error": data.error}
     elif isinstance(data, RingDown):
         parts = {
             "amplitude": (data.amplitude, data.unit or "m"),

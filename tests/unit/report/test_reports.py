@@ -118,6 +118,24 @@ def result_of(name: str) -> Any:
         "sensitivity": lambda: rb.sensitivity(
             case(duration="0.1 s"), {"damper.gap": ("0.5 mm", "2 mm"), "load.amplitude": (5.0, 10.0)}, "rms", 8, **quiet
         ),
+        "drops": lambda: rb.calibrate(
+            [
+                rb.Drops(height="300 mm", rebound=["192 mm", "189 mm", "194 mm"], error="1 mm"),
+                rb.BounceTimes([0.1, 0.5, 0.82, 1.07]),
+            ]
+        ),
+        "calibration": lambda: rb.calibrate(
+            [
+                rb.ShakerLoss(["0.5 mm", "0.8 mm", "1.5 mm"], "40 Hz", reduced_loss=[2.5, 1.5, 0.86], error="3 %"),
+                rb.RingDown(["0.7 mm", "1.1 mm"], ["1.4 %", "1.1 %"], error="3 %"),
+            ],
+            free(),
+            {"damper.contact.restitution": (0.4, 0.9), "structure.damping_ratio": (0.0, 0.02)},
+            known={"structure.damping_ratio": (0.01, 0.001)},
+            runs=26,
+            checks=2,
+            **quiet,
+        ),
         "several": lambda: {"the run": result_of("run"), "the curve": result_of("damping_curve")},
     }[name]()
 
@@ -138,6 +156,8 @@ KINDS = {
     "damping curves": "of an oscillator of 3 kg at 50 Hz with a and b",
     "design": "Which damper gap give the smallest RMS displacement",
     "sensitivity": "Which of damper.gap and load.amplitude cause the variation of rms",
+    "drops": "Which restitution do 5 measured impacts show?",
+    "calibration": "Which contact restitution and structure damping ratio of a steel ball",
     "several": "Which damping ratio has mode 1 (50 Hz)",
 }
 
@@ -148,7 +168,8 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
     path = rb.write_report(result_of(name), tmp_path / "report.html")
     page = Page(path)
     assert KINDS[name] in page.text
-    for heading in ("Case", "Inputs", "Results", "Warnings and notes", "Limits of the method", "How to reproduce"):
+    headings = ("Case", "Inputs", "Results", "Warnings and notes", "Limits of the method", "How to reproduce")
+    for heading in headings[2 * (name == "drops") :]:  # a drop test has no case
         assert heading in page.text
     assert not {"script", "link", "iframe", "object"} & set(page.tags)
     assert all(link.startswith("data:") for link in page.links)
@@ -160,7 +181,10 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
     assert path.stat().st_size < 2_000_000
 
 
-@pytest.mark.parametrize("name", ["run", "comparison", "sweep", "frequency_response", "loss_map", "damping_curve"])
+@pytest.mark.parametrize(
+    "name",
+    ["run", "comparison", "sweep", "frequency_response", "loss_map", "damping_curve", "drops", "calibration"],
+)
 def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The case file and the script of a report, in an empty folder, compute an equal result."""
     result = result_of(name)
@@ -191,6 +215,10 @@ def test_numbers_of_the_answer_are_those_of_the_result(tmp_path: Path) -> None:
     best = int(np.argmax(curve.damping_ratio.values))
     lower, ratio, upper = (f"{100 * float(curve[name][best]):.3g}" for name in ("lower", "damping_ratio", "upper"))
     assert f"{ratio} % (95 % interval {lower} to {upper} %)" in text
+    found = result_of("calibration")
+    lower, value, upper = (f"{float(found[name][0]):.3g}" for name in ("lower", "value", "upper"))
+    text = Page(rb.write_report(found, tmp_path / "c.html")).text
+    assert f"The contact restitution is {value} (95 % interval {lower} to {upper})" in text
     run = result_of("run")
     peak = float(np.abs(run.motion.displacement).max())
     assert (

@@ -32,6 +32,8 @@ def test_restitution_of_bounces_is_the_ratio_of_flights() -> None:
     for begin in (-3.0, 0.0, 12.0):
         result = rb.calibrate(rb.BounceTimes(bounces(0.73, begin=begin)))
         assert result.value.item() == pytest.approx(0.73, rel=1e-9)
+    drops = [(1e3 * bounces(0.73, count=count), "ms") for count in (5, 7)]
+    assert rb.calibrate(rb.BounceTimes(drops)).value.item() == pytest.approx(0.73, rel=1e-9)
     assert result.approach_speed[0].item() == pytest.approx(0.4 * 9.80665 / 2)
 
 
@@ -157,6 +159,7 @@ def test_values_without_units_are_noted() -> None:
         (lambda: rb.BounceTimes([0.1]), "1 contact cannot"),
         (lambda: rb.BounceTimes("0.1 s"), "1 contact cannot"),
         (lambda: rb.BounceTimes([0.1, 0.9, 0.5, 1.1]), "is not after"),
+        (lambda: rb.BounceTimes([[0.1, 0.5, 0.8], 0.9]), r"times\[0\]"),
         (lambda: rb.BounceTimes([[0.1, 0.5, 0.8], [0.1, float("nan"), 0.8]]), r"times\[1\]\[1\]"),
         (lambda: rb.Drops("300 mm", ["310 mm", "190 mm"]), r"rebound\[0\]\n.*above the height of the drop"),
         (lambda: rb.Drops(["300 mm", "-200 mm"], ["190 mm"] * 2), r"height\[1\]\n.*greater than zero"),
