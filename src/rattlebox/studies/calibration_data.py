@@ -363,7 +363,7 @@ class RingDown:
         ValueError
             If times are not evenly spaced, or the record is too short or too coarse.
         """
-        levels = read_column("amplitudes", amplitudes, ("m",)).values
+        levels, unit = read_column("amplitudes", amplitudes, ("m",))
         found = damping_over_amplitude(time, np.asarray(displacement, float), levels).damping_ratio.values
         missing = np.flatnonzero(~np.isfinite(found))
         if missing.size:
@@ -373,7 +373,7 @@ class RingDown:
                     "last three cycles",
                     "other amplitudes; rattlebox.analysis.decay_envelope shows those of the record",
                 )
-        return cls(levels, found, error, mode, point)
+        return cls(levels if unit is None else (levels, unit), found, error, mode, point)
 
 
 @dataclass(frozen=True, eq=False)

@@ -218,7 +218,7 @@ class Trend(NamedTuple):
             speeds = f"{amount(self.slowest, 'm/s', 2)} to {amount(self.fastest, 'm/s', 2)}"
             yield (
                 f"warning: the restitution depends on the approach speed, about as v^{self.exponent:.2g} "
-                f"(± {self.half:.1g}) from {speeds}, so that one value is wrong at other speeds; try: a law over the speed, "
+                f"(± {self.half:.2g}) from {speeds}, so that one value is wrong at other speeds; try: a law over the speed, "
                 "such as rb.Tabulated of `restitution` over `approach_speed`, or drops from heights near your speed"
             )
 

@@ -98,6 +98,7 @@ def test_a_recorded_decay_has_the_damping_ratios_of_its_run() -> None:
     time, motion = run.arrays.time, run.arrays.displacement[:, 0]
     data = rb.RingDown.from_signal(time, motion, ["0.2 mm", "0.5 mm"], error="1 %")
     assert data.damping_ratio == pytest.approx([0.02, 0.02], rel=2e-3)
+    assert data.unit == "m"
     with pytest.raises(rb.CaseError, match=r"amplitudes\[2\]\n.*does not pass"):
         rb.RingDown.from_signal(time, motion, ["0.2 mm", "0.5 mm", "1.6 mm"], error="1 %")
 

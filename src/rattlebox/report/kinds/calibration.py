@@ -127,7 +127,7 @@ def _limits(result: xr.Dataset) -> Iterator[Limit]:
         if np.isfinite(exponent):
             yield Limit(
                 "speed",
-                f"as v^{exponent:.2g} ± {float(result.exponent_interval):.1g}",
+                f"as v^{exponent:.2g} ± {float(result.exponent_interval):.2g}",
                 "",
                 "Exponent of a power law through the impacts. One value holds for its speeds only if this is 0.",
             )
