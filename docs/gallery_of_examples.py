@@ -16,6 +16,7 @@ FIGURES, SCRIPTS, PAGES = DOCS / "_static", DOCS / "_build" / "examples", DOCS /
 LONG = {
     "boring_bar_checks": "2 minutes",
     "boring_bar_design": "2 minutes",
+    "calibration": "1 minute",
     "panel_variants": "1 minute",
     "stiffer_and_finer": "3 minutes",
     "two_case_files": "30 seconds",

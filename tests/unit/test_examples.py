@@ -244,6 +244,7 @@ def test_tutorials_print_the_numbers_of_their_page(
     [
         "boring_bar_checks",
         "building_variants",
+        "calibration",
         "fills",
         "lecture",
         "panel_variants",

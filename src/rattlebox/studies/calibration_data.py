@@ -387,7 +387,8 @@ class ShakerLoss:
     frequency : (M,)
         Frequency of each point, or a single one.
     loss_factor, reduced_loss, loss_per_cycle : (M,)
-        One of them: m''/|m'|; loss per cycle over m V^2; or loss per cycle [J]. See `rb.loss_map`.
+        One of them: m''/|m'|; loss per cycle over m V^2; or loss per cycle [J]. See `rb.loss_map`. The first one is
+        unbounded where the effective mass passes through zero; prefer one of the others.
     error
         Standard uncertainty of a loss: "5 %" of each value, or numbers.
     cycles
@@ -412,7 +413,7 @@ class ShakerLoss:
 
     def __post_init__(self) -> None:
         given = {name: getattr(self, name) for name in _LOSSES}
-        one_of("loss_factor = [0.6, 0.4]", **given)
+        one_of("reduced_loss = [0.6, 0.4]", **given)
         if self.error is None:
             raise Hint("the standard uncertainty of the loss is needed", 'error = "5 %"', ["error"])
         (measure,) = (name for name, value in given.items() if value is not None)

@@ -113,6 +113,38 @@ def test_accelerations_are_those_at_the_frequency_of_the_mode() -> None:
     np.testing.assert_allclose(one.simulated, other.simulated, rtol=1e-6)
 
 
+def test_a_box_of_particles_is_calibrated_by_both_measurements(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each sample has a packing of its own; ring-down and shaker of one box together bound its restitution."""
+    monkeypatch.setattr("rattlebox.studies.budget.TIMED", 0.02)
+    monkeypatch.setattr("rattlebox.studies.calibration_by_simulation._ROUNDS", 1)
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="4 mm", count=6),
+        cavity=rb.Box(size=("10 mm",) * 3),
+        contact=rb.Tsuji(restitution=0.7),
+        friction=0.3,
+        softening=1e5,
+        direction="z",
+        packing=rb.Lattice(seed=900),
+    )
+    box = case(structure=rb.SDOF(mass="25 g", frequency="80 Hz", damping_ratio=0.005), damper=damper, duration="0.3 s")
+    shaker = rb.Shaker(motion=rb.Harmonic(amplitude="10 g_0", frequency="80 Hz", direction="z"))
+    levels = ["10 g_0", "30 g_0"]
+    measured = rb.loss_map(
+        box.model_copy(update={"structure": shaker}), levels, ["80 Hz"], cycles=(3, 6), progress=False
+    ).reduced_loss.values.ravel()
+    losses = rb.ShakerLoss(levels, "80 Hz", reduced_loss=measured, error="5 %", cycles=(3, 6))
+    ratios = rb.damping_curve(box, ["0.3 mm", "0.6 mm"], packings=1, progress=False).damping_ratio.values
+    decay = rb.RingDown(["0.3 mm", "0.6 mm"], ratios, error="5 %")
+    fitted = box.model_copy(update={"dampers": (damper.model_copy(update={"packing": rb.Lattice(seed=1)}),)})
+    result = rb.calibrate([losses, decay], fitted, RANGES, runs=24, checks=2, budget="1 h", progress=True)
+    assert "at most 26 samples" in capsys.readouterr().err
+    assert np.isfinite(result.simulated).mean() > 0.9
+    assert (result.check_deviation > 0).all()
+    assert result.lower.item() < 0.7 < result.upper.item()
+
+
 # ---- statements
 
 
