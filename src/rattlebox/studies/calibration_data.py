@@ -387,8 +387,8 @@ class ShakerLoss:
     frequency : (M,)
         Frequency of each point, or a single one.
     loss_factor, reduced_loss, loss_per_cycle : (M,)
-        One of them: m''/|m'|; loss per cycle over m V^2; or loss per cycle [J]. See `rb.loss_map`. The first one is
-        unbounded where the effective mass passes through zero; prefer one of the others.
+        One of them: damping mass over the size of the effective mass; loss per cycle over m V^2; or loss per cycle [J].
+        See `rb.loss_map`. The first one is unbounded where the effective mass passes through zero; prefer the others.
     error
         Standard uncertainty of a loss: "5 %" of each value, or numbers.
     cycles
