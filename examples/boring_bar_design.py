@@ -107,7 +107,7 @@ def main(budget="20 min", report=True):
     place = from_map.argmax(["fill", "number"])
     print(
         f"map: {NUMBERS[int(place['number'])]} cavities, {100 * FILLS[int(place['fill'])]:.0f} % full: "
-        f"{100 * float(from_map[place]):.2f} %"
+        f"{100 * float(from_map[place]):.2f} %, in {seconds:.1f} s"
     )
     assert (FILLS[int(place["fill"])], NUMBERS[int(place["number"])]) == (fill, number)
     simulated = designs.damping_ratio.values.reshape(len(FILLS), len(NUMBERS))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox.model.errors import at
-from rattlebox.model.packing import Bed, Crowd
+from rattlebox.model.packing import Bed, Compacted, Crowd
 from rattlebox.prepare.settle import SPREAD, settle
 
 if TYPE_CHECKING:
@@ -26,6 +26,8 @@ MARGIN = 2.0
 """Distance of the bulk from the walls and from the surface of the bed, over the largest diameter."""
 TOLERANCE = 0.05
 """Difference of the volume of a bed over that of the cavity from the stated one, above which a run notes it."""
+SLIPPERY = 0.2
+"""Coefficient of friction below which a full cavity does not stay full: its bed sinks under gravity."""
 BULK_POINTS = 2**19
 
 
@@ -99,7 +101,7 @@ def _levels(cavity: AnyCavity, up: tuple[float, float, float]) -> tuple[Array, A
 
 
 def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
-    """Yield a note if a bed does not fill its cavity as `bed_fill` states.
+    """Yield a note if a bed does not fill its cavity as `bed_fill` states, and a warning if a full one has sunk.
 
     Parameters
     ----------
@@ -111,7 +113,14 @@ def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
         Volume of its bed over that of the cavity.
     """
     asked = damper.particles[0].bed_fill
-    if asked is not None and isinstance(damper.packing, Bed) and abs(fill - asked) > TOLERANCE:
+    friction = damper.largest_friction
+    if asked == 1 and isinstance(damper.packing, Compacted) and damper.up is not None and friction < SLIPPERY:
+        yield (
+            f"warning: the bed of {name} fills {100 * fill:.3g} % of the cavity, not 100 %: with a coefficient of friction "
+            f"of {friction:g}, below {SLIPPERY:g}, it sinks under gravity and leaves a gap at the top, in which particles "
+            "move; try: count with more of them, or the friction of the real particles"
+        )
+    elif asked is not None and isinstance(damper.packing, Bed) and abs(fill - asked) > TOLERANCE:
         count = damper.contents.radius.size
         more = "more" if fill < asked else "fewer"
         yield (

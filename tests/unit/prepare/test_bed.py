@@ -263,6 +263,14 @@ def test_a_bed_of_another_volume_is_noted() -> None:
     smooth = damper(bed_fill=1, friction=None)
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=smooth, duration="0.1 ms"))
     assert any("not 100 %" in note and "more of them" in note for note in run.notes)
+    slippery = damper(bed_fill=1, friction=0.1)
+    run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=slippery, duration="0.1 ms"))
+    assert any(
+        note.startswith("warning: the bed of damper fills 9") and "a gap at the top" in note for note in run.notes
+    )
+    for changes in ({"friction": 0.2}, {"friction": 0.1, "gravity": (0, 0, 0)}):
+        held = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper(bed_fill=1, **changes), duration="0.1 ms"))
+        assert not any("gap at the top" in note for note in held.notes)
     usual = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper(), duration="0.1 ms"))
     assert not any("fills" in note for note in usual.notes)
 
