@@ -145,6 +145,35 @@ def test_a_box_of_particles_is_calibrated_by_both_measurements(
     assert result.lower.item() < 0.7 < result.upper.item()
 
 
+@pytest.mark.slow
+def test_friction_of_a_filled_box_follows_from_its_ring_down_and_a_drop_test() -> None:
+    """48 balls in the box of the example, with another packing: the intervals hold both values, and bound the friction."""
+
+    def box(restitution: float, friction: float, seed: int) -> rb.Case:
+        damper = rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="5 mm", count=48),
+            cavity=rb.Box(size=("30 mm", "20 mm", "20 mm")),
+            contact=rb.Tsuji(restitution=restitution),
+            friction=friction,
+            softening=1000,
+            packing=rb.Settled(seed=seed),
+        )
+        return case(
+            structure=rb.SDOF(mass="1 kg", frequency="30 Hz", damping_ratio=0.002), damper=damper, duration="1.6 s"
+        )
+
+    levels = [1e-3 * level for level in (1.66, 2.21, 3.04, 4.14)]
+    ratios = rb.damping_curve(box(0.9, 0.25, 5000), levels, packings=1, progress=False).damping_ratio.values
+    noisy = ratios * (1 + 0.02 * np.random.default_rng(1).standard_normal(4))
+    decay = rb.RingDown((levels, "m"), noisy, error="2 %")
+    ranges = {E: (0.8, 0.97), "damper.friction": (0.0, 0.6)}
+    options: dict[str, Any] = {"known": {E: (0.901, 0.004)}, "runs": 30, "checks": 4, "budget": "1 h", "workers": 1}
+    result = rb.calibrate(decay, box(0.8, 0.3, 0), ranges, **options)
+    assert (result.lower.values < [0.9, 0.25]).all() and (result.upper.values > [0.9, 0.25]).all()
+    assert result.is_lower_bounded.all() and result.is_upper_bounded.all()
+    assert result.attrs["p_value"] > 0.01
+
+
 # ---- statements
 
 
