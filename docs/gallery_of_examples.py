@@ -17,6 +17,7 @@ LONG = {
     "boring_bar_checks": "2 minutes",
     "boring_bar_design": "2 minutes",
     "calibration": "1 minute",
+    "map_against_simulation": "3 minutes",
     "panel_variants": "1 minute",
     "stiffer_and_finer": "3 minutes",
     "two_case_files": "30 seconds",

@@ -247,6 +247,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "calibration",
         "fills",
         "lecture",
+        "map_against_simulation",
         "panel_variants",
         "particles_or_tuned_mass",
         "regimes",

@@ -128,6 +128,8 @@ class MapResponse:
         Bits of `FLAGS`.
     interpolation_error : (L, F) float
         Relative change of the largest amplitude with half of the map.
+    amplitude_interval : (L, F) float
+        Half of the 95 % interval of the largest amplitude that follows from those of the map [m].
     peak, peak_frequency, peak_error : (L,) float
         Largest amplitude [m], its frequency [Hz], and its relative change with half of the map.
     peak_interval : (L,) float
@@ -145,6 +147,7 @@ class MapResponse:
     is_unstable: NDArray[np.bool_]
     flags: NDArray[np.int16]
     interpolation_error: FloatArray
+    amplitude_interval: FloatArray
     peak: FloatArray
     peak_frequency: FloatArray
     peak_error: FloatArray
@@ -194,14 +197,16 @@ class MapResponse:
                 errors.append(np.abs(size / np.abs(amplitude[..., 0]) - 1))
             peak_errors.append(np.abs(highest / peak - 1))
         peak_interval, ratio_interval = np.full(peak.shape, np.nan), np.full(ratio.shape, np.nan)
+        amplitude_interval = np.full(solutions.is_below.shape, np.nan)
         if table.shifted:
-            peaks = [changed(other)[1] - peak for other in table.shifted]
-            at_peak = (transfer.frequency == where[:, None]).argmax(
-                axis=1
-            )  # peaks that are NaN have no interval anyway
+            sizes, peaks = zip(*map(changed, table.shifted), strict=True)
             moved = np.moveaxis(each, 1, 0)
-            has = np.asarray((table.has_interval(transfer.frequency, moved) | np.isnan(moved)).all(axis=(-2, -1)))
-            peak_interval = np.where(has[at_peak, np.arange(peak.size)], np.hypot(*peaks), np.nan)
+            has = np.asarray((table.has_interval(transfer.frequency, moved) | np.isnan(moved)).all(axis=(-2, -1))).T
+            largest = np.abs(amplitude[..., 0])
+            amplitude_interval = np.where(has, np.hypot(*(size - largest for size in sizes)), np.nan)
+            at_peak = (transfer.frequency == where[:, None]).argmax(axis=1)  # 0 where the peak is NaN
+            half = np.hypot(*(highest - peak for highest in peaks))
+            peak_interval = np.where(has[np.arange(peak.size), at_peak], half, np.nan)
             ratios = [damping_of_modes(other, *modes)[1] - ratio for other in table.shifted]
             own = np.nan_to_num(frequency, nan=masses.frequency[0]).ravel()
             has = table.has_interval(own, np.broadcast_to(masses.amplitude, ratio.shape).ravel())
@@ -230,6 +235,7 @@ class MapResponse:
             solutions.is_unstable,
             np.asarray(sum(masks[name].astype(np.int16) << bit for bit, name in enumerate(FLAGS)), np.int16),
             np.where(np.isfinite(amplitude[..., 0]), np.max(errors, axis=0), np.nan),
+            amplitude_interval,
             peak,
             where,
             np.where(np.isfinite(peak), np.max(peak_errors, axis=0), np.nan),

@@ -92,12 +92,12 @@ def response_from_map(
         level and frequency: `bare_amplitude` without dampers. Over `at`, `number` and `level`: `peak` [m], the largest
         amplitude, and `peak_frequency`; NaN if the response may be larger where the map does not cover it. Over `at`,
         `number`, `mode` and `map_amplitude`, that of the damper with the largest motion: `damping_ratio` and
-        `mode_frequency`. `peak_interval` and `damping_ratio_interval` are half of the 95 % intervals that follow from those
-        of the map, from the scatter of its cycles; NaN where it has none. `peak_softening_error` is the relative change of
-        the peak without the estimated effect of the softening of the map; NaN where that is unknown. The attribute
-        `softening` has the values of the softening. Over `at` and `number`: `mass_ratio` of the
-        particles to the effective mass of the structure for an impact at their point, 1 / sum of squared mode shapes. What
-        the map does not cover is NaN. The attribute `warnings` counts it.
+        `mode_frequency`. `amplitude_interval` (of the largest motion), `peak_interval` and `damping_ratio_interval` are half
+        of the 95 % intervals that follow from those of the map, from the scatter of its cycles; NaN where it has none.
+        `peak_softening_error` is the relative change of the peak without the estimated effect of the softening of the map;
+        NaN where that is unknown. The attribute `softening` has the values of the softening. Over `at` and `number`:
+        `mass_ratio` of the particles to the effective mass of the structure for an impact at their point, 1 / sum of
+        squared mode shapes. What the map does not cover is NaN. The attribute `warnings` counts it.
 
     Raises
     ------
@@ -392,6 +392,11 @@ def _dataset(
                 over,
                 gather("interpolation_error"),
                 _described("1", f"relative change of the largest amplitude {half}"),
+            ),
+            "amplitude_interval": (
+                over,
+                gather("amplitude_interval"),
+                _described("m", "half of the 95 % interval of the largest amplitude, from the map"),
             ),
             "bare_amplitude": (
                 over[2:],

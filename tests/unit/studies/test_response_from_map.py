@@ -382,9 +382,12 @@ def test_intervals_of_the_map_are_carried_into_the_response() -> None:
     twins = rb.Modal(frequencies=["32 Hz"], damping_ratio=0.005, shapes={"left": [3**-0.5], "right": [3**-0.5]})
     omega = 2 * np.pi * hertz
 
-    def peak(mass: complex) -> Any:
+    def amplitude(mass: complex) -> Any:
         dynamic = 3 * ((64 * np.pi) ** 2 + 0.01j * 64 * np.pi * omega) - omega**2 * (3 + 2 * mass)
-        return levels * np.abs(1 / dynamic).max()
+        return levels[:, None] * np.abs(1 / dynamic)
+
+    def peak(mass: complex) -> Any:
+        return amplitude(mass).max(axis=1)
 
     def ratio(mass: complex) -> float:
         own = 64 * np.pi * np.sqrt(3 / (3 + 2 * mass.real))
@@ -398,6 +401,8 @@ def test_intervals_of_the_map_are_carried_into_the_response() -> None:
         ).isel(at=0, number=0)
         exact = np.hypot(*(peak(other) - peak(mass) for other in others))
         exact[2] = np.nan  # the damper moves more than the map covers
+        each = np.hypot(*(amplitude(other) - amplitude(mass) for other in others))[:2]
+        assert found.amplitude_interval.values[:2] == pytest.approx(each, rel=1e-5, abs=1e-12)
         assert found.peak_interval.values == pytest.approx(exact, rel=1e-5, nan_ok=True)
         exact = np.hypot(*(ratio(other) - ratio(mass) for other in others))
         assert found.damping_ratio_interval.values == pytest.approx(exact, rel=1e-6)
