@@ -178,7 +178,7 @@ def test_friction_of_a_filled_box_follows_from_its_ring_down_and_a_drop_test() -
 
 
 def test_a_parameter_without_influence_is_reported() -> None:
-    """The duration of a contact far below a period changes no loss, which is said; the restitution is found."""
+    """The duration of a contact far below a period changes no loss, which a warning states; the restitution is found."""
     linear = rb.Linear(contact_time="20 us", restitution=0.5)
     path = "damper.contact.contact_time"
     result = calibrated(shaken(0.7), {**RANGES, path: ("10 us", "50 us")}, linear)
@@ -211,7 +211,7 @@ def test_data_that_no_parameter_explains_are_reported() -> None:
 
 
 def test_a_parameter_at_the_end_of_its_range_is_not_bounded() -> None:
-    """If the planted value is outside of the range, the interval ends at the end of the range, which is said."""
+    """If the planted value is outside of the range, the interval ends at the end of the range, and a warning states it."""
     result = calibrated(shaken(0.8), {E: (0.4, 0.75)})
     assert f"the data do not bound {E} above: its interval ends at the end of the range, 0.75" in " ".join(
         result.warnings
