@@ -58,16 +58,16 @@ export default {
       this.now = times[k];
       const shift = arrays["frame displacement"], places = arrays["frame place"];
       const dampers = about.gaps.length, house = Math.min(300, width * 0.4), room = (width - house) / 2 - 40;
-      const scale = room / reach, centre = width / 2 + (shift ? shift[k] * scale : 0), top = 26, lane = (height - 52) / Math.max(1, dampers);
+      const scale = room / reach, centre = width / 2 + (shift ? shift[k] * scale : 0), top = 26, lane = (height - 62) / Math.max(1, dampers);
       // ground, spring, structure
       pen.strokeStyle = "#555"; pen.lineWidth = 1.5; pen.fillStyle = "#777";
-      pen.fillRect(6, top - 8, 5, height - 36);
+      pen.fillRect(6, top - 8, 5, height - 46);
       const left = centre - house / 2, coils = 9, y = height / 2;
       pen.beginPath(); pen.moveTo(11, y);
       for (let i = 0; i <= coils; i++) pen.lineTo(20 + ((left - 30) * i) / coils, y + (i === 0 || i === coils ? 0 : i % 2 ? -9 : 9));
       pen.lineTo(left, y); pen.stroke();
       pen.fillStyle = "#dfe6ee"; pen.strokeStyle = "#33475b"; pen.lineWidth = 2;
-      pen.beginPath(); pen.rect(left, top - 8, house, height - 36); pen.fill(); pen.stroke();
+      pen.beginPath(); pen.rect(left, top - 8, house, height - 46); pen.fill(); pen.stroke();
       const flash = arrays["frame flash"] ? arrays["frame flash"][k] : 0;
       for (let d = 0; d < dampers; d++) {
         const members = about.damper_of_ball.map((owner, ball) => [owner, ball]).filter(([owner]) => owner === d).map(([, ball]) => ball);

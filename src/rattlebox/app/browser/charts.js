@@ -48,20 +48,26 @@ export default {
       while (this.charts.length > specs.length) { const last = this.charts.pop(); const dom = last.getDom(); last.dispose(); dom.remove(); }
       while (this.charts.length < specs.length) {
         const box = document.createElement("div");
-        box.style.height = "250px";
+        box.style.height = "245px";
         this.$el.appendChild(box);
         this.charts.push(echarts.init(box));
       }
-      specs.forEach((spec, index) => this.charts[index].setOption({
+      specs.forEach((spec, index) => {
+        const chart = this.charts[index], dom = chart.getDom();
+        const text = spec.series.reduce((sum, { name }) => sum + 40 + 6 * name.length, 0);
+        const rows = spec.series.length > 1 ? Math.ceil(text / (dom.clientWidth - 30)) : 0;
+        if (dom.style.height !== `${245 + 18 * rows}px`) { dom.style.height = `${245 + 18 * rows}px`; chart.resize(); }
+        chart.setOption({
         title: { text: spec.title, left: 4, top: 0, textStyle: { fontSize: 13, fontWeight: 600, color: "#222" } },
-        legend: spec.series.length > 1 ? { show: true, top: 20, left: 4, itemWidth: 18, itemHeight: 8, textStyle: { fontSize: 11 }, type: "scroll" } : { show: false },
-        grid: { left: 62, right: 16, top: spec.series.length > 1 ? 46 : 30, bottom: 42 },
+        legend: { show: rows > 0, top: 18, left: 4, itemWidth: 18, itemHeight: 8, itemGap: 7, textStyle: { fontSize: 11 } },
+        grid: { left: 62, right: 16, top: 30 + 18 * rows, bottom: 42 },
         tooltip: { trigger: spec.portrait ? "item" : "axis", confine: true, valueFormatter: (value) => Number(value).toPrecision(4) },
         xAxis: { type: "value", name: spec.x, nameLocation: "middle", nameGap: 26, scale: true, axisLine: { onZero: false }, splitLine: { show: false }, nameTextStyle: { color: GREY }, min: spec.range ? spec.range[0] : undefined, max: spec.range ? spec.range[1] : undefined },
-        yAxis: { type: spec.log ? "log" : "value", name: spec.y, nameLocation: "middle", nameGap: 46, scale: true, nameTextStyle: { color: GREY } },
+        yAxis: { type: spec.log ? "log" : "value", name: spec.y, nameLocation: "middle", nameGap: 46, scale: true, axisLine: { onZero: false }, nameTextStyle: { color: GREY } },
         dataZoom: spec.portrait ? [] : [{ type: "inside" }],
         series: spec.series.map((entry) => series(entry, arrays, shapes)),
-      }, { replaceMerge: ["series"] }));
+        }, { replaceMerge: ["series"] });
+      });
       window.rbDrawn = { count: (window.rbDrawn ? window.rbDrawn.count : 0) + 1, at: performance.now() };
     },
   },

@@ -20,7 +20,7 @@ export default {
       <label>speed <select v-model.number="rate"><option v-for="r in [5, 10, 30, 60]" :value="r">{{ r }} frames/s</option></select></label>
       <label>colour <select v-model="colour" @change="show()"><option value="speed">speed</option><option value="spin">spin</option><option value="species">species</option></select></label>
       <label>cut <input type="range" min="-1" max="1" step="0.02" v-model.number="cut" @input="show()" style="width:90px" aria-label="cut plane"></label>
-      <span v-if="colour !== 'species'">0 to {{ top[colour].toPrecision(3) }} {{ colour === "speed" ? "m/s" : "rad/s" }} (dark to bright)</span>
+      <span v-if="count && colour !== 'species'">0 to {{ top[colour].toPrecision(3) }} {{ colour === "speed" ? "m/s" : "rad/s" }} (dark to bright)</span>
     </div></div>`,
   props: { url: String, growing: Boolean },
   data: () => ({ playing: true, frame: 0, count: 0, now: 0, rate: 30, colour: "speed", cut: 1, top: { speed: 1e-9, spin: 1e-9 } }),
