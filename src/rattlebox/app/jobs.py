@@ -109,7 +109,7 @@ class Live:
         self._show, self._fail, self._longest = show, fail, longest
         self._worker = Worker.ready()
         self._next: tuple[Any, ...] | None = None
-        self._busy = False
+        self._busy = self._started = False
 
     async def request(self, *task: Any) -> None:
         """Compute a task unless a newer one arrives first."""
@@ -121,9 +121,13 @@ class Live:
             while (task_now := self._next) is not None:
                 self._next = None
                 try:
+                    if not self._started:  # loading the libraries is not part of the limit
+                        await self._worker.do("start")
+                    self._started = True
                     self._show(await asyncio.wait_for(self._worker.do(*task_now), self._longest))
                 except TimeoutError:
                     self._worker.stop()
+                    self._started = False
                     self._fail(
                         f"this case takes longer than {self._longest:g} s\n  try: Run, which has no limit, or a shorter case"
                     )

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nicegui import run as threads
@@ -28,6 +31,7 @@ class KeptTab:
             ui.button("Refresh", icon="refresh", on_click=self.refresh).props("flat dense")
             ui.button("Compare the chosen runs", icon="stacked_line_chart", on_click=self._compare).props("dense")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
+        self._download = partial(offer, self._failure, download, page.folder)
         self._box = ui.column().classes("w-full gap-0")
         self.refresh()
         self._charts = Charts().classes("w-full")
@@ -57,27 +61,19 @@ class KeptTab:
                 with ui.button("Download", icon="download").props("flat dense no-caps"), ui.menu():
                     for suffix, title in FORMATS.items():
                         if suffix != "vtkhdf" or (self._page.folder / f"{name}.vtkhdf").exists():
-                            ui.menu_item(title, on_click=lambda name=name, suffix=suffix: self._download(name, suffix))
+                            ui.menu_item(title, on_click=partial(self._download, name, suffix))
 
     def _choose(self, name: str, chosen: bool) -> None:
         (self._chosen.add if chosen else self._chosen.discard)(name)
 
-    async def _download(self, name: str, suffix: str) -> None:
+    async def _open(self, name: str) -> None:
         try:
-            content = await threads.io_bound(download, self._page.folder, name, suffix) or b""
-        except (rb.RattleboxError, OSError) as error:
-            self._failure.set_text(str(error))
-            return
-        ui.download.content(content, f"{name}.zip" if suffix == "csv" else f"{name}.{suffix}")
-
-    def _open(self, name: str) -> None:
-        try:
-            case = rb.load(inside(self._page.folder, name, ".nc")).case
+            run = await threads.io_bound(rb.load, inside(self._page.folder, name, ".nc"))
         except rb.RattleboxError as error:
             self._failure.set_text(str(error))
             return
-        self._page.use_text(case.to_toml())
-        self._page.show_watch()
+        if run is not None:
+            await self._page.show_kept(name, run)
 
     def _compare(self) -> None:
         """Draw the motion of the chosen runs in one chart, and list their main numbers."""
@@ -94,6 +90,17 @@ class KeptTab:
         body = comparison(moving)
         self._charts.show(self._page.publish("comparison", lambda _: body))
         self._table.set_text("\n\n".join(f"{name}\n{run.summary()}" for name, run in moving.items()))
+
+
+async def offer(failure: ui.label, content_of: Callable[..., bytes], folder: Path, name: str, suffix: str) -> None:
+    """Let the browser download a result, or show why there is none."""
+    try:
+        content = await threads.io_bound(content_of, folder, name, suffix) or b""
+    except (rb.RattleboxError, OSError, MemoryError) as error:
+        failure.set_text(str(error) or "the memory is exhausted")
+    else:
+        failure.set_text("")
+        ui.download.content(content, f"{name}.{'zip' if content[:2] == b'PK' else suffix}")
 
 
 def comparison(chosen: dict[str, Any]) -> bytes:

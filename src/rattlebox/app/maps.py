@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,9 +11,10 @@ from nicegui import ui
 
 import rattlebox as rb
 
-from .draft import dotted, numeric_paths, python_script, quantity
+from .draft import dotted, numeric_paths, quantity
 from .jobs import TaskFailed, Worker
-from .results import MAP_FORMATS, download_map, maps, new_name
+from .kept import offer
+from .results import MAP_FORMATS, download_map, maps, new_name, stored_map
 
 if TYPE_CHECKING:
     from .page import Page
@@ -31,7 +33,7 @@ class MapTab:
         self._page = page
         self._worker: Worker | None = None
         self._name = ""
-        self._task: tuple[str, dict[str, Any], str] = ("", {}, "")
+        self._typed: dict[str, Any] = {}
         self._grid: tuple[list[str], list[np.ndarray[Any, Any]], list[str]] | None = None
         self._box = ui.column().classes("w-full gap-1")
         self.case_changed()
@@ -45,7 +47,7 @@ class MapTab:
             self._start = ui.button("Compute map", icon="grid_on", on_click=self.compute).props("dense")
             self._stop = ui.button("Stop", icon="stop", on_click=self.stop).props("dense outline color=negative")
             self._open = ui.select([], label="open a map").props("dense options-dense").classes("w-36")
-            self._open.on("focus", lambda: self._open.set_options(maps(page.folder)))
+            self._open.on("focus", self._list_maps)
             self._open.on_value_change(lambda event: self.open(event.value) if event.value else None)
         self._stop.set_visibility(False)
         self._status = ui.label("").classes("text-sm text-gray-700")
@@ -53,8 +55,7 @@ class MapTab:
         self._chart = ui.echart({}, on_point_click=self._watch_point).classes("w-full").style("height:460px")
         with ui.row():
             for suffix, title in MAP_FORMATS.items():
-                button = ui.button(title, icon="download", on_click=lambda suffix=suffix: self._download(suffix))
-                button.props("flat dense")
+                ui.button(title, icon="download", on_click=partial(self._download, suffix)).props("flat dense")
 
     def case_changed(self) -> None:
         """Offer the numbers of the case."""
@@ -110,21 +111,14 @@ class MapTab:
         except OSError as error:
             self._failure.set_text(f"the folder {page.folder} cannot be used: {error.strerror}")
             return
-        self._task = (page.draft.text, axes, self._measure.value)
+        self._typed = axes
         self._worker = worker = Worker()
         self._start.set_visibility(False), self._stop.set_visibility(True)
         self._failure.set_text("")
         watch = asyncio.get_running_loop().create_task(self._poll(worker))
         try:
-            arguments = (
-                page.draft.text,
-                str(page.folder),
-                self._name,
-                axes,
-                self._measure.value,
-                bool(self._compare.value),
-            )
-            await worker.do("sweep", *arguments, progress=self._report)
+            what = axes, self._measure.value, bool(self._compare.value)
+            await worker.do("sweep", page.draft.text, str(page.folder), self._name, *what, progress=self._report)
             self._status.set_text(f"kept as {self._name} in {page.folder.name}; click a point to watch it")
         except TaskFailed as error:
             if self._worker is worker:
@@ -138,7 +132,8 @@ class MapTab:
         self._draw()
 
     def _report(self, _: str, done: int, total: int) -> None:
-        self._status.set_text(f"{done} of {total} variants")
+        if self._worker is not None:  # else a report that a stopped process had sent
+            self._status.set_text(f"{done} of {total} variants")
 
     async def _poll(self, worker: Worker) -> None:
         while self._worker is worker:
@@ -159,33 +154,29 @@ class MapTab:
 
     def open(self, name: str) -> None:
         """Show a map of the folder."""
-        self._name, self._task = name, ("", {}, "")
+        self._name, self._typed = name, {}
         self._draw()
+
+    def _list_maps(self) -> None:
+        try:
+            self._open.set_options(maps(self._page.folder))
+        except OSError as error:
+            self._failure.set_text(f"the folder {self._page.folder} cannot be read: {error.strerror}")
 
     # ---- drawing
 
     def _draw(self) -> None:
-        store = self._page.folder / f"{self._name}.zarr"
-        if not self._name or not store.exists():
+        if not self._name or not (self._page.folder / f"{self._name}.zarr").exists():
             return
         try:
-            study = rb.open_study(store).load()
-            bare_store = store.with_suffix(".bare.zarr")
-            bare = rb.open_study(bare_store).load() if bare_store.exists() else None
+            study, drawn = stored_map(self._page.folder, self._name)
         except rb.RattleboxError as error:
             if self._worker is None:
                 self._failure.set_text(str(error))
             return
-        hidden = ("status", "warnings")
-        measure = next(
-            str(name) for name in study.data_vars if name not in hidden and not str(name).endswith("_interval")
-        )
-        values, label = (
-            study[measure],
-            f"{study[measure].attrs.get('long_name', measure)} ({study[measure].attrs.get('units', '')})",
-        )
-        if bare is not None:
-            values, label = values / bare[measure].squeeze(drop=True), f"{label.partition(' (')[0]} / without damper"
+        values = study[drawn]
+        unit = values.attrs.get("units", "")
+        label = values.attrs.get("long_name", drawn) + (f" ({unit})" if unit not in ("", "1") else "")
         axes = [str(dim) for dim in values.dims]
         points = [study[axis].values for axis in axes]
         units = [str(study[axis].attrs.get("units", "")) for axis in axes]
@@ -200,7 +191,7 @@ class MapTab:
 
     def _as_typed(self, axis: str, values: Any, unit: str) -> tuple[Any, str]:
         """Return the values of an axis in the unit in which the user typed its range, and this unit."""
-        typed = [quantity(text) for text in self._task[1].get(axis, ())[:2]]
+        typed = [quantity(text) for text in self._typed.get(axis, ())[:2]]
         for stored, each in zip((values[0], values[-1]), typed, strict=False):
             if each is not None and each[1] and each[0] and stored:
                 return values * (each[0] / stored), each[1]
@@ -221,17 +212,11 @@ class MapTab:
         page.use_text(page.draft.text)
         page.show_watch()
 
-    def _download(self, suffix: str) -> None:
-        text, axes, measure = self._task
+    async def _download(self, suffix: str) -> None:
         if not self._name:
-            self._failure.set_text("There is no map yet.")
+            self._failure.set_text("There is no map yet; press Compute map.")
             return
-        try:
-            content = download_map(self._page.folder, self._name, suffix, map_script(text, axes, measure))
-        except (rb.RattleboxError, OSError) as error:
-            self._failure.set_text(str(error))
-            return
-        ui.download.content(content, f"{self._name}.{suffix}")
+        await offer(self._failure, download_map, self._page.folder, self._name, suffix)
 
 
 def _number(text: Any) -> Any:
@@ -241,23 +226,6 @@ def _number(text: Any) -> Any:
         return text
 
 
-def map_script(toml: str, axes: dict[str, Any], measure: str) -> str:
-    """Return a Python script that computes a map."""
-    spaced = [
-        f"    {path!r}: rb.{'geomspace' if log else 'linspace'}({low!r}, {high!r}, {count}),"
-        for path, (low, high, count, log) in axes.items()
-    ]
-    lines = [
-        "axes = {",
-        *spaced,
-        "}",
-        f"study = rb.sweep(case, axes, {measure!r})",
-        'rb.plot_map(study).savefig("map.png")',
-        "",
-    ]
-    return python_script(toml, "\n".join(lines))
-
-
 def _axis(kind: str, title: str, gap: int, **more: Any) -> dict[str, Any]:
     return {"type": kind, "name": title, "nameLocation": "middle", "nameGap": gap, "scale": True, **more}
 
@@ -265,7 +233,9 @@ def _axis(kind: str, title: str, gap: int, **more: Any) -> dict[str, Any]:
 def _lines(values: Any, points: list[Any], titles: list[str], label: str) -> dict[str, Any]:
     data = [[float(x), _finite(y)] for x, y in zip(points[0], values, strict=True)]
     line = {"type": "line", "data": data, "symbolSize": 8, "color": rb.plots.SERIES_COLOURS[0], "animation": False}
-    axes = {"xAxis": _axis("value", titles[0], 30), "yAxis": _axis("value", label, 60)}
+    steps = points[0][1:] / points[0][:-1] if (points[0] > 0).all() else np.zeros(1)
+    kind = "log" if steps.size > 1 and np.allclose(steps, steps[0]) else "value"
+    axes = {"xAxis": _axis(kind, titles[0], 30), "yAxis": _axis("value", label, 60)}
     return {"grid": {"left": 80, "right": 20, "top": 20, "bottom": 50}, "tooltip": {}, **axes, "series": [line]}
 
 

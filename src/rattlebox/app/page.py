@@ -23,7 +23,7 @@ from .jobs import Live, TaskFailed, Worker
 from .kept import KeptTab
 from .maps import MapTab
 from .results import new_name
-from .views import view_of_snapshots
+from .views import view_of_run, view_of_snapshots
 
 Bodies = dict[str, Callable[..., bytes]]
 
@@ -34,7 +34,15 @@ IMPACT_COLUMNS = {
     "force": "peak force (N)",
     "loss": "energy lost (mJ)",
 }
+STYLE = """
+.nicegui-content { padding: 0 }
+.rb-left { width: 33%; min-width: 320px; max-width: 460px; height: calc(100vh - 50px); position: sticky; top: 50px }
+.rb-left .q-field__label { text-transform: none }
+.rb-left textarea { height: 26vh; resize: none; white-space: pre }
+.rb-drawing svg { width: 100%; height: auto }
+"""
 MOST_SLIDERS = 4
+OUTDATED = "the pictures show an earlier case"
 PINNED = {
     "steel_ball": ("damper.gap", "load.amplitude", "damper.start", "damper.ball.radius"),
     "row": ("damper.gap", "load.amplitude", "damper.contact.restitution"),
@@ -61,7 +69,7 @@ class Page:
         self._version = 0
         self._impact_rows: list[dict[str, Any]] = []
         self._pinned = list(PINNED["steel_ball"])
-        self._live = Live(self._show_view, lambda text: self._failure.set_text(text))
+        self._live = Live(self._show_view, self._show_failure)
         self._worker: Worker | None = None
         self._build()
 
@@ -85,47 +93,42 @@ class Page:
     # ---- layout
 
     def _build(self) -> None:
-        ui.add_head_html("<style>.nicegui-content{padding:0} .rb-left .q-field__label{text-transform:none}</style>")
+        ui.add_head_html(f"<style>{STYLE}</style>")
         with ui.header().classes("items-center bg-slate-800 text-white py-1 gap-3"):
             ui.label("Rattlebox").classes("text-lg font-bold")
             self._templates = ui.select(TEMPLATES, value="steel_ball", label="template").classes("w-64")
             self._templates.props("dark dense options-dense").on_value_change(self._use_template)
-            downloads = (
-                ("Download case", "download", self._download_case),
-                ("Python script", "code", self._download_script),
-            )
-            for title, icon, action in (("Open", "upload", self._open_dialog), *downloads):
+            offer, draft = ui.download.content, self.draft
+            for title, icon, action in (
+                ("Open", "upload", self._open_dialog),
+                ("Download case", "download", lambda: offer(draft.text, "case.toml")),
+                ("Python script", "code", lambda: offer(python_script(draft.text), "case.py")),
+            ):
                 ui.button(title, icon=icon, on_click=action).props("flat dense color=white")
             ui.space()
             ui.label(f"files in {self.folder.name}").classes("text-xs opacity-80").props["title"] = str(self.folder)
         with ui.row().classes("w-full no-wrap items-start gap-0"):
-            with ui.column().classes("rb-left gap-1 p-2 border-r").style("width:33%;min-width:320px;max-width:460px"):
+            with ui.column().classes("rb-left gap-1 p-2 border-r no-wrap"):
                 self._build_case()
             with ui.column().classes("grow gap-1 p-2").style("min-width:0"):
                 self._build_results()
 
     def _build_case(self) -> None:
-        with ui.tabs().props("dense align=left") as tabs:
-            form, text, drawing = ui.tab("form", "Form"), ui.tab("text", "TOML"), ui.tab("drawing", "Drawing")
-        with ui.tab_panels(tabs, value="form", animated=False).classes("w-full").props("keep-alive"):
-            with ui.tab_panel(form).classes("p-0"):
-                self.form = Form(self.draft, self._edited)
-            with ui.tab_panel(text).classes("p-0"):
-                with ui.row().classes("w-full items-center"):
-                    ui.button("Copy", icon="content_copy", on_click=self._copy).props("dense flat")
-                    ui.label("edits apply as you type").classes("text-xs text-gray-600")
-                self._text = ui.textarea(value=self.draft.text).classes("w-full text-xs")
-                self._text.props("outlined debounce=300 input-class=font-mono autogrow")
-                self._text.on_value_change(self._text_edited)
-                self._text_error = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
-            with ui.tab_panel(drawing).classes("p-0"):
-                self._drawing = ui.html("", sanitize=False).classes("w-full")
-        tabs.on_value_change(lambda event: self._draw_case() if event.value == "drawing" else None)
-        self._tabs = tabs
+        with ui.column().classes("w-full grow overflow-auto"):
+            self.form = Form(self.draft, self._edited)
+        with ui.row().classes("w-full items-center gap-2 no-wrap"):
+            ui.label("TOML").classes("font-semibold text-sm")
+            ui.button("Copy", icon="content_copy", on_click=self._copy).props("dense flat size=sm")
+            ui.label("edits apply as you type").classes("text-xs text-gray-600")
+        self._text_error = ui.label("").classes("text-red-700 text-xs whitespace-pre-wrap")
+        self._text = ui.textarea(value=self.draft.text).classes("w-full text-xs")
+        self._text.props("outlined dense debounce=300 input-class=font-mono")
+        self._text.on_value_change(self._text_edited)
 
     def _build_results(self) -> None:
         with ui.tabs().props("dense align=left") as tabs:
             watch, maps, kept = ui.tab("watch", "Watch"), ui.tab("map", "Map"), ui.tab("kept", "Results")
+            drawing = ui.tab("drawing", "Drawing")
         self._right = tabs
         with ui.tab_panels(tabs, value="watch", animated=False).classes("w-full").props("keep-alive"):
             with ui.tab_panel(watch).classes("p-0 gap-1"):
@@ -134,7 +137,10 @@ class Page:
                 self.map_tab = MapTab(self)
             with ui.tab_panel(kept).classes("p-0"):
                 self.kept_tab = KeptTab(self)
+            with ui.tab_panel(drawing).classes("p-0"):
+                self._drawing = ui.html("", sanitize=False).classes("w-full rb-drawing")
         tabs.on_value_change(lambda event: self.kept_tab.refresh() if event.value == "kept" else None)
+        tabs.on_value_change(lambda event: self._draw_case() if event.value == "drawing" else None)
 
     def _build_watch(self) -> None:
         with ui.row().classes("w-full items-center gap-2"):
@@ -142,6 +148,8 @@ class Page:
             self._pause_button = ui.button("Pause", icon="pause", on_click=self._pause).props("dense outline")
             self._cancel_button = ui.button("Cancel", icon="stop", on_click=self._cancel)
             self._cancel_button.props("dense outline color=negative")
+            self._save_button = ui.button("Save again", icon="save", on_click=self._save_again).props("dense")
+            self._save_button.set_visibility(False)
             self._progress = ui.linear_progress(value=0, show_value=False).classes("w-48")
             self._compare = ui.switch("compare without damper", on_change=self._changed)
             self._status = ui.label("").classes("text-sm text-gray-700")
@@ -149,6 +157,7 @@ class Page:
         self._show_running(False)
         self._slider_row = ui.row().classes("w-full items-center gap-4")
         self._show_sliders()
+        self._not_kept = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._warnings = ui.label("").classes("text-amber-800 text-sm whitespace-pre-wrap")
         self._balls = Balls().classes("w-full")
@@ -219,13 +228,23 @@ class Page:
 
     def use_text(self, text: str, pinned: tuple[str, ...] = ()) -> None:
         """Replace the case by the text of a case file."""
-        self.stop_run()
+        if not self._unsaved:
+            self.stop_run()
         self._pinned = list(pinned) or self._pinned
         self.draft.set_text(text)
+        self._clear_view()
         self.form.refresh()
         self._show_sliders()
         self.map_tab.case_changed()
         self._edited()
+
+    def _clear_view(self) -> None:
+        """Remove the pictures of an earlier case."""
+        self._particles.show("", growing=False)
+        for element in (self._charts, self._impacts):
+            element.set_visibility(False)
+        for label in (self._summary, self._warnings, self._about):
+            label.set_text("")
 
     def _use_template(self, event: Any) -> None:
         self.use_text(template(event.value), PINNED.get(event.value, ("damper.friction",)))
@@ -235,8 +254,10 @@ class Page:
         self.form.show_errors()
         draft = self.draft
         self._text_error.set_text("\n".join(f"{name}: {text}" if name else text for name, text in draft.errors.items()))
-        if self._tabs.value == "drawing":
+        if self._right.value == "drawing":
             asyncio.get_running_loop().create_task(self._draw_case())
+        if self._about.text and draft.text != self._running_text:
+            self._about.set_text(OUTDATED)
         if draft.case is None:
             self._failure.set_text("The case is not valid; see the red lines in the form.")
             return
@@ -244,9 +265,10 @@ class Page:
         particles = bool(draft.case.particle_dampers)
         self._balls.set_visibility(not particles)
         self._particles.set_visibility(particles)
+        self._compare.set_visibility(not particles)
         self._pause_button.set_visibility(particles and self._worker is not None)
         if self._worker is None:
-            self._status.set_text("press Run; particles are computed in the background" if particles else "")
+            self._status.set_text("press Run and keep: particles are computed in the background" if particles else "")
         if particles:
             return
         request = ("live", draft.text, str(self.folder), bool(self._compare.value))
@@ -264,22 +286,41 @@ class Page:
         _, about = decode(body)
         url = self.publish("view", lambda _: body)
         self._charts.show(url)
+        self._charts.set_visibility(True)
         self._impacts.set_visibility("impacts" in about)
         if "impacts" in about:
             self._balls.show(url)
-            self._impacts.set_text(f"Impacts: {about['impact_count']}")
+            listed = len(about["impacts"])
+            more = f", of which the first {listed} are listed" if listed < about["impact_count"] else ""
+            self._impacts.set_text(f"Impacts: {about['impact_count']}{more}")
             self._impact_rows = about["impacts"]
             self._list_impacts()
         self._summary.set_text(about["summary"])
         self._warnings.set_text("\n".join(about["warnings"]))
         self._failure.set_text("" if about["status"] in ("finished", "interrupted") else about["status"])
         shown = f"; drawn from {about['shown']}" if about["shown"] else ""
-        self._about.set_text(f"{about['status']} at t = {about['end']:.4g} s{shown}")
+        status = "computed up to" if about["status"] == "interrupted" else f"{about['status']} at"
+        self._about.set_text(f"{status} t = {about['end']:.4g} s{shown}")
+
+    def _show_failure(self, text: str) -> None:
+        self._failure.set_text(text)
+        self._about.set_text(OUTDATED if self._about.text else "")
 
     def _list_impacts(self) -> None:
         """Send the list of impacts if it is open; it is larger than everything else that a slider changes."""
         if self._impacts.value:
             self._impact_list.rows = self._impact_rows
+
+    async def show_kept(self, name: str, run: rb.Run) -> None:
+        """Show the case of a run in the folder; of particles, also the stored result."""
+        self.use_text(run.case.to_toml())
+        self.show_watch()
+        if run.case.particle_dampers and self.draft.case is not None:
+            self._running, self._running_text = name, self.draft.text
+            self._show_view(await threads.io_bound(view_of_run, run) or b"")
+            snapshots = partial(view_of_snapshots, self.folder / f"{name}.vtkhdf")
+            self._particles.show(self.publish("particles", snapshots), growing=False)
+            self._status.set_text(f"stored as {name}")
 
     def show_watch(self) -> None:
         """Show the tab with the run."""
@@ -313,22 +354,53 @@ class Page:
             self._particles.show(self.publish("particles", snapshots), growing=True)
         task = "run", draft.text, str(self.folder), name, bool(self._compare.value)
         try:
-            self._show_view(await worker.do(*task, progress=self._report))
-            self._status.set_text(f"kept as {name} in {self.folder.name}")
+            body, problem = await worker.do(*task, progress=partial(self._report, worker))
+            self._show_view(body)
+            self._ended(worker, name, problem)
         except TaskFailed as error:
             if self._worker is worker:
                 self._failure.set_text(str(error))
-        finally:
-            worker.stop()
-            if self._worker is worker:
-                self._worker = None
-            self._show_running(self._worker is not None)
-            if particles:
-                self._particles.show(self._particles._props.get("url", ""), growing=False)
+                if (self.folder / f"{name}.checkpoint").exists():
+                    self._paused, self._paused_text = name, draft.text
+                    self._status.set_text("stopped; Run resumes from the last checkpoint")
+            self._end(worker)
+        if particles:
+            self._particles.show(self._particles._props.get("url", ""), growing=False)
 
-    _paused = _paused_text = _running = _running_text = ""
+    _paused = _paused_text = _running = _running_text = _unsaved = ""
 
-    def _report(self, what: str, *content: Any) -> None:
+    def _ended(self, worker: Worker, name: str, problem: str) -> None:
+        """Report that a run was kept; if it could not be written, its process holds it until Save again or Cancel."""
+        self._unsaved = name if problem else ""
+        self._save_button.set_visibility(bool(problem))
+        self._progress.set_visibility(False), self._pause_button.set_visibility(False)
+        if problem:
+            self._status.set_text("computed, but not kept")
+            self._not_kept.set_text(f"{problem}\nThe result is not lost: press Save again when it can be written.")
+        else:
+            self._not_kept.set_text("")
+            self._status.set_text(f"kept as {name} in {self.folder.name}")
+            self._end(worker)
+
+    def _end(self, worker: Worker) -> None:
+        worker.stop()
+        if self._worker is worker:
+            self._worker = None
+        self._show_running(self._worker is not None)
+
+    async def _save_again(self) -> None:
+        worker, name, problem = self._worker, self._unsaved, ""
+        if worker is None or not name:
+            return
+        try:
+            await worker.do("save")
+        except TaskFailed as error:
+            problem = str(error)
+        self._ended(worker, name, problem)
+
+    def _report(self, worker: Worker, what: str, *content: Any) -> None:
+        if self._worker is not worker:  # a report that a stopped process had sent
+            return
         if what == "steps":
             done, total = content
             self._progress.set_value(done / max(1, total))
@@ -338,7 +410,8 @@ class Page:
 
     def stop_run(self) -> None:
         """Stop the run in progress, if any."""
-        worker, self._worker = self._worker, None
+        worker, self._worker, self._unsaved = self._worker, None, ""
+        self._save_button.set_visibility(False), self._not_kept.set_text("")
         if worker is not None:
             worker.stop()
 
@@ -364,12 +437,6 @@ class Page:
     def _copy(self) -> None:
         ui.clipboard.write(self.draft.text)
         ui.notify("copied")
-
-    def _download_case(self) -> None:
-        ui.download.content(self.draft.text, "case.toml")
-
-    def _download_script(self) -> None:
-        ui.download.content(python_script(self.draft.text), "case.py")
 
     def _open_dialog(self) -> None:
         names = sorted(path.name for path in self.folder.glob("*.toml"))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import tempfile
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import rattlebox as rb
 
@@ -95,11 +97,41 @@ def download(folder: Path, name: str, suffix: str) -> bytes:
         return target.read_bytes()
 
 
-def download_map(folder: Path, name: str, suffix: str, script: str) -> bytes:
-    """Return the content of a file for a map; `suffix` is one of `MAP_FORMATS`, `script` computes the map."""
+def stored_map(folder: Path, name: str) -> tuple[Any, str]:
+    """Return the study of a map and the name of what the page draws: its measure, or the ratio to that without damper."""
+    store = inside(folder, name, ".zarr")
+    study = rb.open_study(store).load()
+    measure = json.loads(study.attrs["measures"])[0]
+    without = store.with_suffix(".bare.zarr")
+    if not without.exists():
+        return study, measure
+    ratio = study[measure] / rb.open_study(without).load()[measure].squeeze(drop=True)
+    label = f"{study[measure].attrs.get('long_name', measure)} / without damper"
+    ratio.attrs = {"long_name": label, "units": "1"}
+    return study.assign({f"{measure}_ratio": ratio}), f"{measure}_ratio"
+
+
+def map_script(study: Any, drawn: str) -> str:
+    """Return a Python script that computes a map as the page draws it."""
+    measure = json.loads(study.attrs["measures"])[0]
+    axes = {str(dim): study[dim].values.tolist() for dim in study[measure].dims}
+    lines = [f"axes = {axes!r}", f"study = rb.sweep(case, axes, {measure!r})"]
+    if drawn != measure:
+        lines += [
+            'others = {path: values for path, values in axes.items() if not path.startswith("damper")}',
+            'without = case.model_copy(update={"dampers": ()})',
+            f'bare = rb.sweep(without, others or {{"duration": [case.duration]}}, {measure!r})',
+            f"study[{drawn!r}] = study[{measure!r}] / bare[{measure!r}].squeeze(drop=True)",
+        ]
+    lines += [f"print(study[{drawn!r}].to_series())", f'rb.plot_map(study, {drawn!r}).savefig("map.png")', ""]
+    return python_script(study.attrs["case"], "\n".join(lines))
+
+
+def download_map(folder: Path, name: str, suffix: str) -> bytes:
+    """Return the content of a file for a map; `suffix` is one of `MAP_FORMATS`."""
+    study, drawn = stored_map(folder, name)
     if suffix == "py":
-        return script.encode()
-    study = rb.open_study(inside(folder, name, ".zarr")).load()
+        return map_script(study, drawn).encode()
     if suffix == "csv":
         return bytes(study.to_dataframe().to_csv().encode())
     with tempfile.TemporaryDirectory() as place:
@@ -107,8 +139,7 @@ def download_map(folder: Path, name: str, suffix: str, script: str) -> bytes:
         if suffix == "nc":
             study.to_netcdf(target)
         elif suffix == "png":
-            measure = next(str(each) for each in study.data_vars if each not in ("status", "warnings"))
-            rb.plot_map(study, measure).savefig(target, dpi=200)
+            rb.plot_map(study, drawn).savefig(target, dpi=200)
         elif suffix == "html":
             rb.write_report(study, target)
         else:

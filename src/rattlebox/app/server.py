@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import secrets
 import socket
 from pathlib import Path
@@ -12,6 +13,7 @@ from nicegui import app, core, ui
 
 import rattlebox as rb
 
+from .form import schema
 from .guard import MOST_BYTES, Guard
 from .jobs import Worker
 from .page import Bodies, Page
@@ -52,6 +54,7 @@ def build(folder: Path, port: int, token: str) -> None:
     app.add_middleware(Guard, token=token, hosts=(f"{HOST}:{port}", f"localhost:{port}"))
     core.sio.eio.max_http_buffer_size = MOST_BYTES
     app.on_startup(Worker.start_spare)
+    app.on_startup(schema)  # takes longer than the first page
     app.on_shutdown(Worker.stop_spare)
 
 
@@ -78,8 +81,20 @@ def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
     port = _free_port(port)
     token = secrets.token_urlsafe(24)
     build(place, port, token)
-    url = f"http://{HOST}:{port}/?token={token}"
-    app.on_startup(lambda: print(f"Rattlebox runs at {url}\nFiles are in {place}. Ctrl-C ends it.", flush=True))
+
+    async def announce() -> None:
+        while True:  # handlers of the startup are called before the port is open
+            try:
+                _, writer = await asyncio.open_connection(HOST, port)
+            except OSError:
+                await asyncio.sleep(0.02)
+            else:
+                writer.close()
+                break
+        url = f"http://{HOST}:{port}/?token={token}"
+        print(f"Rattlebox runs at {url}\nFiles are in {place}. Ctrl-C ends it.", flush=True)
+
+    app.on_startup(announce)
     options: dict[str, Any] = {
         "host": HOST,
         "port": port,

@@ -42,12 +42,7 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     if not points:
         arrays["displacement base"] = 1e3 * _component(motion.base_displacement.values, along)[rows]
         points = ["base"]
-    for name in ("mode_energy", "ball_energy", "kinetic_energy", "rotation_energy", "contact_energy", "gravity_energy"):
-        if name in energy:
-            arrays[name] = 1e3 * _total(energy[name])[rows]
-    for name in ("work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss"):
-        if name in energy:
-            arrays[name] = 1e3 * _total(energy[name])[rows]
+    arrays |= {name: 1e3 * _total(energy[name])[rows] for name in _ENERGIES if name in energy}
     if bare is not None:
         chosen = _rows(bare.motion.time.size)
         arrays["bare time"] = bare.motion.time.values[chosen]

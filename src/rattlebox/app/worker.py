@@ -18,6 +18,7 @@ from typing import Any
 
 import rattlebox as rb
 
+from .draft import template
 from .views import view_of_run
 
 Report = Callable[..., None]
@@ -31,6 +32,7 @@ def main(connection: Connection) -> None:
     """Do the tasks of a connection until it closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the server, which ends its workers
     threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True).start()
+    live(lambda *_: None, template("steel_ball"), ".", False)  # loads what the first task would have to wait for
     while True:
         try:
             name, *arguments = connection.recv()
@@ -59,10 +61,19 @@ def live(report: Report, toml: str, folder: str, compare: bool) -> bytes:
     return _view(rb.simulate(case, progress=False), case, compare)
 
 
-def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> bytes:
+_unsaved: list[tuple[rb.Run, Path]] = []
+"""The last run if it could not be written."""
+
+
+def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tuple[bytes, str]:
     """Run a case, write its results, and report views of the motion so far.
 
     A particle run is stopped at intervals and resumed from its checkpoint, which gives the same bits.
+
+    Returns
+    -------
+    tuple
+        View of the run, and why it could not be written; then `save` writes it later.
     """
     case = rb.Case.from_toml(toml, folder=Path(folder))
     target = Path(folder) / f"{name}.nc"
@@ -83,9 +94,20 @@ def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> byt
                 break
             report("view", view_of_run(result))
             wait = min(2 * wait, MOST_WAIT)
-        checkpoint.unlink(missing_ok=True)
+    _unsaved[:] = [(result, target)]
+    view = _view(result, case, compare)
+    try:
+        save(report)
+    except (rb.RattleboxError, OSError) as error:
+        return view, str(error)
+    return view, ""
+
+
+def save(report: Report) -> None:
+    """Write the last run, and remove its checkpoint."""
+    result, target = _unsaved[0]
     result.save(target)
-    return _view(result, case, compare)
+    target.with_suffix(".checkpoint").unlink(missing_ok=True)
 
 
 def _view(result: rb.Run, case: rb.Case, compare: bool) -> bytes:
@@ -112,4 +134,10 @@ def _spaced(start: str, stop: str, count: int, logarithmic: bool) -> Any:
     return (rb.geomspace if logarithmic else rb.linspace)(start, stop, count)
 
 
-TASKS: dict[str, Callable[..., Any]] = {"live": live, "run": run, "sweep": sweep}
+TASKS: dict[str, Callable[..., Any]] = {
+    "start": lambda report: None,
+    "live": live,
+    "run": run,
+    "save": save,
+    "sweep": sweep,
+}

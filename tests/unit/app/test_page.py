@@ -1,15 +1,32 @@
 """The page of the browser application, simulated without a browser."""
 
 import asyncio
+import os
+import shutil
+import signal
 import time
 from contextlib import asynccontextmanager
 
 import pytest
 from nicegui.testing import user_simulation
+from support import full_disk as full_disk_worker
 
 import rattlebox as rb
+from rattlebox.app import jobs, worker
+from rattlebox.app.binary import decode
+from rattlebox.app.draft import template
 from rattlebox.app.jobs import Worker
 from rattlebox.app.page import Page
+
+SHORT_BOX = (
+    template("box")
+    .replace('duration = "1 s"', 'duration = "60 ms"')
+    .replace("count = 200", "count = 8")
+    .replace("snapshots = 200", "snapshots = 5")
+)
+
+FAST = template("steel_ball").replace('duration = "5 s"', 'duration = "5 s"\noutput = { rate = "1 THz" }')
+"""A case with terabytes of output."""
 
 pytestmark = pytest.mark.filterwarnings("ignore")  # of the libraries of the server
 
@@ -22,13 +39,17 @@ async def opened(folder):
     def root():
         pages.append(Page(folder, bodies))
 
+    failure = None
     async with user_simulation(root=root) as user:
         await user.open("/")
         try:
             yield pages[0], user, bodies
-        finally:
-            pages[0].close()
-            Worker.stop_spare()
+        except Exception as error:  # the simulation ends only without an exception
+            failure = error
+        pages[0].close()
+        Worker.stop_spare()
+    if failure is not None:
+        raise failure
 
 
 async def until(condition, longest=60.0):
@@ -159,6 +180,139 @@ def test_removed_folder_is_reported(tmp_path):
             with user.client:
                 page.kept_tab.refresh()
                 assert "cannot be read" in page.kept_tab._failure.text
+
+    asyncio.run(visit())
+
+
+def full_disk(tmp_path, monkeypatch):
+    """Let the processes of the page write to a disk that is full as long as the returned file exists."""
+    flag = tmp_path / "disk is full"
+    flag.touch()
+    monkeypatch.setenv(full_disk_worker.FLAG, str(flag))
+    monkeypatch.setattr(jobs, "main", full_disk_worker.main)
+    return flag
+
+
+def test_full_disk_loses_no_result(tmp_path, monkeypatch):
+    """A result that cannot be written is kept by the page, which writes it when there is space."""
+    flag, folder = full_disk(tmp_path, monkeypatch), tmp_path / "folder"
+    folder.mkdir()
+
+    async def visit():
+        async with opened(folder) as (page, user, _):
+            with user.client:
+                page.use_text(page.draft.text.replace('"5 s"', '"0.3 s"'))
+                await page.run()
+            await user.should_see("no space is left on the disk")
+            await user.should_see("computed, but not kept")
+            assert not list(folder.iterdir())
+            with user.client:
+                page.use_text(page.draft.text.replace('"0.4 mm"', '"0.5 mm"'))  # does not end the process
+                await page._save_again()
+            await user.should_see("no space is left on the disk")
+            flag.unlink()
+            user.find("Save again").click()
+            await until(lambda: "kept as" in page._status.text)
+            await user.should_see("kept as run-001")
+            assert not page._not_kept.text
+            assert rb.load(folder / "run-001.nc").case.dampers[0].gap == pytest.approx(0.4e-3)
+
+    asyncio.run(visit())
+
+
+def test_full_disk_loses_no_checkpoint(tmp_path, monkeypatch):
+    """A run of particles that stops at a full disk resumes from its last checkpoint, with the same bits."""
+    flag, folder = full_disk(tmp_path, monkeypatch), tmp_path / "folder"
+    folder.mkdir()
+    flag.unlink()
+
+    async def visit():
+        async with opened(folder) as (page, user, _):
+            with user.client:
+                page.use_text(SHORT_BOX)
+                running = asyncio.ensure_future(page.run())
+            await until(lambda: (folder / "run-001.checkpoint").exists())
+            flag.touch()
+            await running
+            await user.should_see("no space is left on the disk")
+            await user.should_see("Run resumes from the last checkpoint")
+            flag.unlink()
+            with user.client:
+                await page.run()
+            await user.should_see("kept as run-001")
+
+    asyncio.run(visit())
+    expected = rb.simulate(rb.Case.from_toml(SHORT_BOX), snapshots=tmp_path / "x.vtkhdf", progress=False)
+    assert rb.load(folder / "run-001.nc") == expected
+
+
+def test_folder_is_removed_during_a_run(tmp_path):
+    """A run whose folder disappears ends with a message; the page goes on when the folder is back."""
+    folder = tmp_path / "gone"
+    folder.mkdir()
+
+    async def visit():
+        async with opened(folder) as (page, user, _):
+            with user.client:
+                page.use_text(SHORT_BOX)
+                running = asyncio.ensure_future(page.run())
+            await until(lambda: (folder / "run-001.checkpoint").exists())
+            shutil.rmtree(folder)
+            await running
+            assert str(folder) in page._failure.text
+            with user.client:
+                page.map_tab._list_maps()
+                await page.map_tab._download("csv")
+                page._cancel()
+                assert "cannot be read" in page.kept_tab._failure.text or page.map_tab._failure.text
+            folder.mkdir()
+            with user.client:
+                page.use_text(template("steel_ball").replace('"5 s"', '"0.3 s"'))
+                await page.run()
+            await user.should_see("kept as run-001")
+
+    asyncio.run(visit())
+
+
+def test_run_that_exceeds_the_memory_is_refused(tmp_path):
+    """Output that does not fit in the memory has a message at its field, a process that the system ends in the page."""
+
+    async def visit():
+        async with opened(tmp_path) as (page, user, _):
+            with user.client:
+                for text in (template("box").replace('"2 kHz"', '"1 THz"'), FAST):
+                    page.use_text(text)
+                    assert "GB" in page._text_error.text
+                    assert "GB" in (page.form._inputs["output.rate"].error or "")
+                    await page.run()
+                assert not list(tmp_path.iterdir())
+                page.use_text(template("box"))
+                running = asyncio.ensure_future(page.run())
+            await until(lambda: (tmp_path / "run-001.checkpoint").exists())
+            os.kill(page._worker._process.pid, signal.SIGKILL)
+            await running
+            assert "memory" in page._failure.text
+            await user.should_see("Run resumes from the last checkpoint")
+
+    asyncio.run(visit())
+
+
+def test_stored_particle_run_is_shown_again(tmp_path):
+    """A run of particles is opened from the folder with its curves and frames, without computing it again."""
+    text = SHORT_BOX.replace('"60 ms"', '"10 ms"')
+    worker.run(lambda *_: None, text, str(tmp_path), "run-001", False)
+
+    async def visit():
+        async with opened(tmp_path) as (page, user, bodies):
+            with user.client:
+                await page.kept_tab._open("run-001")
+                arrays, about = decode(bodies[page._keys["particles"]](0))
+            assert about["next"] == about["planned"] == arrays["position"].shape[0]
+            assert page._summary.text == str(rb.load(tmp_path / "run-001.nc").summary())
+            assert page._about.text == "finished at t = 0.01 s"
+            with user.client:
+                next(field for name, field in page.form._inputs.items() if name.endswith("softening")).set_value("30")
+            assert page._about.text == "the pictures show an earlier case"
 
     asyncio.run(visit())
 

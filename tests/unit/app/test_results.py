@@ -1,17 +1,23 @@
 """Views, background work and downloads of the browser application."""
 
+import html
+import re
+import subprocess
+import sys
 import zipfile
-from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
+from PIL import Image
+from scipy.io import loadmat
 
 import rattlebox as rb
 from rattlebox.app import worker
 from rattlebox.app.binary import decode, encode
 from rattlebox.app.draft import template
-from rattlebox.app.results import download, download_map, inside, maps, new_name, runs
+from rattlebox.app.results import FORMATS, MAP_FORMATS, download, download_map, inside, maps, new_name, runs, stored_map
 from rattlebox.app.views import view_of_snapshots
 
 SHORT_BOX = (
@@ -92,28 +98,77 @@ def test_results_are_listed(folder):
     assert new_name(folder, "run") == "run-003"
 
 
-@pytest.mark.parametrize("suffix", ["nc", "csv", "mat", "toml", "py", "png", "html"])
-def test_downloads_of_a_run(folder, suffix):
-    """Each format has the expected content."""
-    content = download(folder, "run-001", suffix)
-    if suffix == "csv":
-        assert "run-001/motion.csv" in zipfile.ZipFile(BytesIO(content)).namelist()
-    elif suffix == "toml":
-        assert rb.Case.from_toml(content.decode()) == rb.load(folder / "run-001.nc").case
-    elif suffix == "py":
-        names = {}
-        exec(content.decode().partition("run = ")[0], names)
-        assert names["case"] == rb.load(folder / "run-001.nc").case
-    else:
-        assert content[:4] in (b"\x89HDF", b"MATL", b"\x89PNG") or content.startswith(b"<!doctype html>")
+def run_script(content, place):
+    """Run a downloaded script in an empty folder and return what it prints."""
+    done = subprocess.run([sys.executable, "-c", content], cwd=place, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
-@pytest.mark.parametrize("suffix", ["nc", "csv", "png", "html"])
-def test_downloads_of_a_map(folder, suffix):
-    """Tables and figures of a map have its values."""
-    content = download_map(folder, "map-001", suffix, "")
-    known = (b"\x89HDF", b"\x89PNG", b"damper.gap", b"<!doctype html>")
-    assert content.startswith(known)
+def numbers(summary):
+    """Return the lines of a summary but for the computing time."""
+    return [line.strip() for line in summary.splitlines() if line.strip() and "computing time" not in line]
+
+
+def test_downloads_of_a_run_are_opened(folder, tmp_path):
+    """Each file of a run, opened by the program that it is for, has the numbers of the run."""
+    run = rb.load(folder / "run-001.nc")
+    displacement = run.motion.displacement.values[:, 0]
+    files = {suffix: download(folder, "run-001", suffix) for suffix in FORMATS if suffix != "vtkhdf"}
+    for suffix, content in files.items():
+        (tmp_path / f"run.{suffix}").write_bytes(content)
+
+    assert rb.load(tmp_path / "run.nc") == run
+    with xr.open_dataset(tmp_path / "run.nc", group="motion") as motion:
+        assert np.array_equal(motion.displacement.values[:, 0], displacement)
+    with zipfile.ZipFile(tmp_path / "run.csv") as archive:
+        rows = archive.read("run-001/motion.csv").decode().splitlines()
+    column = rows[0].split(",").index("displacement mass [m]")
+    assert np.allclose([float(row.split(",")[column]) for row in rows[1:]], displacement)
+    assert np.array_equal(loadmat(tmp_path / "run.mat")["motion"]["displacement"].item().ravel(), displacement)
+    assert rb.Case.from_file(tmp_path / "run.toml") == run.case
+    with Image.open(tmp_path / "run.png") as figure:
+        assert figure.width > 500
+        assert len(figure.convert("RGB").getcolors(1 << 24)) > 10
+    page = html.unescape((tmp_path / "run.html").read_text(encoding="utf-8"))
+    assert f"{run.summary().values['impacts']:.0f}" in page
+    assert not re.search(r"(src|href)=.https?://", page)
+    assert numbers(run_script(files["py"].decode(), tmp_path)) == numbers(str(run.summary()))
+    assert (tmp_path / "motion.png").exists()
+
+
+def test_particles_are_downloaded(folder, tmp_path):
+    """The snapshots for ParaView, and the case file of a run of particles, are those of the run."""
+    (tmp_path / "run.vtkhdf").write_bytes(download(folder, "run-002", "vtkhdf"))
+    assert len(rb.Snapshots(tmp_path / "run.vtkhdf")) == 5
+    assert rb.Case.from_toml(download(folder, "run-002", "toml").decode()) == rb.load(folder / "run-002.nc").case
+
+
+def test_downloads_of_a_map_are_opened(folder, tmp_path):
+    """Each file of a map has the ratio to the case without damper that the page draws; the script computes the same."""
+    study, drawn = stored_map(folder, "map-001")
+    files = {suffix: download_map(folder, "map-001", suffix) for suffix in MAP_FORMATS}
+    for suffix, content in files.items():
+        (tmp_path / f"map.{suffix}").write_bytes(content)
+
+    ratio = study[drawn].values
+    bare = rb.sweep(study_case(study).model_copy(update={"dampers": ()}), {"seed": [0]}, "rms", progress=False)
+    assert np.allclose(ratio, study.rms.values / bare.rms.item())
+    table = np.genfromtxt(tmp_path / "map.csv", delimiter=",", names=True, deletechars="")
+    assert np.allclose(table[drawn], ratio)
+    with xr.open_dataset(tmp_path / "map.nc") as stored:
+        assert np.array_equal(stored[drawn].values, ratio)
+    with Image.open(tmp_path / "map.png") as figure:
+        assert figure.width > 500
+    assert "damper.gap" in (tmp_path / "map.html").read_text(encoding="utf-8")
+    printed = run_script(files["py"].decode(), tmp_path).splitlines()
+    assert np.allclose([float(line.split()[-1]) for line in printed[1:-1]], ratio, rtol=1e-5)
+    assert (tmp_path / "map.png").exists()
+
+
+def study_case(study):
+    """Return the case of a study."""
+    return rb.Case.from_toml(study.attrs["case"])
 
 
 @pytest.mark.parametrize("name", ["../x", "", "a/b", "x" * 100, "run-001.nc/..", "run-999", "\x00"])

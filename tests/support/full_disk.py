@@ -1,0 +1,26 @@
+"""A process of the browser application that computes with a full disk."""
+
+from __future__ import annotations
+
+import errno
+import os
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from rattlebox.app import worker
+
+FLAG = "RATTLEBOX_TEST_FULL_DISK"
+"""Environment variable with the name of a file; the disk is full as long as the file exists."""
+
+
+def main(connection: Connection) -> None:
+    """Do the tasks of a connection; while the flag is set, files cannot be completed."""
+    flush, flag = os.fsync, Path(os.environ[FLAG])
+
+    def flush_if_space(handle: int) -> None:
+        if flag.exists():
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        flush(handle)
+
+    os.fsync = flush_if_space
+    worker.main(connection)

@@ -1,0 +1,31 @@
+"""What the source of the browser application may use, and its size."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import rattlebox as rb
+from rattlebox import app
+
+FOLDER = Path(app.__file__).parent
+SOURCES = sorted(FOLDER.glob("*.py"))
+
+
+def test_size():
+    """Python and JavaScript together have at most 2500 lines that are not blank."""
+    files = [*SOURCES, *FOLDER.glob("browser/**/*.js")]
+    assert sum(bool(line.strip()) for file in files for line in file.read_text(encoding="utf-8").splitlines()) <= 2500
+
+
+@pytest.mark.parametrize("file", SOURCES, ids=lambda file: file.name)
+def test_only_public_names_are_used(file):
+    """The application imports `rattlebox` as a user does, and uses only names that it lists."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            assert [name.name for name in node.names if name.name.startswith("rattlebox.")] == []
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level <= 1
+            assert node.level == 1 or not str(node.module).startswith("rattlebox")
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "rb":
+            assert node.attr in rb.__all__
