@@ -42,7 +42,7 @@ test: setup
 
 # The application in a browser, if there is one; its simulated page is among the other tests.
 app-test: setup
-	$(BIN)/python -m pytest -q -rs -m browser tests/browser
+	$(BIN)/python -m pytest -q -rs -m 'browser and not slow' tests/browser
 
 verify: setup sanitize coverage mutate
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m slow
