@@ -25,14 +25,25 @@ import rattlebox as rb
 GRAVITY, FREQUENCY = 9.81, "60 Hz"
 
 
-def masses(accelerations, restitution=0.7, friction=0.3, cycles=(30, 40), seed=1, softening=300, fraction=0.025):
+def masses(
+    accelerations,
+    restitution=0.7,
+    friction=0.3,
+    *,
+    width="15 mm",
+    count=120,
+    cycles=(30, 40),
+    seed=1,
+    softening=300,
+    fraction=0.025,
+):
     """Return effective mass and damping mass over the mass of the beads, at acceleration amplitudes in units of gravity.
 
     The step is a fraction of the shortest contact.
     """
     damper = rb.ParticleDamper(
-        particles=rb.Particles(material="steel", diameter="3 mm", count=120),
-        cavity=rb.Box(size=("15 mm", "15 mm", "400 mm")),  # so high that no bead reaches the lid
+        particles=rb.Particles(material="steel", diameter="3 mm", count=count),
+        cavity=rb.Box(size=(width, width, "400 mm")),  # so high that no bead reaches the lid
         contact=rb.Tsuji(restitution=restitution),
         friction=friction,
         direction="z",
@@ -69,6 +80,10 @@ if __name__ == "__main__":
         name = f"restitution {restitution}, friction {friction}"
         for panel, values in zip(panels, (stored, lost), strict=True):
             panel.plot([*moderate, *high], values, "o-", ms=4, label=name)
+    for width, count, cycles in (("3.1 mm", 5, (60, 200)), ("6.6 mm", 20, (30, 80))):  # a column, and four columns
+        _, lost = masses(high, width=width, count=count, cycles=cycles)
+        print(f"{count} beads in a width of {width}: exponent {exponent(high, lost):.2f} of the damping mass")
+        assert -1.2 < exponent(high, lost) < -0.8
     panels[0].set(ylabel="Effective mass (mass of beads)", xscale="log")
     panels[0].axhline(0, color="0.8", lw=0.8, zorder=0)
     panels[1].plot(high, 6 / high, "k:", label="inverse of the acceleration")

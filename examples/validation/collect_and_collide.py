@@ -26,15 +26,26 @@ DIAMETER, COUNT, FREQUENCY = 10e-3, 120, 2.0  # of the beads [m], of the shaker 
 SIDE, LENGTH = 5.2 * DIAMETER, 100e-3  # of the cavity [m]
 
 
-def clearance(density=0.6):
+def clearance(count=COUNT, diameter=DIAMETER, density=0.6):
     """Return the length that the bed leaves free if it is packed with a volume fraction [m]."""
-    return LENGTH - COUNT * np.pi / 6 * DIAMETER**3 / (density * SIDE**2)
+    return LENGTH - count * np.pi / 6 * diameter**3 / (density * SIDE**2)
 
 
-def losses(amplitudes, restitution=0.75, friction=0.1, cycles=(6, 10), seed=1, softening=1000, fraction=0.025):
+def losses(
+    amplitudes,
+    restitution=0.75,
+    friction=0.1,
+    *,
+    count=COUNT,
+    diameter=DIAMETER,
+    cycles=(6, 10),
+    seed=1,
+    softening=1000,
+    fraction=0.025,
+):
     """Return the loss per cycle over m A^2 w^2 at amplitudes [m]; the step is a fraction of the shortest contact."""
     damper = rb.ParticleDamper(
-        particles=rb.Particles(material="steel", diameter=DIAMETER, count=COUNT),
+        particles=rb.Particles(material="steel", diameter=diameter, count=count),
         cavity=rb.Box(size=(LENGTH, SIDE, SIDE)),
         contact=rb.Tsuji(restitution=restitution),
         friction=friction,
@@ -73,4 +84,9 @@ if __name__ == "__main__":
     axes.plot(above, one_mass(above), "k", label="one inelastic mass")
     axes.set(xlabel="Amplitude (clearance/π)", ylabel="Loss a cycle ($m A^2 \\omega^2$)", ylim=0)
     axes.legend(frameon=False, fontsize="small")
+    for count, diameter in ((60, 10e-3), (200, 10e-3), (700, 4e-3)):
+        amplitude = clearance(count, diameter) / np.pi
+        low, high = losses(amplitude * np.array([0.75, 1.0]), count=count, diameter=diameter)
+        print(f"{count} beads of {1e3 * diameter:g} mm: {high:.2f} at {1e3 * amplitude:.1f} mm, {low:.2f} at 3/4 of it")
+        assert high > 3.4 and low < 0.5 * high
     figure.savefig("collect_and_collide.png", dpi=200)
