@@ -50,8 +50,9 @@ def plot_calibration(result: xr.Dataset, *, size: Size = "page") -> Figure:
             _draw_impacts(figure.subplots(), result)
             return figure
         count = 1 + (3 if result.sizes["parameter"] > 2 else 1)
-        figure = StyledFigure(size, 0.75 * count if narrow else 0.42 if count < 4 else 0.28)
-        panels = figure.subplots(*((count, 1) if narrow else (1, count)), squeeze=False).ravel()
+        rows, columns = (count, 1) if narrow else (count // 2, 2)
+        figure = StyledFigure(size, (0.75 if narrow else 0.42) * rows)
+        panels = figure.subplots(rows, columns).ravel()
         _draw_data(panels[0], result)
         if result.sizes["parameter"] == 2:
             _draw_region(panels[1], result)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import warnings
+from io import BytesIO
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -186,6 +188,11 @@ def test_a_parameter_without_influence_is_reported() -> None:
     assert result.attrs["undetermined"] == [f"warning: the data do not depend on {path}: any value in its range fits"]
     assert result.lower[1].item() == pytest.approx(10e-6) and result.upper[1].item() == pytest.approx(50e-6)
     assert result.is_lower_bounded.values.tolist() == result.is_upper_bounded.values.tolist() == [True, False]
+    figure = rb.plot_calibration(result.isel(parameter=[0, 1, 0]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of axes without room
+        figure.savefig(BytesIO(), format="png")
+    assert len(figure.axes) == 4
 
 
 def test_parameters_that_act_together_are_told_apart_by_a_known_one() -> None:
