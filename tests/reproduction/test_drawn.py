@@ -105,6 +105,16 @@ def same(*groups: np.ndarray) -> list[np.ndarray]:
     return np.split(ids, np.cumsum([np.size(group) for group in groups])[:-1])
 
 
+def may_hold(variable: xr.DataArray, drawn: np.ndarray) -> np.ndarray:
+    """Return whether each number is near a value of a variable: a cheap test before those of `same`."""
+    known = np.sort(variable.values[np.isfinite(variable.values)])
+    if not known.size:
+        return np.full(drawn.shape, False)
+    place = np.searchsorted(known, drawn)
+    near = [np.abs(known[np.clip(place - step, 0, known.size - 1)] - drawn) for step in (0, 1)]
+    return np.minimum(*near) <= 10 * EQUAL * np.abs(drawn)
+
+
 def rows(first: xr.DataArray, second: xr.DataArray) -> tuple[np.ndarray, np.ndarray] | None:
     """Return the values of two variables as columns of their table; None if they have no common table."""
     if first.size > 1 and second.size > 1 and not set(first.dims) & set(second.dims):
@@ -183,11 +193,13 @@ def _paired(mark: Mark, x: np.ndarray, first: list[xr.DataArray], y: np.ndarray,
     """Return whether each point is a row of a table: all points of a line of one table, those of an area of any."""
     left = np.full(x.size, True)
     for one in first:
-        if not np.isin(*same(x, one.values[np.isfinite(one.values)])).any():
+        if not may_hold(one, x).any():
             continue
         if mark.area:
             left &= ~((y == 0) & np.isin(*same(x, one.values[np.isfinite(one.values)])))
         for other in second:
+            if not mark.area and not may_hold(other, y).all():
+                continue
             table = rows(one, other)
             if table is None:
                 continue

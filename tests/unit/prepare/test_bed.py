@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -118,12 +119,26 @@ def test_densities_do_not_depend_on_form_and_sizes(
         assert bed.bed_fill == pytest.approx(0.9, abs=0.03)
 
 
-@pytest.mark.parametrize("form", SMALL)
-@pytest.mark.parametrize("packing", [rb.Settled(seed=2), rb.Compacted(seed=2)], ids=lambda packing: packing.kind)
-@pytest.mark.parametrize("fill", [0.5, 0.9])
-def test_a_bed_has_the_stated_volume(fill: float, packing: Any, form: str) -> None:
+PACKINGS = {"settled": rb.Settled(seed=2), "compacted": rb.Compacted(seed=2)}
+QUICK = [
+    ("box", "settled", 0.5),
+    ("sphere", "settled", 0.9),
+    ("lying can", "compacted", 0.5),
+    ("upright can", "compacted", 0.9),
+]
+"""Beds of the fast tests: each cavity, packing and fill at least once."""
+
+
+@pytest.mark.parametrize(
+    ("form", "packing", "fill"),
+    [
+        pytest.param(*bed, marks=[] if bed in QUICK else [pytest.mark.slow])
+        for bed in itertools.product(SMALL, PACKINGS, [0.5, 0.9])
+    ],
+)
+def test_a_bed_has_the_stated_volume(form: str, packing: str, fill: float) -> None:
     """The bed of a few hundred particles has the stated volume within 5 % of it; `fill_ratio` is that of the balls."""
-    made = damper(SMALL[form], packing, bed_fill=fill)
+    made = damper(SMALL[form], PACKINGS[packing], bed_fill=fill)
     bed = rb.measure_bed(made)
     assert bed.bed_fill == pytest.approx(fill, rel=0.05)
     assert bed.fill_ratio == pytest.approx(bed.count * math.pi / 6 * 4e-3**3 / made.cavity.volume)
@@ -140,8 +155,17 @@ def test_more_friction_needs_fewer_particles_for_the_same_bed() -> None:
 # ---- full cavities
 
 
-@pytest.mark.parametrize("gravity", [(0, 0, -9.81), (0, 0, 0)], ids=["gravity", "no gravity"])
-@pytest.mark.parametrize("form", SMALL)
+@pytest.mark.parametrize(
+    ("form", "gravity"),
+    [
+        *(pytest.param(form, (0, 0, -9.81), id=f"{form}-gravity") for form in SMALL),
+        pytest.param("lying can", (0, 0, 0), id="lying can-no gravity"),
+        *(
+            pytest.param(form, (0, 0, 0), id=f"{form}-no gravity", marks=pytest.mark.slow)
+            for form in ("box", "upright can", "sphere")
+        ),
+    ],
+)
 def test_a_full_cavity_has_no_room_for_another_particle(form: str, gravity: Any) -> None:
     """A full cavity is filled throughout: another particle fits in 0.01 % of the places at most, and none overlap."""
     full = damper(SMALL[form], bed_fill=1, gravity=gravity)
