@@ -117,11 +117,11 @@ def test_modes_of_beams_are_orthonormal(ends: str) -> None:
 
 @pytest.mark.parametrize("ends", ["clamped-free", "clamped-clamped", "pinned-pinned"])
 def test_effective_masses_of_a_beam_add_up(ends: str) -> None:
-    """The effective masses of 100 modes miss the mass by what is left in higher modes, which falls as 1 / n."""
-    beam = rb.Beam(length=1.0, ends=ends, bending_stiffness=1.0, mass_per_length=1.0, mode_count=100)
+    """The effective masses of 52 modes miss the mass by that of the higher modes, which falls as 1 / n."""
+    beam = rb.Beam(length=1.0, ends=ends, bending_stiffness=1.0, mass_per_length=1.0, mode_count=52)
     missing = 1.0 - np.cumsum(beam.modes().participation ** 2)
-    assert 0 < missing[99] < 0.01
-    assert missing[49] / missing[99] == pytest.approx(2, rel=0.02)
+    assert 0 < missing[51] < 0.02
+    assert missing[25] / missing[51] == pytest.approx(2, rel=0.02)
 
 
 def test_effective_masses_of_a_cantilever() -> None:

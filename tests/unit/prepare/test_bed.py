@@ -364,7 +364,11 @@ def test_the_largest_number_of_a_cavity_is_stated() -> None:
     assert most == rb.measure_bed(full).full_count
 
 
-def test_particles_that_cannot_be_compacted_are_refused_with_the_largest_number() -> None:
+@pytest.mark.parametrize("iterations", [500, pytest.param(settling.MAX_ITERATIONS, marks=pytest.mark.slow)])
+def test_particles_that_cannot_be_compacted_are_refused_with_the_largest_number(
+    iterations: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Where the number is below random close packing but the walls forbid it, the insertion ends with the same message."""
+    monkeypatch.setattr(settling, "MAX_ITERATIONS", iterations)
     with pytest.raises(rb.CaseError, match=r"cannot be inserted at random; at random this cavity holds at most \d+"):
         settle(damper(rb.Box(size=("9 mm", "9 mm", "9 mm")), count=13))
