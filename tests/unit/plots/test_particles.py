@@ -181,7 +181,7 @@ def test_colours_and_views(run: Any) -> None:
     snapshots = rb.Snapshots(run[1])
     labels = {}
     for colour in ("speed", "spin", "radius", "species", "none"):
-        figure = plot_particles(snapshots, colour=colour, renderer="plain")  # type: ignore[arg-type]
+        figure = plot_particles(snapshots, colour=colour, size="column", renderer="plain")  # type: ignore[arg-type]
         labels[colour] = figure.axes[-1].get_ylabel() if colour != "none" else str(len(figure.axes))
     assert labels["species"] == "Species" and labels["none"] == "2"
     assert labels["spin"].startswith("Spin (") and labels["spin"].endswith("rad/s)") and "m)" in labels["radius"]
@@ -216,7 +216,7 @@ def test_odd_sizes_of_films_are_refused(pixels: Any, run: Any, tmp_path: Path) -
 def test_films_for_talks(run: Any, tmp_path: Path) -> None:
     """An MP4 is written if imageio-ffmpeg is installed."""
     pytest.importorskip("imageio_ffmpeg", reason="no imageio-ffmpeg: python -m pip install 'rattlebox[3d]'")
-    path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.mp4", renderer="plain")
+    path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.mp4", pixels=(320, 180), renderer="plain")
     assert path.read_bytes()[4:8] == b"ftyp"
 
 
