@@ -69,7 +69,9 @@ sanitize-memory: export ASAN_OPTIONS := detect_leaks=0
 sanitize-memory: setup
 	$(call sanitized,asan,-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined) tests/unit/engines tests/verification/dem/test_normal.py -k 'not core_stub'
 
+# Threads of BLAS, which has no sanitizer, would be reported as races.
 sanitize-threads: export TSAN_OPTIONS := halt_on_error=1
+sanitize-threads: export OPENBLAS_NUM_THREADS := 1
 sanitize-threads: setup
 	$(call sanitized,tsan,-fsanitize=thread) tests/verification/dem/test_bits.py -k 'not another_process'
 
