@@ -1,6 +1,7 @@
 """Documentation pages: examples, public names, fields, search terms."""
 
 import contextlib
+import inspect
 import io
 import re
 from pathlib import Path
@@ -98,6 +99,35 @@ def test_every_public_name_has_a_page():
     names = ("reference/api", "reference/case_file", "how-to/analysis")
     pages = "".join((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in names)
     assert [name for name in rb.__all__ if not re.search(rf"\b{name}\b", pages)] == []
+
+
+def section(docstring: str, title: str) -> str:
+    """Return the text of a section of a docstring; empty if there is none."""
+    found = re.search(
+        rf"^{title}\n-+\n(.*?)(?=^\w[\w ]*\n---|\Z)", inspect.cleandoc(docstring), re.DOTALL | re.MULTILINE
+    )
+    return found[1] if found else ""
+
+
+def test_docstrings_of_public_functions_are_complete():
+    """Each public function describes all its parameters, its result and, if it raises in its own lines, its errors."""
+    modules = {"": rb, "analysis.": rb.analysis, "plots.": rb.plots}
+    functions = {
+        f"{prefix}{name}": getattr(module, name) for prefix, module in modules.items() for name in module.__all__
+    }
+    lacks = []
+    for name, function in functions.items():
+        if not inspect.isfunction(function):
+            continue
+        text, signature = function.__doc__ or "", inspect.signature(function)
+        described = re.findall(r"\w+", " ".join(re.findall(r"^(\S[^:\n]*)", section(text, "Parameters"), re.MULTILINE)))
+        lacks += [f"{name}: {parameter}" for parameter in signature.parameters if parameter not in described]
+        returns = signature.return_annotation not in (None, "None", inspect.Signature.empty)
+        if returns and not inspect.isgeneratorfunction(inspect.unwrap(function)) and not section(text, "Returns"):
+            lacks.append(f"{name}: Returns")
+        if re.search(r"^ +raise \w", inspect.getsource(function), re.MULTILINE) and not section(text, "Raises"):
+            lacks.append(f"{name}: Raises")
+    assert len(functions) > 100 and not lacks
 
 
 def test_every_field_of_a_case_is_described():
