@@ -3,6 +3,8 @@
 import os
 import signal
 
+import pytest
+
 pytest_plugins = ("support.processor_time",)
 
 # The workers of pytest share the cores. More threads of BLAS wait for each other: eigenvalues of a matrix of 900 rows take
@@ -13,3 +15,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 def pytest_configure() -> None:
     """Let Ctrl-C reach tests and the programs they start: shells start background jobs with it ignored."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(autouse=True)
+def examples_write_into_an_own_folder(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run the examples of docstrings in an empty folder, since some write files."""
+    if isinstance(request.node, pytest.DoctestItem):
+        monkeypatch.chdir(request.getfixturevalue("tmp_path"))
