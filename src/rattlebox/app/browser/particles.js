@@ -75,8 +75,9 @@ export default {
       }
       if (!url) return;
       try {
-        const body = await fetchBody(`${url}?first=${this.next || 0}`);
+        const first = this.next || 0, body = await fetchBody(`${url}?first=${first}`);
         if (url !== this.url || !this.view) return;
+        if (first !== (this.next || 0)) return this.load(false); // another request has brought these frames
         this.append(body);
       } catch (error) { console.warn("no particles yet:", error.message); }
       if (this.growing) this.timer = setTimeout(() => this.load(false), 700);
