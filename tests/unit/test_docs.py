@@ -13,17 +13,21 @@ from rattlebox.model.base import Part
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-# Tests of the studies and of the engines hold for fewer cycles what these pages compute for 6 s and more.
-SLOW_PAGES = ("how-to/loss_map", "how-to/lyapunov", "how-to/particle_output")
+# Tests of the studies and of the engines hold for fewer cycles what these pages compute for 3 s and more.
+SLOW_PAGES = (
+    "how-to/design",
+    "how-to/frequency_response",
+    "how-to/loss_map",
+    "how-to/lyapunov",
+    "how-to/particle_output",
+)
 PAGES = (
     "how-to/analysis",
     "how-to/basins",
     "how-to/bifurcation",
     "how-to/calibration",
-    "how-to/design",
     "how-to/fills",
     "how-to/fmu",
-    "how-to/frequency_response",
     "how-to/loads",
     "how-to/map_on_structure",
     "how-to/matlab",
