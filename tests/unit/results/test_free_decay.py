@@ -11,6 +11,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.analysis import equivalent_damping
+from rattlebox.results.free_decay import free_decay
 
 
 def decay(**changes: Any) -> rb.Run:
@@ -31,6 +32,18 @@ def test_a_linear_decay() -> None:
     for wrong in ({"amplitude": 0.0}, {"point": "tip"}):
         with pytest.raises(ValueError, match=next(iter(wrong))):
             equivalent_damping(run, **wrong)
+
+
+def test_a_decay_about_a_displaced_equilibrium() -> None:
+    """A constant displacement, such as that by a weight, does not change the ratio."""
+    arrays = decay().arrays
+    offset = 0.5 * np.abs(arrays.modal_displacement).max()
+    shape = np.abs(arrays.displacement).max() / np.abs(arrays.modal_displacement).max()
+    lowered = arrays.replaced(
+        modal_displacement=arrays.modal_displacement - offset, displacement=arrays.displacement - shape * offset
+    )
+    result = free_decay(lowered)
+    assert result is not None and result.damping_ratio == pytest.approx(0.02, rel=0.01)
 
 
 def test_after_a_load() -> None:
