@@ -101,6 +101,12 @@ def tests_of(data: CoverageData, seconds: dict[tuple[Any, ...], float], path: Pa
     return chosen
 
 
+def excerpt(line: str, other: str, reach: int = 80) -> str:
+    """Return the part of a line around its first difference from another one; a table may be one line of a tree."""
+    place = next((k for k, pair in enumerate(zip(line, other, strict=False)) if len({*pair}) > 1), 0)
+    return line if len(line) <= 2 * reach else line[max(0, place - reach) : place + reach]
+
+
 def main() -> None:
     """Test random changes for the given time; print the survivors and the number of each outcome."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -142,7 +148,7 @@ def main() -> None:
             differ = [pair for pair in zip(before, ast.unparse(tree).splitlines(), strict=True) if len({*pair}) > 1]
             print(
                 f"{path.relative_to(ROOT)}:{line} {result}",
-                *(f"\n  - {old}\n  + {new}" for old, new in differ),
+                *(f"\n  - {excerpt(old, new)}\n  + {excerpt(new, old)}" for old, new in differ),
                 flush=True,
             )
     total = ", ".join(f"{number} {result}" for result, number in counts.items())
