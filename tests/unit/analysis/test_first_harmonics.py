@@ -9,6 +9,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.analysis import complex_power, shaken_cavity
+from rattlebox.analysis.signals import trapezoid_weights
 
 FREQUENCY = 20.0
 SPEED = 0.5 * 9.81 / (2 * math.pi * FREQUENCY)
@@ -27,6 +28,15 @@ def resting_ball(rate: float = 400.0) -> rb.Case:
         duration=0.5,
         output=rb.Output(rate=rate),
     )
+
+
+def test_weights_integrate_straight_lines_from_between_two_samples() -> None:
+    """The trapezoidal rule over uneven samples, from a time between two of them, is exact for a straight line there."""
+    time = np.array([0.0, 0.3, 0.5, 1.1, 1.2])
+    for begin in (0.0, 0.4, 0.5, 0.7):
+        weights = trapezoid_weights(time, begin)
+        assert weights.sum() == pytest.approx(1.2 - begin, rel=1e-13)
+        assert weights @ (2 + 3 * time) == pytest.approx(2 * (1.2 - begin) + 1.5 * (1.2**2 - begin**2), rel=1e-13)
 
 
 @pytest.mark.parametrize("samples", [8.0, 8.37, 20.0, 20.7])

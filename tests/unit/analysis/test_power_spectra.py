@@ -72,9 +72,10 @@ def test_a_flat_density_fills_each_band_by_its_width(fraction):
         assert float(levels.sel(nominal="100").band) == pytest.approx(100.0, rel=1e-12)
 
 
-def test_a_rising_density_fills_each_band_by_its_integral():
+@pytest.mark.parametrize("spacing", [1.0, 0.4])
+def test_a_rising_density_fills_each_band_by_its_integral(spacing):
     """Bands of a density that rises with frequency: mean squares are the integral, also between the frequencies given."""
-    frequency = np.arange(4001) * 1.0
+    frequency = np.arange(4001) * spacing
     levels = band_levels(xarray.DataArray(3.0 * frequency, {"frequency": frequency}))
     np.testing.assert_allclose(levels**2, 1.5 * (levels.upper**2 - levels.lower**2), rtol=1e-12)
 
