@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from rattlebox.core import _core
 from rattlebox.model.contacts import Contact, Linear, TabulatedNormal
@@ -136,6 +135,8 @@ def validity_limits(case: Case, prepared: Prepared | None) -> Iterator[ContactLi
 
 def _limits_of_particles(prepared: Prepared) -> Iterator[ContactLimit]:
     """Yield the limits of each particle damper: overlap, speed for the time step, and tables of restitution."""
+    from scipy.optimize import brentq  # takes as long to import as a short run
+
     case, step = prepared.case, prepared.step
     for index, (damper, table) in enumerate(zip(case.particle_dampers, prepared.tables, strict=True)):
         name = " ".join(damper.label(index).split())
