@@ -190,6 +190,8 @@ def vocabulary() -> dict[str, dict[str, dict[str, str]]]:
     stack: list[type[Part]] = [Part]
     while stack:
         part = stack.pop()
+        if part is FilePart:  # its classes follow below their other base class, in the order of kinds
+            continue
         stack.extend(reversed(part.__subclasses__()))
         kind = part.model_fields.get("kind")
         if kind is not None and kind.is_required():
