@@ -13,6 +13,7 @@ from nicegui import app, core, ui
 
 import rattlebox as rb
 
+from .draft import Draft
 from .form import schema
 from .guard import MOST_BYTES, Guard
 from .jobs import Worker
@@ -54,7 +55,7 @@ def build(folder: Path, port: int, token: str) -> None:
     app.add_middleware(Guard, token=token, hosts=(f"{HOST}:{port}", f"localhost:{port}"))
     core.sio.eio.max_http_buffer_size = MOST_BYTES
     app.on_startup(Worker.start_spare)
-    app.on_startup(schema)  # takes longer than the first page
+    app.on_startup(lambda: (schema(), Draft(folder), rb.materials(), rb.MEASURES))  # what the first page would load
     app.on_shutdown(Worker.stop_spare)
 
 
