@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-import shutil
 import signal
 import time
 from contextlib import asynccontextmanager
@@ -24,6 +23,9 @@ SHORT_BOX = (
     .replace("count = 200", "count = 8")
     .replace("snapshots = 200", "snapshots = 5")
 )
+
+LONG_BOX = SHORT_BOX.replace('"60 ms"', '"8 s"')
+"""A run of some seconds, with time for several checkpoints."""
 
 FAST = template("steel_ball").replace('duration = "5 s"', 'duration = "5 s"\noutput = { rate = "1 THz" }')
 """A case with terabytes of output."""
@@ -229,7 +231,7 @@ def test_full_disk_loses_no_checkpoint(tmp_path, monkeypatch):
     async def visit():
         async with opened(folder) as (page, user, _):
             with user.client:
-                page.use_text(SHORT_BOX)
+                page.use_text(LONG_BOX)
                 running = asyncio.ensure_future(page.run())
             await until(lambda: (folder / "run-001.checkpoint").exists())
             flag.touch()
@@ -242,22 +244,23 @@ def test_full_disk_loses_no_checkpoint(tmp_path, monkeypatch):
             await user.should_see("kept as run-001")
 
     asyncio.run(visit())
-    expected = rb.simulate(rb.Case.from_toml(SHORT_BOX), snapshots=tmp_path / "x.vtkhdf", progress=False)
+    expected = rb.simulate(rb.Case.from_toml(LONG_BOX), snapshots=tmp_path / "x.vtkhdf", progress=False)
     assert rb.load(folder / "run-001.nc") == expected
 
 
-def test_folder_is_removed_during_a_run(tmp_path):
+def test_folder_is_removed_during_a_run(tmp_path, monkeypatch):
     """A run whose folder disappears ends with a message; the page goes on when the folder is back."""
+    full_disk(tmp_path, monkeypatch).unlink()  # there is space, and many checkpoints
     folder = tmp_path / "gone"
     folder.mkdir()
 
     async def visit():
         async with opened(folder) as (page, user, _):
             with user.client:
-                page.use_text(SHORT_BOX)
+                page.use_text(LONG_BOX)
                 running = asyncio.ensure_future(page.run())
             await until(lambda: (folder / "run-001.checkpoint").exists())
-            shutil.rmtree(folder)
+            folder.rename(tmp_path / "elsewhere")
             await running
             assert str(folder) in page._failure.text
             with user.client:
