@@ -200,6 +200,52 @@ def test_box_of_balls_moves_and_is_cancelled(page, server):
     assert not list(server[1].glob("*.vtkhdf"))
 
 
+def test_controls_of_particles(page, server, tmp_path):
+    """Copy gives the case; Pause and Run give one run; snapshots are scrubbed, coloured, cut and turned."""
+    choose(page, "Shaken box of balls")
+    short = toml(page).replace("count = 200", "count = 100").replace('duration = "1 s"', 'duration = "6 s"')
+    page.locator("textarea").first.fill(short.replace("snapshots = 200", "snapshots = 12"))
+    page.wait_for_timeout(1000)  # the page waits for the end of typing
+    page.evaluate("navigator.clipboard.writeText = async (text) => { window.rbCopied = text; }")
+    page.get_by_role("button", name="Copy").click()
+    page.wait_for_function("window.rbCopied !== undefined")
+    assert rb.Case.from_toml(page.evaluate("window.rbCopied")) == rb.Case.from_toml(toml(page))
+    page.get_by_role("button", name="Run and keep").click()
+    page.get_by_text("computed up to t").wait_for()  # there is a checkpoint
+    page.get_by_role("button", name="Pause").first.click()
+    page.get_by_text("paused; Run resumes").wait_for()
+    page.get_by_role("button", name="Run and keep").click()
+    page.get_by_text("kept as run-").wait_for()
+    (name,) = server[1].glob("run-*.vtkhdf")
+    assert rb.load(name.with_suffix(".nc")) == rb.simulate(
+        rb.Case.from_toml(toml(page)), snapshots=tmp_path / "x.vtkhdf", progress=False
+    )
+    page.wait_for_function("window.rbParticles.frames === 12")
+
+    def changed_by(action):
+        before = picture(page, ".rb-scene canvas")
+        action()
+        page.wait_for_function(
+            "(before) => document.querySelector('.rb-scene canvas').toDataURL() !== before", arg=before
+        )
+
+    def turn():
+        box = page.locator(".rb-scene canvas").bounding_box()
+        page.mouse.move(box["x"] + 200, box["y"] + 200)
+        page.mouse.down()
+        page.mouse.move(box["x"] + 260, box["y"] + 220, steps=3)
+        page.mouse.up()
+
+    page.get_by_role("slider", name="time").fill("7")
+    page.wait_for_function("window.rbParticles.frame === 7")
+    page.wait_for_timeout(1000)
+    assert page.evaluate("window.rbParticles.frame") == 7  # it does not play on
+    changed_by(lambda: page.locator("label", has_text="colour").locator("select").select_option("spin"))
+    changed_by(lambda: page.locator("label", has_text="colour").locator("select").select_option("species"))
+    changed_by(lambda: page.get_by_label("cut plane").fill("0"))
+    changed_by(turn)
+
+
 def test_map_is_clicked_and_the_case_downloaded(page, server, tmp_path):
     """A map fills; a click on a point changes the case; the downloaded case gives the same summary on the command line."""
     page.get_by_role("tab", name="Map").click()
