@@ -36,7 +36,7 @@ struct Limit {
     bool speed = false;
     std::size_t index = 0;
     real value = 0;
-    std::string text; // what happens beyond it
+    std::string text; // consequence of exceeding it, and advice
     bool exceeded = false;
 };
 
@@ -67,19 +67,21 @@ class Fmu {
     // Lines of quantity, index, value and text, after a comment. A value is the integer with the same bits,
     // because importers may have set a locale with a decimal comma.
     static std::vector<Limit> read_limits(const std::string& path) {
-        std::vector<std::uint8_t> bytes = read(path);
-        bytes.push_back(0);
+        const std::vector<std::uint8_t> bytes = read(path);
+        const std::string text(bytes.begin(), bytes.end());
         std::vector<Limit> limits;
-        for (char* line = std::strtok(reinterpret_cast<char*>(bytes.data()), "\n"); line;
-             line = std::strtok(nullptr, "\n")) {
-            if (*line == '#') continue;
+        for (std::size_t from = 0, to; from < text.size(); from = to + 1) {
+            to = std::min(text.find('\n', from), text.size());
+            const std::string line = text.substr(from, to - from);
+            if (line.empty() || line[0] == '#') continue;
             char quantity[16];
             unsigned long long index, value;
             int begin = 0;
-            if (std::sscanf(line, "%15s %llu %llu %n", quantity, &index, &value, &begin) < 3)
+            if (std::sscanf(line.c_str(), "%15s %llu %llu %n", quantity, &index, &value, &begin) < 3)
                 throw std::runtime_error(path + " is damaged");
             limits.push_back({std::strcmp(quantity, "speed") == 0, static_cast<std::size_t>(index),
-                              std::bit_cast<real>(static_cast<std::uint64_t>(value)), line + begin});
+                              std::bit_cast<real>(static_cast<std::uint64_t>(value)),
+                              line.substr(static_cast<std::size_t>(begin))});
         }
         return limits;
     }

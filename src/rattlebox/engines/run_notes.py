@@ -98,7 +98,7 @@ class ContactLimit:
     value
         The limit.
     text
-        What happens beyond it, and what to try.
+        Consequence of exceeding it, and advice.
     """
 
     quantity: Literal["overlap", "speed"]
