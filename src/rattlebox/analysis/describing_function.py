@@ -82,21 +82,24 @@ class MassTable:
     def _latest(self) -> dict[bytes, MassCurves]:
         return {}
 
-    def curves(self, frequency: FloatArray) -> MassCurves:
+    def curves(self, frequency: FloatArray, *, store: bool = True) -> MassCurves:
         """Return the apparent mass over the amplitude at frequencies.
-
-        The last curves are stored: many arrangements of dampers are computed at the same frequencies.
 
         Parameters
         ----------
         frequency : (F,) float
             Frequencies within the table [Hz].
+        store
+            Whether to store the curves for the next call: many arrangements of dampers are computed at the same frequencies.
         """
         key = frequency.tobytes()
-        if key not in self._latest:
-            self._latest.clear()
-            self._latest[key] = MassCurves(np.log(self.amplitude), self._at(frequency))
-        return self._latest[key]
+        curves = self._latest.get(key)
+        if curves is None:
+            curves = MassCurves(np.log(self.amplitude), self._at(frequency))
+            if store:
+                self._latest.clear()
+                self._latest[key] = curves
+        return curves
 
     def _at(self, frequency: FloatArray) -> ComplexArray:
         """Return the coefficients of the cubics at frequencies, (F, K - 1, 4)."""
@@ -119,26 +122,6 @@ class MassTable:
     def log_acceleration(self, omega: FloatArray) -> FloatArray:
         """Return the logarithm of the acceleration of a unit amplitude at angular frequencies [rad/s], same shape."""
         return np.zeros_like(omega) if self.is_acceleration else 2 * np.log(omega)
-
-    def evaluate(self, frequency: FloatArray, log_amplitude: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return the apparent mass and its derivative with respect to the logarithm of the amplitude.
-
-        Parameters
-        ----------
-        frequency : (F,) float
-            Frequencies within the table [Hz].
-        log_amplitude : (F, ...) float
-            Natural logarithms of amplitudes.
-
-        Returns
-        -------
-        tuple of (F, ...) complex
-            Mass [kg] and derivative [kg]. Outside of the table the derivative decays to zero within a few per cent of the
-            amplitude, so that branches of solutions can be followed there; these solutions are not used.
-        """
-        return MassCurves(np.log(self.amplitude), self._at(frequency)).evaluate(
-            np.arange(frequency.size), log_amplitude
-        )
 
     def thinned(self, amplitudes: bool) -> MassTable | None:
         """Return the table without every second amplitude or frequency; None if fewer than three are left to omit from."""
@@ -673,7 +656,7 @@ def damping_of_modes(
         for step in range(60):
             hertz = np.clip(omega / (2 * np.pi), table.frequency[0], table.frequency[-1])
             logs, outside = _cavity_amplitudes(x @ shapes.T, amplitudes)
-            mass, _ = table.evaluate(hertz, logs)
+            mass, _ = table.curves(hertz, store=False).evaluate(np.arange(hertz.size), logs)
             loaded = np.eye(count) + number * np.einsum("kp,pi,pj->kij", mass.real, shapes, shapes)
             squared, x, valid = _mode(stiffness, loaded, int(mode))
             before, omega = omega, np.sqrt(squared)

@@ -477,7 +477,7 @@ def test_no_root_between_the_amplitudes_of_the_table_is_missed() -> None:
         levels = np.geomspace(1, 100, 7)
         found = solve(table, frequency, gain, drive, levels)
         logs = np.linspace(*table.limits, 100_001)
-        own, _ = table.evaluate(frequency, logs[None])
+        own, _ = table.curves(frequency).evaluate(np.arange(1), logs[None])
         scan = np.exp(logs) * omega**2 * np.abs(1 + gain[0, 0] * own[0]) / np.abs(drive[0])
         for k, level in enumerate(levels):
             roots = np.exp(logs[np.flatnonzero((scan[1:] > level) != (scan[:-1] > level))])[::-1] * omega**2
