@@ -59,7 +59,7 @@ if task["amplitude"]:  # the engine moves walls as a cosine
         ids=walls)]
 O.engines += [NewtonIntegrator(damping=0, gravity=(0, 0, -task["gravity"]))]
 O.dt = task["step"]
-if task["warm"]:  # 0 would run for ever
+if task["warm"]:  # 0 would run without end
     O.run(task["warm"], True)
 for _ in range(task["steps"] // task["phase"]):
     sample()

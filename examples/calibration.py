@@ -3,7 +3,7 @@
 
 For experimenters who need restitution and friction of the balls in a filled box: a drop test and a shaker give both.
 
-A box of 48 steel balls is shaken sideways at four levels. Its losses alone do not tell restitution and friction apart:
+A box of 48 steel balls is shaken sideways at four levels. Its losses alone do not separate restitution and friction:
 livelier balls with more friction lose as much. With the restitution of a drop test the friction follows. The measurements
 are simulated with known values, another random packing and random errors of 2 %; all intervals hold these values.
 
@@ -71,7 +71,7 @@ if __name__ == "__main__":
             assert one.lower <= value <= one.upper
     alone, both = ((result.upper - result.lower).sel(parameter="damper.friction") for result in results)
     assert both < 0.6 * alone
-    assert "the data cannot tell" in results[0].undetermined[0] and not results[1].undetermined
+    assert "the data cannot separate" in results[0].undetermined[0] and not results[1].undetermined
 
     figure, panels = plt.subplots(1, 2, figsize=(7.5, 3.2), layout="constrained")
     places = [float(level.split()[0]) for level in LEVELS]

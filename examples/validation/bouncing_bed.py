@@ -1,7 +1,7 @@
 """Apparent mass of an open box
 ============================
 
-For those who doubt simulated particle dampers: apparent mass and loss of an open vertical box over the acceleration.
+For critical readers: apparent mass and loss of an open vertical box over the acceleration.
 
 Masmoudi et al. measured on a shaker, and Ferreyra et al. simulated, that the loss falls with the inverse of the
 acceleration amplitude, and that the apparent mass falls steeply, about with the inverse of its square at moderate

@@ -1,7 +1,7 @@
 """Best amplitude in weightlessness
 ================================
 
-For those who doubt simulated particle dampers: the best amplitude of a shaken box of beads in weightlessness.
+For critical readers: the best amplitude of a shaken box of beads in weightlessness.
 
 While the bed is collected at a wall and thrown once per half-cycle, it acts as one inelastic mass: the loss per cycle
 is at most 4 m A^2 w^2, at an amplitude A of the free clearance over pi, and the measured loss of Sack et al. in

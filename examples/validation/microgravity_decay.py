@@ -1,7 +1,7 @@
 """Free decay in weightlessness
 ============================
 
-For those who doubt simulated particle dampers: free decay of a box of beads on a leaf spring in weightlessness.
+For critical readers: free decay of a box of beads on a leaf spring in weightlessness.
 
 Bannerman et al. measured in parabolic flight, and found with event-driven hard spheres, that the amplitude falls
 linearly while the bed is collected and thrown once per half-cycle, and then leaves this regime. Mass ratio, size of

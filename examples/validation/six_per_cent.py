@@ -1,7 +1,7 @@
 """Largest damping with shot of six per cent
 =========================================
 
-For those who doubt simulated particle dampers: the largest damping of a beam with shot of six per cent of its mass.
+For critical readers: the largest damping of a beam with shot of six per cent of its mass.
 
 Friend and Kinra measured a specific damping capacity, the part of the energy that a cycle loses, of about 50 % at
 most, with lead shot of about 6 % of the mass in a box at the tip of a vertical beam, over amplitude and clearance.

@@ -1,7 +1,7 @@
 """Effect of softening and time step on validation
 ===============================================
 
-For those who doubt simulated particle dampers: the main numbers of the validation scripts with other contacts and steps.
+For critical readers: the main numbers of the validation scripts with other contacts and steps.
 
 Contacts of particles are softened to save time, and motion is computed in steps. The main number of each script with
 particles is repeated with half its softening and with half its step, from several random packings each. The

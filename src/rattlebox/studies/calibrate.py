@@ -88,7 +88,7 @@ def calibrate(
         by the response surface, `check` and `check_deviation` of the further packings, and `scatter` of one packing; over
         `sample`: `simulated`, and the parameters; over `parameter` and `place`: `profile`, chi^2 above its minimum; and
         `region`, the same over the first two parameters. Attributes: `chi2`, `degrees_of_freedom` and `p_value` of the fit;
-        `undetermined`, which parameters the data do not determine or tell apart.
+        `undetermined`, which parameters the data do not determine or separate.
 
     Raises
     ------

@@ -422,7 +422,9 @@ class ShakerLoss:
         amplitude, unit = read_column("amplitude", self.amplitude, ("m", "m/s^2"))
         if unit is None:
             with at("amplitude"):
-                raise Hint("the unit tells a displacement from an acceleration", '"20 m/s^2", "2 g_0" or "0.5 mm"')
+                raise Hint(
+                    "the unit distinguishes a displacement from an acceleration", '"20 m/s^2", "2 g_0" or "0.5 mm"'
+                )
         amplitude = _one_or_all("amplitude", amplitude, loss.size)
         frequency = _one_or_all("frequency", read_column("frequency", self.frequency, ("Hz",)).values, loss.size)
         _replace(

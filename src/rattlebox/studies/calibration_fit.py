@@ -20,7 +20,7 @@ from .response_surface import Agreement, Region, Surfaces
 FloatArray = NDArray[np.float64]
 
 _CORRELATED = 0.8
-"""Correlation of two parameters above which the data do not tell them apart, if both are wide."""
+"""Correlation of two parameters above which the data do not separate them, if both are wide."""
 _WIDE = 0.2
 """Share of its range above which the interval of a parameter is wide."""
 _FLAT = 0.25
@@ -161,7 +161,7 @@ class Fit:
     # ---- statements
 
     def undetermined(self) -> Iterator[str]:
-        """Yield statements about parameters that the data do not determine or tell apart."""
+        """Yield statements about parameters that the data do not determine or separate."""
         for axis, path in enumerate(self.space.paths):
             below, above = self.bounded[axis]
             if below and above:
@@ -179,14 +179,14 @@ class Fit:
         widths = self.limits[:, 1] - self.limits[:, 0]
         for i, j in itertools.combinations(range(self.space.size), 2):
             if abs(self.region.correlation[i, j]) > _CORRELATED and min(widths[i], widths[j]) > _WIDE:
-                yield self._not_apart(i, j)
+                yield self._not_separate(i, j)
 
-    def _not_apart(self, i: int, j: int) -> str:
-        """Return a statement about two parameters that the data do not tell apart."""
+    def _not_separate(self, i: int, j: int) -> str:
+        """Return a statement about two parameters that the data do not separate."""
         one, other = self.space.paths[i], self.space.paths[j]
         correlation = float(self.region.correlation[i, j])
         line = (
-            f"warning: the data cannot tell {one} and {other} apart: a larger {one} with a "
+            f"warning: the data cannot separate {one} and {other}: a larger {one} with a "
             f"{'larger' if correlation > 0 else 'smaller'} {other} gives the same losses (correlation {correlation:.2f})"
         )
         if not (self.space.is_log[i] or self.space.is_log[j]):

@@ -249,7 +249,7 @@ def test_full_disk_loses_no_checkpoint(tmp_path, monkeypatch):
 
 
 def test_folder_is_removed_during_a_run(tmp_path, monkeypatch):
-    """A run whose folder disappears ends with a message; the page goes on when the folder is back."""
+    """A run whose folder disappears ends with a message; the page works again when the folder is back."""
     full_disk(tmp_path, monkeypatch).unlink()  # there is space, and many checkpoints
     folder = tmp_path / "gone"
     folder.mkdir()

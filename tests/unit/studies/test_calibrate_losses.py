@@ -201,7 +201,7 @@ def test_parameters_that_act_together_are_told_apart_by_a_known_one() -> None:
     ranges = {**RANGES, DAMPING: (0.0, 0.01)}
     together = calibrated(ring, ranges)
     text = " ".join(together.attrs["undetermined"])
-    assert f"the data cannot tell {E} and {DAMPING} apart" in text and f"determined is {E} - " in text
+    assert f"the data cannot separate {E} and {DAMPING}" in text and f"determined is {E} - " in text
     assert together.lower[0] < 0.7 < together.upper[0] and together.lower[1] <= 0.005 <= together.upper[1]
     known = calibrated(ring, ranges, known={DAMPING: ("0.5 %", "0.02 %")})
     assert known.attrs["undetermined"] == []
@@ -369,7 +369,7 @@ def test_errors_of_ring_downs_name_the_value(changes: dict[str, Any], words: str
         ({"reduced_loss": [3.0, float("nan"), 0.6]}, r"reduced_loss\[1\]\n.*finite"),
         ({"reduced_loss": []}, "reduced_loss\n.*no value"),
         ({"amplitude": ["1 mm", "2 mm"]}, "amplitude\n.*2 values, but 3 are needed"),
-        ({"amplitude": [1.0, 2.0, 3.0]}, "amplitude\n.*tells a displacement from an acceleration"),
+        ({"amplitude": [1.0, 2.0, 3.0]}, "amplitude\n.*distinguishes a displacement from an acceleration"),
         ({"frequency": "40 m"}, "frequency\n.*frequency"),
         ({"reduced_loss": None, "loss_per_cycle": ["1 mm"] * 3}, r"loss_per_cycle\[0\]\n.*energy"),
         ({"cycles": (20, 0)}, "cycles"),
