@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,9 @@ from .grid import Column, Grid, labels
 from .parameter import Parameter, Values, objects
 from .sampling import RandomDesign, Replicas
 
-Axes = Mapping[Any, Any] | RandomDesign | Replicas | Sequence[Mapping[Any, Any] | RandomDesign | Replicas]
+Axes = (
+    Mapping[Any, Any] | RandomDesign | Replicas | Sequence["Mapping[Any, Any] | RandomDesign | Replicas | ParsedAxes"]
+)
 
 _SAMPLED = 8
 """Number of variants that are checked in addition to the extreme ones."""
@@ -34,11 +36,27 @@ def read_axes(case: Case, axes: Axes, *, source: str = "axes") -> Grid:
 
     Parameters
     ----------
+    case, axes, source
+        See `parse_axes`.
+
+    Raises
+    ------
+    CaseError
+        If a path, a value or a variant is not valid.
+    """
+    return parse_axes(case, axes, source=source).grid(case)
+
+
+def parse_axes(case: Case, axes: Axes, *, source: str = "axes") -> ParsedAxes:
+    """Parse the values of axes.
+
+    Parameters
+    ----------
     case
         Base case.
     axes
-        A mapping, a random design, replicas, or a list of these, whose dimensions form the grid. A mapping has one
-        dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
+        A mapping, a random design, replicas, parsed axes, or a list of these, whose dimensions form the grid. A mapping
+        has one dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
         together; or `name: {path: values, ...}` for the same with a name of the dimension. Values are a list or an
         array of numbers in SI units, text with units, names or parts; or `linspace`, `geomspace`.
     source
@@ -47,10 +65,10 @@ def read_axes(case: Case, axes: Axes, *, source: str = "axes") -> Grid:
     Raises
     ------
     CaseError
-        If a path, a value or a variant is not valid.
+        If a path or a value is not valid.
     """
     try:
-        return _Reader(case, source).grid(axes)
+        return ParsedAxes(source, _Reader(case, source).directions(axes))
     except Hint as hint:
         raise CaseError(f"{source}: {hint}") from None
 
@@ -63,6 +81,75 @@ class _Direction:
     size: int
     values: list[Values]
     offsets: list[Values] = field(default_factory=list)
+
+    def of(self, case: Case) -> _Direction:
+        """Return the same dimension of another case."""
+
+        def moved(values: Values) -> Values:
+            old = values.parameter
+            new = Parameter(case, old.path, old.source, old.materials)
+            if new.unit != old.unit:
+                raise new.wrong(
+                    f"its unit is {new.unit}, but the values are for {old.unit}", "axes for each of the units"
+                )
+            return replace(values, parameter=new)
+
+        return replace(self, values=[*map(moved, self.values)], offsets=[*map(moved, self.offsets)])
+
+
+@dataclass(frozen=True, eq=False)
+class ParsedAxes:
+    """Axes with parsed values, for cases with the same parameters.
+
+    Attributes
+    ----------
+    source
+        Name of the axes in messages.
+    directions
+        Dimensions with their values.
+    """
+
+    source: str
+    directions: list[_Direction]
+
+    def __post_init__(self) -> None:
+        names = [direction.name for direction in self.directions]
+        for name in names:
+            if names.count(name) > 1:
+                raise Hint(f"two dimensions are called {name!r}", '{"a name": {path: values, path: values}}')
+
+    def grid(self, case: Case) -> Grid:
+        """Return the grid of variants of a case, and check its extreme variants.
+
+        Parameters
+        ----------
+        case
+            Base case.
+
+        Raises
+        ------
+        CaseError
+            If the case lacks a parameter, a parameter has another unit than in the case for which the axes were parsed, or
+            a variant is not valid.
+        """
+        try:
+            directions = [direction.of(case) for direction in self.directions]
+            columns = _Columns(case, directions).columns()
+            names = [direction.name for direction in directions]
+            for direction in directions:
+                for values in direction.values:
+                    if values.parameter.path in {*names} - {direction.name}:
+                        raise Hint(f"{values.parameter.path} is the name of two dimensions", "another name")
+            grid = Grid(
+                tuple(names),
+                tuple(direction.size for direction in directions),
+                columns,
+                {name: coord for direction in directions for name, coord in _coordinates(direction)},
+            )
+        except Hint as hint:
+            raise CaseError(f"{self.source}: {hint}") from None
+        _check_variants(case, grid, self.source)
+        return grid
 
 
 def materials_in(case: Case) -> dict[str, Material]:
@@ -78,37 +165,23 @@ class _Reader:
         self.case, self.source = case, source
         self.materials = materials_in(case)
 
-    def grid(self, axes: Any) -> Grid:
-        """Return the grid of all axes, and check some variants."""
+    def directions(self, axes: Any) -> list[_Direction]:
+        """Return the dimensions of all axes."""
         directions: list[_Direction] = []
         for part in axes if isinstance(axes, (list, tuple)) else [axes]:
             if isinstance(part, RandomDesign):
                 directions.append(self.sample(part))
             elif isinstance(part, Replicas):
                 directions.append(self.replicas(part))
+            elif isinstance(part, ParsedAxes):
+                directions += part.directions
             elif isinstance(part, Mapping):
                 directions += [self.axis(key, values) for key, values in part.items()]
             else:
                 raise Hint(f"{part!r:.60} is not a mapping of paths to values", _EXAMPLE)
         if not directions:
             raise Hint("nothing varies", f"{_EXAMPLE}, or rb.simulate for one run")
-        names = [direction.name for direction in directions]
-        for name in names:
-            if names.count(name) > 1:
-                raise Hint(f"two dimensions are called {name!r}", '{"a name": {path: values, path: values}}')
-        columns = _Columns(self.case, directions).columns()
-        for direction in directions:
-            for values in direction.values:
-                if values.parameter.path in {*names} - {direction.name}:
-                    raise Hint(f"{values.parameter.path} is the name of two dimensions", "another name")
-        grid = Grid(
-            tuple(names),
-            tuple(direction.size for direction in directions),
-            columns,
-            {name: coord for direction in directions for name, coord in _coordinates(direction)},
-        )
-        self.check_variants(grid)
-        return grid
+        return directions
 
     def parameter(self, path: Any) -> Parameter:
         return Parameter(self.case, path, self.source, self.materials)
@@ -144,7 +217,8 @@ class _Reader:
                 raise parameter.wrong(
                     "a pair of the smallest and the largest value is needed", '("0.1 mm", "2 mm")', None, given
                 )
-            if parameter.number(given[0], 0) is None:
+            first = parameter.number(given[0], 0)
+            if first is None:
                 choice = objects([parameter.read(item, which) for which, item in enumerate(given)])
                 read.append(Values(parameter, choice[(points * len(choice)).astype(int)], None))
                 continue
@@ -152,7 +226,7 @@ class _Reader:
                 raise parameter.wrong(
                     "a pair of the smallest and the largest value is needed", "an axis of its own", None, given
                 )
-            low, high, unit = parameter.ends(*given)
+            low, high, unit = parameter.ends_of(first, parameter.number(given[1], 1))
             if not low < high:
                 raise parameter.wrong("the first value must be the smaller one", "", None, given)
             if path not in design.log:
@@ -178,23 +252,24 @@ class _Reader:
             read.append(Values(parameter, number[0] * offsets, number[1]))
         return _Direction("replica", replicas.count, [], read)
 
-    def check_variants(self, grid: Grid) -> None:
-        """Raise if one of the extreme variants, or of a few others, is not valid."""
-        corners = itertools.product(*({0, length - 1} for length in grid.shape))
-        indices = [int(np.ravel_multi_index(corner, grid.shape)) for corner in itertools.islice(corners, 4 * _SAMPLED)]
-        for values in grid.columns.values():
-            flat = values.ravel()
-            numbers = flat.dtype.kind == "f"
-            for which in (flat.argmin(), flat.argmax()) if numbers else range(min(flat.size, 8 * _SAMPLED)):
-                indices.append(int(np.ravel_multi_index(np.unravel_index(which, values.shape), grid.shape)))
-        indices += np.linspace(0, grid.size - 1, _SAMPLED).astype(int).tolist()
-        for index in dict.fromkeys(indices):
-            try:
-                grid.case_at(self.case, index)
-            except RattleboxError as error:
-                reason = str(error).removeprefix("case: ").replace("\n", "\n  ")
-                variant = grid.describe_variant(self.case, index)
-                raise CaseError(f"{self.source}: variant {index} is not valid: {variant}\n  {reason}") from None
+
+def _check_variants(case: Case, grid: Grid, source: str) -> None:
+    """Raise if one of the extreme variants, or of a few others, is not valid."""
+    corners = itertools.product(*({0, length - 1} for length in grid.shape))
+    indices = [int(np.ravel_multi_index(corner, grid.shape)) for corner in itertools.islice(corners, 4 * _SAMPLED)]
+    for values in grid.columns.values():
+        flat = values.ravel()
+        numbers = flat.dtype.kind == "f"
+        for which in (flat.argmin(), flat.argmax()) if numbers else range(min(flat.size, 8 * _SAMPLED)):
+            indices.append(int(np.ravel_multi_index(np.unravel_index(which, values.shape), grid.shape)))
+    indices += np.linspace(0, grid.size - 1, _SAMPLED).astype(int).tolist()
+    for index in dict.fromkeys(indices):
+        try:
+            grid.case_at(case, index)
+        except RattleboxError as error:
+            reason = str(error).removeprefix("case: ").replace("\n", "\n  ")
+            variant = grid.describe_variant(case, index)
+            raise CaseError(f"{source}: variant {index} is not valid: {variant}\n  {reason}") from None
 
 
 class _Columns:

@@ -23,7 +23,7 @@ from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.prepare.time_step import WARNINGS
 
-from .axes import materials_in, read_axes
+from .axes import ParsedAxes, materials_in, read_axes
 from .budget import TRIAL, Budget, RunGroup, time_of_particle_runs, workers_of
 from .case_digest import describe_case
 from .damping_curve import OTHER_MOTION, Way, damping_curve, damping_curve_cases
@@ -109,7 +109,7 @@ class DesignSearch:
     variables, objectives
         Parameters and objectives.
     levels
-        Axes of load levels, directions and start positions.
+        Axes of load levels, directions and start positions; None for one level.
     packings
         Axis of the random packings, with the dimension `PACKING`; None for a single one.
     count
@@ -129,8 +129,8 @@ class DesignSearch:
     case: Case
     variables: list[DesignVariable]
     objectives: list[Objective]
-    levels: list[Any]
-    packings: dict[str, Any] | None
+    levels: ParsedAxes | None
+    packings: ParsedAxes | None
     count: int
     robust: Robust
     limit: float | None
@@ -158,24 +158,24 @@ class DesignSearch:
     @cached_property
     def grid(self) -> Grid:
         """Grid of the runs of a trial."""
-        return read_axes(self.case, self.axes_of(self.case), source="levels")
+        return self.grid_of(self.case)
 
-    def axes_of(self, case: Case) -> list[Any]:
-        """Return the axes of the runs of a trial; one run of the case if nothing varies."""
-        axes = [*self.levels, *([self.packings] if self.packings else [])]
-        return axes or [{"duration": [case.duration]}]
+    def grid_of(self, case: Case) -> Grid:
+        """Return the grid of the runs of a trial; one run of the case if nothing varies."""
+        axes = [each for each in (self.levels, self.packings) if each is not None]
+        return read_axes(case, axes or {"duration": [case.duration]}, source="levels")
 
     def work_of(self, case: Case) -> ImpactWork | ParticleWork:
         """Return the work that measures the runs of a trial."""
-        grid = read_axes(case, self.axes_of(case), source="levels")
+        grid = self.grid_of(case)
         measures = [each.measure for each in self.measured]
         return work_of_case(case, grid, measures=measures, intervals=True, **self.options)
 
     def curve_cases(self, case: Case) -> list[Case]:
         """Return the cases of a trial whose damping curves are computed, one for each level."""
-        if self.curve is None or not self.levels:
+        if self.curve is None or self.levels is None:
             return [] if self.curve is None else [case]
-        grid = read_axes(case, self.levels, source="levels")
+        grid = self.levels.grid(case)
         return [grid.case_at(case, index) for index in range(grid.size)]
 
     @property
@@ -268,7 +268,7 @@ class DesignSearch:
             If the values are not valid together, or with the levels.
         """
         case = replaced(self.case, {each.path: each.in_case(values[each.path]) for each in self.variables})
-        read_axes(case, self.axes_of(case), source="levels")
+        self.grid_of(case)  # raises if a level is not valid for the case
         return case
 
     def is_too_heavy(self, case: Case) -> bool:

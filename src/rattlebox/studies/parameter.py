@@ -140,8 +140,9 @@ class Parameter:
             If the value is not valid.
         """
         if isinstance(self.part, Signal) and self.name == "amplitude":
+            # The field itself would accept the units of other signals.
             try:
-                parse(value, (self.unit or "1",))
+                value, _ = parse(value, (self.unit or "1",))
             except Hint as hint:
                 raise self.wrong(hint.complaint, hint.suggestion, which, value) from None
         result = self.read(value, which)
@@ -175,8 +176,22 @@ class Parameter:
         """
         if self.unit is None:
             raise self.wrong("its values are not numbers", "a list of values")
-        start, stop = self.number(low, names[0]), self.number(high, names[1])
-        if start is None or stop is None:
+        return self.ends_of(self.number(low, names[0]), self.number(high, names[1]))
+
+    def ends_of(self, start: tuple[float, str] | None, stop: tuple[float, str] | None) -> tuple[float, float, str]:
+        """Return the ends of a range with their unit from two results of `number`.
+
+        Parameters
+        ----------
+        start, stop
+            The ends.
+
+        Raises
+        ------
+        CaseError
+            If an end is not a number, or the units differ.
+        """
+        if self.unit is None or start is None or stop is None:
             raise self.wrong("its values are not numbers", "a list of values")
         if start[1] != stop[1]:
             raise self.mixed()

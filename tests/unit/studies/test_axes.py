@@ -13,7 +13,7 @@ import xarray as xr
 
 import rattlebox as rb
 from rattlebox.model.paths import replaced
-from rattlebox.studies.axes import read_axes
+from rattlebox.studies.axes import parse_axes, read_axes
 from rattlebox.studies.grid import Grid
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -289,6 +289,32 @@ def test_replicas_of_a_gap_and_a_restitution(case: rb.Case) -> None:
     np.testing.assert_allclose(
         design.columns["damper.contact.restitution"] - 0.9, coords["damper.contact.restitution.offset"][1], atol=1e-15
     )
+
+
+# ---- parsed axes
+
+
+def test_parsed_axes_follow_the_gap_of_another_case(case: rb.Case) -> None:
+    """A start given as a length is that length in a case with another gap, without parsing it again."""
+    axes = parse_axes(case, {"damper.start": ["50 um", "-0.1 mm"]})
+    for gap in (1e-4, 1e-3):
+        other = replaced(case, {"damper.gap": gap})
+        np.testing.assert_allclose(axes.grid(other).columns["damper.start"], [5e-5 / gap, -1e-4 / gap], rtol=1e-14)
+
+
+def test_parsed_axes_are_refused_for_another_unit() -> None:
+    """Amplitudes that were parsed as displacements are not read as accelerations in another case."""
+
+    def shaken(motion: rb.Harmonic) -> rb.Case:
+        ball = rb.Sphere(radius="10 mm", material="steel")
+        damper = rb.ImpactDamper(ball=ball, gap="1 mm", contact=rb.Tsuji(restitution=0.6))
+        return rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s")
+
+    moved = shaken(rb.Harmonic(amplitude="1 mm", frequency="10 Hz"))
+    axes = parse_axes(moved, {"structure.motion.amplitude": ["1 mm", "2 mm"]}, source="levels")
+    assert axes.grid(moved).columns["structure.motion.amplitude"].tolist() == [1e-3, 2e-3]
+    with pytest.raises(rb.CaseError, match=r"levels: structure.motion.amplitude\n  its unit is m/s\^2, .* for m"):
+        axes.grid(shaken(rb.Harmonic(amplitude="1 m/s^2", frequency="10 Hz")))
 
 
 # ---- random designs

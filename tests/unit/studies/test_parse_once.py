@@ -1,4 +1,4 @@
-"""Number of times that a study parses its files and the quantities of its case."""
+"""Number of times that a study parses its files and the quantities in them."""
 
 from __future__ import annotations
 
@@ -133,8 +133,8 @@ def test_a_study_file_and_its_case_are_parsed_once(parsed: Counter[str]) -> None
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_each_kind_of_study_parses_its_case_once(kind: str, parsed: Counter[str]) -> None:
-    """A study with results on disk parses its file, its case, the case's quantities and no other TOML once."""
+def test_each_kind_of_study_parses_its_files_once(kind: str, parsed: Counter[str]) -> None:
+    """A study with results on disk parses its file, its case, the quantities in both, and no other TOML, once."""
     structure, options = KINDS[kind]
     case, study = f"{structure}\n{DRIVEN}", f'kind = "{kind}"\ncase = "driven.toml"\n{options}\n'
     Path("driven.toml").write_text(case)
@@ -142,7 +142,7 @@ def test_each_kind_of_study_parses_its_case_once(kind: str, parsed: Counter[str]
     read_study("driven_study.toml").run(store="out", progress=False)
     rb.open_study("out")
     amplitude = re.search(r'amplitude = "(.*?)"', case)[1]  # read for its unit as well
-    quantities = set(re.findall(r'"(-?\d+\.\d+ .*?)"', case)) - {amplitude}
+    quantities = set(re.findall(r'"(-?\d+\.\d+ .*?)"', case + study)) - {amplitude}
     assert {text: count for text, count in parsed.items() if "\n" in text} == {case: 1, study: 1}
     assert {text: parsed[text] for text in quantities} == dict.fromkeys(quantities, 1)
 

@@ -15,6 +15,7 @@ from rattlebox._util.interrupts import deadline
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import announce, progress_bar
 from rattlebox.model.errors import Hint
+from rattlebox.studies.axes import ParsedAxes, parse_axes
 from rattlebox.studies.budget import duration
 from rattlebox.studies.damping_curve import Way, read_amplitudes
 from rattlebox.studies.design_search import Curve, DesignSearch, Robust
@@ -182,12 +183,13 @@ class Design(Study):
                 if curve is None
                 else Hint("amplitudes are those of the damping ratio, which is not an objective", '"damping_ratio"')
             )
+        levels = robust_axes(self.case, self.levels, self.starts)
         count, packings = self._packings(bool(measured))
         return DesignSearch(
             case=self.case,
             variables=[DesignVariable.read(self.case, path, each, path in log) for path, each in parameters.items()],
             objectives=objectives,
-            levels=robust_axes(self.case, self.levels, self.starts),
+            levels=parse_axes(self.case, levels, source="levels") if levels else None,
             packings=packings,
             count=count,
             robust=self.robust,
@@ -201,7 +203,7 @@ class Design(Study):
             },
         )
 
-    def _packings(self, measured: bool) -> tuple[int, dict[str, Any] | None]:
+    def _packings(self, measured: bool) -> tuple[int, ParsedAxes | None]:
         """Return the number of random initial states, and the axis of random packings."""
         if not self.case.particle_dampers:
             if measured and (self.packings or 1) > 1:
@@ -209,7 +211,7 @@ class Design(Study):
             return self.packings or (1 if measured else 3), None
         random = any(damper.packing.is_random for damper in self.case.particle_dampers)
         count = self.packings or (3 if random else 1)
-        return count, packing_axis(self.case, count) if count > 1 else None
+        return count, parse_axes(self.case, packing_axis(self.case, count), source="levels") if count > 1 else None
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import KW_ONLY
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -14,9 +13,9 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.structures import Shaker
-from rattlebox.studies.axes import read_axes
+from rattlebox.studies.axes import ParsedAxes, parse_axes, read_axes
 from rattlebox.studies.kinds.sweep import result_notes
-from rattlebox.studies.map_work import ImpactMapWork, ParticleMapWork
+from rattlebox.studies.map_work import AMPLITUDE, FREQUENCY, ImpactMapWork, ParticleMapWork
 from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
@@ -102,20 +101,17 @@ class LossMap(Study):
     def work(self) -> ImpactMapWork | ParticleMapWork:
         """Runs at all amplitudes and frequencies."""
         options: dict[str, Any] = {"cycles": self.cycles, "samples": self.samples, "intervals": True}
-        grid = read_axes(self.case, dict(self._axes.values()))
+        grid = read_axes(self.case, list(self._axes.values()))
         if self.case.particle_dampers:
             names = [name for name in MEASURES if name != "impacts_per_cycle"]
             return ParticleMapWork(self.case, grid, names, **options)
         return ImpactMapWork(self.case, grid, MEASURES, motion=True, **options)
 
     @cached_property
-    def _axes(self) -> dict[str, tuple[str, Any]]:
-        """Paths and values by the name of the field."""
-        given = {"amplitudes": self.amplitudes, "frequencies": self.frequencies}
-        return {
-            name: (f"structure.motion.{part}", list(values) if isinstance(values, Iterator) else values)
-            for (name, values), part in zip(given.items(), ("amplitude", "frequency"), strict=True)
-        }
+    def _axes(self) -> dict[str, ParsedAxes]:
+        """Axes by the name of the field."""
+        given = {"amplitudes": {AMPLITUDE: self.amplitudes}, "frequencies": {FREQUENCY: self.frequencies}}
+        return {name: parse_axes(self.case, axis, source=name) for name, axis in given.items()}
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
@@ -124,11 +120,11 @@ class LossMap(Study):
             raise Hint("a loss map requires a case on a shaker with one harmonic motion", "a structure of kind shaker")
         if not self.case.dampers:
             raise Hint("a loss map requires a case with a damper", "a ball in a gap, or particles in a cavity")
-        for source, (path, values) in self._axes.items():
-            column = read_axes(self.case, {path: values}, source=source).columns[path]
-            for number, value in enumerate(column):
-                if not value > 0:
-                    raise CaseError(f"{source}: {path}[{number}] = {value:g}\n  must be greater than zero")
+        for source, axis in self._axes.items():
+            for path, column in axis.grid(self.case).columns.items():
+                for number, value in enumerate(column):
+                    if not value > 0:
+                        raise CaseError(f"{source}: {path}[{number}] = {value:g}\n  must be greater than zero")
         self.work.validate()
 
     def compute(self) -> xarray.Dataset:

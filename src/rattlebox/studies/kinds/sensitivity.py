@@ -17,7 +17,7 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.axes import read_axes
+from rattlebox.studies.axes import ParsedAxes, parse_axes
 from rattlebox.studies.kinds.sweep import Sweep
 from rattlebox.studies.measures import INTERVAL
 from rattlebox.studies.robust import robust_axes
@@ -135,10 +135,12 @@ class Sensitivity(Study):
     point: str | None = None
 
     @cached_property
-    def _points(self) -> _Crossed:
+    def _points(self) -> ParsedAxes:
+        """Sampled points, along one dimension."""
         bounds, log = split_bounds(self.bounds, self.log)
         ranges = random_design(bounds, self.n * (len(bounds) + 2), seed=self.seed, log=log)
-        return _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
+        crossed = _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
+        return parse_axes(self.case, crossed, source="bounds")
 
     @cached_property
     def _sweep(self) -> Sweep:
@@ -157,7 +159,7 @@ class Sensitivity(Study):
         """Raise if the fields are not valid; see `Study.validate`."""
         if self.n & (self.n - 1):
             raise Hint(f"n = {self.n} is not a power of two", f"{2 ** self.n.bit_length()}")
-        read_axes(self.case, self._points, source="bounds")  # for messages that name the bounds
+        self._points.grid(self.case)  # for messages that name the bounds
         self._sweep.validate()
 
     def compute(self) -> xr.Dataset:
