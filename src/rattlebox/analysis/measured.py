@@ -131,7 +131,10 @@ def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, A
         )
     if isinstance(wanted, str) and names.count(wanted) > 1:
         raise DataError(f"{file} holds {names.count(wanted)} functions {wanted!r}", "its number, counted from 1")
-    place = names.index(wanted) if wanted in names else (wanted or 1) - 1 if not isinstance(wanted, str) else -1
+    if isinstance(wanted, str):
+        place = names.index(wanted) if wanted in names else -1
+    else:
+        place = 0 if wanted is None else wanted - 1
     if not 0 <= place < len(functions):
         raise DataError(f"{file} holds no function {wanted!r}, but {', '.join(names)}", "function = 1")
     found = functions[place]

@@ -109,6 +109,7 @@ def test_an_assumed_unit_is_stated_with_the_peak(tmp_path: Path) -> None:
         ("a.uff", FRF[: len(FRF) // 2], {}, "cut short|complete data set|cannot be read"),
         ("a.uff", FRF, {"function": "H9"}, "no function 'H9'"),
         ("a.uff", FRF, {"function": 2}, "no function 2"),
+        ("a.uff", FRF, {"function": 0}, "no function 0"),
         ("a.uff", (UFF / "time_history_58.uff").read_bytes(), {}, "no frequency response function"),
         ("a.uff", (UFF / "normal_modes_55.uff").read_bytes(), {}, "no set 58"),
         ("a.uff", (UFF / "cut_58.uff").read_bytes(), {}, "states 2508876 points, but has 42"),
