@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import errno
 import shutil
 import subprocess
 import zipfile
@@ -418,3 +419,22 @@ def test_wrong_options_are_refused(options: dict[str, Any], named: str, tmp_path
     path = tmp_path / options.pop("path", "damper.fmu")
     with pytest.raises(rb.CaseError, match=named):
         rb.to_fmu(two or ball(), path, alone=None if two is None else True, **options)
+
+
+def test_an_fmu_that_cannot_be_written_leaves_the_earlier_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk and a folder of the same name end with an error of the package, and nothing is left or lost."""
+    file = tmp_path / "damper.fmu"
+    rb.to_fmu(ball(), file)
+    before = file.read_bytes()
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(zipfile.ZipFile, "writestr", full)
+    with pytest.raises(rb.ResourceError, match="no space is left"):
+        rb.to_fmu(ball(), file, fmi=2)
+    assert file.read_bytes() == before and [each.name for each in tmp_path.iterdir()] == ["damper.fmu"]
+    (tmp_path / "folder.fmu").mkdir()
+    for path in (tmp_path / "folder.fmu", file / "damper.fmu"):
+        with pytest.raises(rb.DataError, match=f"{path.name}"):
+            rb.to_fmu(ball(), path)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import rattlebox
+from rattlebox._util.atomic_io import atomic_write, disk_errors
 from rattlebox.core import _core
 from rattlebox.core.component import component_library, other_libraries
 from rattlebox.model.case import Case
@@ -93,7 +94,7 @@ def to_fmu(
     path
         File to write (.fmu). An existing file is replaced.
     fmi
-        Version of FMI: 2 or 3.
+        Version of FMI, 2 or 3.
     input
         Input of a damper alone: velocity or acceleration of the attachment.
     other_systems
@@ -109,15 +110,23 @@ def to_fmu(
     ------
     CaseError
         If the case is not valid, its method has no stepper, or it has too many variables.
+    DataError
+        If the file cannot be written; an earlier one is then unchanged.
     ResourceError
-        If this system has no binary of the core for FMUs, or the installation none for other systems.
+        If this system has no binary of the core for FMUs, or the installation none for other systems; or if no space is
+        left on the disk.
 
     Notes
     -----
-    The FMU is self-contained: it needs neither Python nor Rattlebox. Its parameter `input_time` says to which end of a
-    communication step the inputs belong, 1 for the start (they are extrapolated) and 2 for the end; gravity can be changed
-    between steps, restitution and friction before the initialization. The notes of the stepper (`Stepper.notes`) are on its
-    page documentation/index.html.
+    The FMU is self-contained: it needs neither Python nor Rattlebox. Its parameter `input_time` is the end of a
+    communication step to which the inputs belong: 1 is the start, from which they are extrapolated linearly, 2 the end.
+    Gravity can be changed between steps, restitution and friction before the initialization. The page
+    documentation/index.html in the FMU lists the notes of the stepper (`Stepper.notes`). For the equations see `Stepper`.
+
+    References
+    ----------
+    Modelica Association, Functional Mock-up Interface Specification, versions 2.0 (2014) and 3.0 (2022),
+    https://fmi-standard.org.
 
     Examples
     --------
@@ -152,26 +161,22 @@ def fmu_and_notes(
         libraries = {FMI_2_FOLDERS[system]: file for system, file in libraries.items() if system in FMI_2_FOLDERS}
     case, alone = component_case(system, **options)
     packed = pack_component(case, alone=alone)
-    name = re.sub(r"\W", "_", path.stem)
+    model = re.sub(r"\W", "_", path.stem)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
     variables = list(_variables(packed, input))
     content = {
-        "modelDescription.xml": (_description_2 if fmi == 2 else _description_3)(name, token, variables).encode(),
-        **{f"binaries/{folder}/{name}{file.suffix}": file.read_bytes() for folder, file in libraries.items()},
+        "modelDescription.xml": (_description_2 if fmi == 2 else _description_3)(model, token, variables).encode(),
+        **{f"binaries/{folder}/{model}{file.suffix}": file.read_bytes() for folder, file in libraries.items()},
         "resources/case.bin": packed.data,
         "resources/input": input.encode(),
         "resources/limits": _limits(case, packed).encode(),
-        "documentation/index.html": _page(name, variables, packed.notes, list(libraries)).encode(),
+        "documentation/index.html": _page(model, variables, packed.notes, list(libraries)).encode(),
     }
-    path.parent.mkdir(parents=True, exist_ok=True)
-    whole = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as file:
-            for entry, data in content.items():
-                file.writestr(zipfile.ZipInfo(entry), data, zipfile.ZIP_DEFLATED)
-        whole.replace(path)
-    finally:
-        whole.unlink(missing_ok=True)
+    with disk_errors(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    with atomic_write(path) as name, zipfile.ZipFile(name, "w", zipfile.ZIP_DEFLATED) as file:
+        for entry, data in content.items():
+            file.writestr(zipfile.ZipInfo(entry), data, zipfile.ZIP_DEFLATED)
     return path, packed.notes
 
 
@@ -184,8 +189,8 @@ def _limits(case: Case, packed: PackedComponent) -> str:
     return "\n".join([*lines, ""])
 
 
-def _variables(packed: PackedComponent, by: str) -> Iterator[Variable]:
-    """Yield the variables; the order is that of the file."""
+def _variables(packed: PackedComponent, quantity: str) -> Iterator[Variable]:
+    """Yield the variables in their order in the file; `quantity` is the input of a damper alone."""
     if len(packed.inputs) > MOST_INPUTS or len(packed.dampers) > MOST_DAMPERS:
         raise Hint(f"an FMU has at most {MOST_INPUTS} inputs and {MOST_DAMPERS} dampers", "a smaller case")
     if len(packed.outputs) * packed.axes > MOST_OUTPUTS:
@@ -206,13 +211,13 @@ def _variables(packed: PackedComponent, by: str) -> Iterator[Variable]:
         if not math.isnan(value):
             yield Variable(name, reference, "", f"{name} of all contacts", "parameter", "fixed", value)
     if packed.alone:
-        unit = {"velocity": "m/s", "acceleration": "m/s2"}[by]
-        yield from each(by, INPUT, unit, f"{by} of the attachment", causality="input", start=0.0)
+        unit = {"velocity": "m/s", "acceleration": "m/s2"}[quantity]
+        yield from each(quantity, INPUT, unit, f"{quantity} of the attachment", causality="input", start=0.0)
     else:
         for number, name in enumerate(packed.inputs):
             unit = "m/s2" if name.startswith("base") else "N"
-            what = "acceleration of the base" if unit == "m/s2" else "load"
-            yield Variable(name, INPUT + number, unit, what, "input", start=0.0)
+            description = "acceleration of the base" if unit == "m/s2" else "load"
+            yield Variable(name, INPUT + number, unit, description, "input", start=0.0)
     for number, damper in enumerate(packed.dampers):
         label = "" if packed.alone else f"_{_plain(damper)}"
         yield from each(f"force{label}", FORCE + 3 * number, "N", "mean force on the structure in the last step")
@@ -324,7 +329,7 @@ def _page(name: str, variables: list[Variable], notes: tuple[str, ...], systems:
     return (
         f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title><h1>{name}</h1>'
         "<p>A damper, written by Rattlebox. Forces are means over the last communication step. The parameter input_time "
-        "says to which end of a step the inputs belong: 1 start, 2 end.</p>"
+        "is the end of a step to which the inputs belong: 1 start, 2 end.</p>"
         f"<table><tr><th>Variable</th><th>Causality</th><th>Unit</th><th>Description</th></tr>{rows}</table>"
         f"{''.join(f'<p>{escape(note)}</p>' for note in notes)}"
         f"<p>Tested on {systems[0]}{'; compiled, never run: ' if systems[1:] else ''}{', '.join(systems[1:])}.</p></html>\n"
