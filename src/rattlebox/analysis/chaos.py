@@ -40,13 +40,17 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
 
     Notes
     -----
-    The exponent is the slope of the least-squares line through the mean logarithmic growth, from the first sample to the
-    last one before the geometric mean of the separations reaches `saturation`. A positive exponent indicates chaos during
-    the run.
+    The exponent is the slope of the least-squares line through the mean logarithmic growth of the separations d,
+
+        g(t) = mean over the pairs of ln(d(t) / d(t_0))
+
+    from the first sample to the last one before the geometric mean of the separations reaches `saturation`. A positive
+    exponent indicates chaos during the run.
 
     References
     ----------
-    M. T. Rosenstein, J. J. Collins, C. J. De Luca (1993), Physica D 65, 117-134, doi:10.1016/0167-2789(93)90009-P.
+    M. T. Rosenstein, J. J. Collins, C. J. De Luca (1993), A practical method for calculating largest Lyapunov exponents
+    from small data sets, Physica D 65, 117-134, doi:10.1016/0167-2789(93)90009-P.
 
     Examples
     --------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class SmoothDecay(NamedTuple):
-    """Amplitude and phase of a free decay, averaged over one cycle; without the first and last three cycles.
+    """Amplitude and phase of a free decay, averaged over one cycle, without the first and last three cycles.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ def smooth_decay(time: ArrayLike, values: ArrayLike) -> SmoothDecay:
     """Return amplitude and phase of a free decay about its rest position.
 
     The rest position, which a weight may shift, is removed as the mean over one cycle around each sample. The mean over a
-    cycle also removes the ripple that impacts leave in the envelope; of a linear decay it changes nothing.
+    cycle also removes the ripple that impacts leave in the envelope. It does not change a linear decay.
     """
     t, x, cycle = oscillation(time, values)
     step = (t[-1] - t[0]) / (t.size - 1)
@@ -75,9 +75,10 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     Returns
     -------
     xarray.Dataset
-        `damping_ratio`, `frequency` [Hz], and the times `begin` and `end` of each band [s], over `amplitude`; NaN if the
-        decay does not fall through the whole band, passes it in less than half a cycle, or enters it in the first three
-        cycles or leaves it in the last three, which the envelope takes and in which particles at rest are set in motion.
+        `damping_ratio`, `frequency` [Hz], and the times `begin` and `end` of each band [s], over `amplitude`. They are NaN
+        if the decay does not fall through the whole band or passes it in less than half a cycle, and if it enters the band
+        in the first three cycles or leaves it in the last three: the envelope is not known there, and in the first cycles
+        the decay sets particles at rest in motion.
 
     Raises
     ------
@@ -89,6 +90,11 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     -----
     With the envelope A and the phase of the analytic signal, delta = ln(A_1 / A_2) / (phase_2 - phase_1) and
     zeta = delta / sqrt(1 + delta^2), exact for a linear decay.
+
+    References
+    ----------
+    M. Feldman (1994), Non-linear system vibration analysis using Hilbert transform: I. Free vibration analysis method
+    'FREEVIB', Mechanical Systems and Signal Processing 8, 119-127, doi:10.1006/mssp.1994.1011.
 
     Examples
     --------
@@ -136,16 +142,16 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
 def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str | None = None) -> float:
     """Return the damping ratio of the free decay in a run, at one amplitude.
 
-    As a measure of studies: `functools.partial(analysis.equivalent_damping, amplitude=0.5e-3)`. One run of chaotic motion is
-    one random sample; vary the start or the packing to estimate its scatter, as `rattlebox.damping_curve` does.
+    Studies take it as a measure: `functools.partial(analysis.equivalent_damping, amplitude=0.5e-3)`. One run of chaotic
+    motion is one random sample; vary the start or the packing to estimate its scatter, as `rattlebox.damping_curve` does.
 
     Parameters
     ----------
     run
         Run in which loads and base come to rest.
     amplitude
-        Displacement amplitude of the point [m]; default half of the largest one of the decay, or the middle of a shorter
-        decay.
+        Displacement amplitude of the point [m]; default half of the largest amplitude of the decay, or the middle of a
+        shorter decay.
     point
         Point of the amplitude; default the one with the largest motion in the mode.
 
@@ -164,6 +170,10 @@ def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str |
     The energy E of the mode with the largest energy falls from E_1 to E_2 = E_1 / 4 about the amplitude in the time t:
     zeta = ln(E_1 / E_2) / (2 omega t). The energy falls in two steps a cycle, so that the relative error of a smooth decay
     is up to 2 zeta / ln 4: 1.4 % for a ratio of 0.01, 6 % for 0.04.
+
+    References
+    ----------
+    E. E. Ungar, E. M. Kerwin (1962), J. Acoust. Soc. Am. 34, 954-957, doi:10.1121/1.1918227.
 
     Examples
     --------

@@ -41,9 +41,19 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
 
     Notes
     -----
-    The amplitude is the magnitude of the analytic signal, from a Hilbert transformer of four cycles. It depends only on the
-    neighbourhood of each sample, so that large amplitudes at the start do not leak into small ones at the end, as in a
-    transform of the whole record.
+    The amplitude is the magnitude of the analytic signal,
+
+        A(t) = abs(x(t) + i H[x](t)),    H[x]_k = sum over odd n of 2 w_n x_(k - n) / (pi n)
+
+    with a Hilbert transformer H of four cycles and a Kaiser window w. It depends only on the neighbourhood of each sample. A
+    transform of the whole record would let large amplitudes at the start leak into small ones at the end.
+
+    References
+    ----------
+    M. Feldman (1994), Non-linear system vibration analysis using Hilbert transform: I. Free vibration analysis method
+    'FREEVIB', Mechanical Systems and Signal Processing 8, 119-127, doi:10.1006/mssp.1994.1011.
+    A. V. Oppenheim, R. W. Schafer, J. R. Buck (1999), Discrete-Time Signal Processing, 2nd ed., Prentice Hall,
+    ISBN 0-13-754920-2, chapter 11.
 
     Examples
     --------
@@ -84,6 +94,18 @@ def damping_ratio(
         If times are not evenly spaced, a sample is not finite, the record is too short or too coarse, or the method
         is unknown.
 
+    Notes
+    -----
+    "hilbert": zeta = -A' / sqrt(A'^2 + (A phi')^2) with the envelope A and the phase phi of the analytic signal (see
+    `decay_envelope`). "decrement": zeta = delta / sqrt(4 pi^2 + delta^2) with delta = ln(x_k / x_(k+2)) of the extremes x.
+    Both are exact for a linear decay.
+
+    References
+    ----------
+    M. Feldman (1994), Non-linear system vibration analysis using Hilbert transform: I. Free vibration analysis method
+    'FREEVIB', Mechanical Systems and Signal Processing 8, 119-127, doi:10.1006/mssp.1994.1011.
+    A. Savitzky, M. J. E. Golay (1964), Analytical Chemistry 36, 1627-1639, doi:10.1021/ac60214a047 (cubic fit).
+
     Examples
     --------
     >>> import numpy as np
@@ -113,9 +135,9 @@ def _by_hilbert(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatAr
     from scipy.signal import oaconvolve, savgol_coeffs
 
     t, signal, cycle = analytic_signal(time, values)
-    dead = np.abs(signal) < 1e-15 * np.max(np.abs(signal))
-    if dead.any():
-        raise ValueError(f"values are zero from {t[dead][0]:.4g} s on; try: end the record before that time")
+    zero = np.abs(signal) < 1e-15 * np.max(np.abs(signal))
+    if zero.any():
+        raise ValueError(f"values are zero from {t[zero][0]:.4g} s on; try: end the record before that time")
     half = round(cycle)
     slope = savgol_coeffs(2 * half + 1, 3, deriv=1, delta=step_of(t))
     decay = -oaconvolve(np.log(np.abs(signal)), slope, mode="valid")

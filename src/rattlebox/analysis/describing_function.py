@@ -2,7 +2,14 @@
 
 In the first harmonic, a damper whose cavity has the complex acceleration a exerts the force -(m' - i m'') a on the
 structure. At each frequency the accelerations of the cavities thus satisfy a + G m(abs(a)) a = L a_0, with the level L of
-the load, the accelerations a_0 of the structure alone at level 1, and its accelerations G per unit force.
+the load, the accelerations a_0 of the structure alone at level 1, and its accelerations G per unit force. Meyer and
+Seifried call m' and the loss per cycle, computed for the damper on a shaker, its effective fields.
+
+References
+----------
+A. Gelb, W. E. Vander Velde (1968), Multiple-Input Describing Functions and Nonlinear System Design, McGraw-Hill.
+N. Meyer, R. Seifried (2021), Damping prediction of particle dampers for structures under forced vibration using effective
+fields, Granular Matter 23, 64, doi:10.1007/s10035-021-01128-z.
 """
 
 from __future__ import annotations
@@ -36,8 +43,8 @@ _ROUNDING = 1e-9
 class MassTable:
     """Apparent mass of a damper over amplitude and frequency, with interpolation between the values.
 
-    Along the amplitude the interpolation is piecewise cubic and monotone (PCHIP) in its logarithm, along the frequency
-    linear in its logarithm. There is no extrapolation.
+    The mass is interpolated by monotone piecewise cubics (PCHIP) over the logarithm of the amplitude, and linearly over the
+    logarithm of the frequency. There is no extrapolation.
 
     Attributes
     ----------
@@ -49,6 +56,10 @@ class MassTable:
         Apparent mass m' - i m'' [kg]; NaN where it is unknown.
     is_acceleration
         Whether amplitudes are accelerations.
+
+    References
+    ----------
+    F. N. Fritsch, J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, doi:10.1137/0905021.
     """
 
     frequency: FloatArray
@@ -67,16 +78,16 @@ class MassTable:
         from scipy.interpolate import PchipInterpolator
 
         x = np.log(self.amplitude)
-        found = np.full((self.frequency.size, x.size - 1, 4), np.nan, np.complex128)
+        coefficients = np.full((self.frequency.size, x.size - 1, 4), np.nan, np.complex128)
         for k, column in enumerate(self.mass.T):
             known = np.flatnonzero(np.isfinite(column))
             if known.size < 2:
                 continue
             values = column[known]
             cubic = PchipInterpolator(x[known], np.stack([values.real, values.imag], axis=1)).c
-            whole = np.flatnonzero(np.diff(known) == 1)  # intervals between neighbours in the table
-            found[k, known[whole]] = (cubic[:, whole, 0] + 1j * cubic[:, whole, 1]).T
-        return found
+            adjacent = np.flatnonzero(np.diff(known) == 1)  # no interpolation across a missing value
+            coefficients[k, known[adjacent]] = (cubic[:, adjacent, 0] + 1j * cubic[:, adjacent, 1]).T
+        return coefficients
 
     @cached_property
     def _latest(self) -> dict[bytes, MassCurves]:
@@ -124,7 +135,7 @@ class MassTable:
         return np.zeros_like(omega) if self.is_acceleration else 2 * np.log(omega)
 
     def thinned(self, amplitudes: bool) -> MassTable | None:
-        """Return the table without every second amplitude or frequency; None if fewer than three are left to omit from."""
+        """Return the table without every second amplitude or frequency; None if it has fewer than three of them."""
         nodes = self.amplitude if amplitudes else self.frequency
         if nodes.size < 3:
             return None
@@ -274,18 +285,17 @@ def solve(
 
     References
     ----------
-    A. Gelb and W. E. Vander Velde (1968): Multiple-Input Describing Functions and Nonlinear System Design, McGraw-Hill.
-
-    H. B. Keller (1977): Numerical solution of bifurcation and nonlinear eigenvalue problems. In: P. H. Rabinowitz (ed.),
+    See the module for the describing function.
+    H. B. Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems, in: P. H. Rabinowitz (ed.),
     Applications of Bifurcation Theory, Academic Press, 359-384.
+    E. L. Allgower, K. Georg (1990), Numerical Continuation Methods, Springer, doi:10.1007/978-3-642-61257-2.
     """
     inside = np.flatnonzero(table.covers(frequency) & np.any(drive != 0, axis=1))
     one = drive.shape[1] == 1
     curves = table.curves(frequency)
-    parts = (_one if one else _several)(
-        _System(table, curves, inside, frequency[inside], gain[inside], drive[inside]), levels
-    )
-    return parts.solutions(inside, frequency.size, levels.size, drive.shape[1])
+    system = _System(table, curves, inside, frequency[inside], gain[inside], drive[inside])
+    found = (_solve_one if one else _solve_several)(system, levels)
+    return found.solutions(inside, frequency.size, levels.size, drive.shape[1])
 
 
 def solve_near(
@@ -360,8 +370,8 @@ class _System:
 
 
 @dataclass
-class _Found:
-    """Solutions, in any order, and whether there are others outside of the table.
+class _UnorderedSolutions:
+    """Solutions in any order, and flags for solutions that were not computed.
 
     Attributes
     ----------
@@ -397,16 +407,16 @@ class _Found:
         unstable[self.level[order], place[order], number] = self.unstable[order]
         flags = []
         for each in (self.below, self.above, self.lost):
-            whole = np.zeros(shape, bool)
-            whole[:, inside] = each
-            flags.append(whole)
+            everywhere = np.zeros(shape, bool)
+            everywhere[:, inside] = each
+            flags.append(everywhere)
         return Solutions(acceleration, unstable, *flags)
 
 
 # ---- one cavity
 
 
-def _one(system: _System, levels: FloatArray) -> _Found:
+def _solve_one(system: _System, levels: FloatArray) -> _UnorderedSolutions:
     """Return the solutions for one cavity from the level as a function of the amplitude."""
     grid, gain, drive = system.curves.grid, system.gain[:, 0, 0], system.drive[:, 0]
     offset = system.table.log_acceleration(2 * np.pi * system.frequency) - np.log(np.abs(drive))
@@ -419,7 +429,8 @@ def _one(system: _System, levels: FloatArray) -> _Found:
     places = []
     for number, level in enumerate(np.log(levels)):
         over = curve >= level
-        # A level below that of the smallest amplitude belongs to a smaller one, and the other way round.
+        # A level below that of the smallest amplitude belongs to a smaller amplitude, one above that of the largest to a
+        # larger amplitude.
         below[number] = over[:, 0] & known[:, 0]
         above[number] = ~over[:, -1] & known[:, -1]
         for row in np.flatnonzero(~known.all(axis=1)):  # the level may be reached where runs of the map failed
@@ -449,7 +460,7 @@ def _one(system: _System, levels: FloatArray) -> _Found:
             break
     mass, _ = system.mass(rows, root)
     motion = levels[level_of] * drive[rows] / (1 + gain[rows] * mass)
-    return _Found(level_of, rows, motion[:, None], rises == 0, below, above, lost)
+    return _UnorderedSolutions(level_of, rows, motion[:, None], rises == 0, below, above, lost)
 
 
 # ---- several cavities
@@ -501,10 +512,10 @@ class _Branch:
         return np.concatenate([y.real, y.imag, level[:, None]], axis=1)
 
 
-def _several(system: _System, levels: FloatArray) -> _Found:
+def _solve_several(system: _System, levels: FloatArray) -> _UnorderedSolutions:
     """Return the solutions for several cavities, which share the branch that begins at small levels."""
     branch = _Branch(system)
-    path, at_end = _follow(branch)
+    path, at_end = _follow_branch(branch)
     low, high = branch.limits
     shape = levels.size, system.frequency.size
     below, above, lost = (np.zeros(shape, bool) for _ in range(3))
@@ -527,7 +538,7 @@ def _several(system: _System, levels: FloatArray) -> _Found:
         inner = ~small & ~large
         parts.append((np.full(inner.sum(), number), rows[inner], motion[inner], beyond[steps, rows][inner]))
     level_of, rows, motion, unstable = (np.concatenate(each) for each in zip(*parts, strict=True))
-    return _Found(level_of, rows, motion, unstable, below, above, lost)
+    return _UnorderedSolutions(level_of, rows, motion, unstable, below, above, lost)
 
 
 def _at_level(
@@ -553,7 +564,7 @@ def _at_level(
     return point
 
 
-def _follow(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
+def _follow_branch(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Return the points along the branch of each frequency, (N, F, 2 P + 1), and whether it ends inside the table."""
     point = branch.start()
     path, tangent = [point.copy()], np.zeros_like(point)
@@ -570,7 +581,7 @@ def _follow(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
         # Second order: the tangents of the last two points give the curvature.
         bend = (along - before[active]) / np.where(last[active] > 0, last[active], np.inf)[:, None]
         ahead = here + h[:, None] * along + 0.5 * h[:, None] ** 2 * bend
-        accepted, new_tangent = _correct(branch, ahead, along, active)
+        accepted, new_tangent = _correct_prediction(branch, ahead, along, active)
         good = np.asarray(np.isfinite(accepted).all(axis=1) & np.isfinite(new_tangent).all(axis=1))
         good &= np.linalg.norm(np.where(good[:, None], accepted - ahead, 0.0), axis=1) < 0.5 * h
         good &= np.einsum("fi,fi->f", np.nan_to_num(new_tangent), along) > 0.9
@@ -586,7 +597,7 @@ def _follow(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
     return np.array(path), lost
 
 
-def _correct(
+def _correct_prediction(
     branch: _Branch, ahead: FloatArray, along: FloatArray, rows: NDArray[np.intp]
 ) -> tuple[FloatArray, FloatArray]:
     """Return the points of the branch nearest to predicted ones and the tangents there; NaN where there are none."""
@@ -646,6 +657,10 @@ def damping_of_modes(
     K x = omega^2 M x, and the damping ratio x^T (D + sum of n omega m'' s s^T) x / (2 omega x^T M x), the energy lost in
     a cycle over 4 pi times the largest kinetic energy. Both are iterated, since the masses depend on frequency and
     amplitudes.
+
+    References
+    ----------
+    E. E. Ungar, E. M. Kerwin (1962), J. Acoust. Soc. Am. 34, 954-957, doi:10.1121/1.1918227.
     """
     count, amplitudes = stiffness.size, np.log(table.amplitude)
     frequency, ratio = np.full((2, count, amplitudes.size), np.nan)

@@ -31,6 +31,11 @@ def energy_shares(run: Run) -> xarray.DataArray:
         Shares over `channel`: dissipated in the structure ("viscous"), in contacts by normal damping ("normal") and plastic
         flow ("plastic"), in 3-D runs by "sliding" and "rolling", and remaining in "motion". Their sum is one to within the
         energy residual; NaN without energy input.
+
+    Notes
+    -----
+    L_k / (E(0) + W) with the energy L_k lost in channel k, the initial energy of motion E(0) and the work W of load, base
+    and gravity; see `rattlebox.results.Ledger`.
     """
     shares = run.ledger.shares
     channel = ("channel", list(shares), {"units": "", "long_name": "channel of the energy"})
@@ -144,6 +149,11 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
     P = F* V / 2, with the complex amplitudes F of the force and V of the velocity over the last whole number of cycles. The
     real part is the absorbed power; the imaginary part is -pi f m abs(V)^2, with the effective mass m. The amplitudes are
     least-squares fits of a mean, a cosine and a sine, which are exact for harmonic samples at any times.
+
+    References
+    ----------
+    N. Meyer, R. Seifried (2021), Toward a design methodology for particle dampers by analyzing their energy dissipation,
+    Computational Particle Mechanics 8, 681-699, doi:10.1007/s40571-020-00363-0.
 
     Examples
     --------

@@ -92,15 +92,15 @@ def read_frequency_response(
 
     file = existing(path)
     if file.suffix.lower() in (".uff", ".unv", ".uf"):
-        frequency, values, stated, guessed = _from_universal(file, function)
+        frequency, values, stated, implied = _from_universal(file, function)
         notes: list[str] = []
     else:
         frequency, values, stated, notes = _from_text(file, columns)
-        guessed = None
+        implied = None
     if frequency.size < 2 or np.any(np.diff(frequency) <= 0) or frequency[0] < 0:
-        raise DataError(f"{file}: frequencies do not rise from each to the next", "two points or more, in their order")
+        raise DataError(f"{file}: the frequencies do not rise", "two or more points in the order of their frequencies")
     where = "unit" if unit is not None else str(file)
-    factor, si = _ratio_in_si(unit or stated, where) if unit or stated else (1.0, guessed or "")
+    factor, si = _ratio_in_si(unit or stated, where) if unit or stated else (1.0, implied or "")
     values = factor * values
     if not (unit or stated):
         peak = int(np.argmax(np.abs(values)))
@@ -120,7 +120,7 @@ def read_frequency_response(
 
 
 def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, Any, str, str | None]:
-    """Return frequencies, values, the unit that is stated, and the SI unit of the quantities that are."""
+    """Return frequencies, values, the stated unit, and the SI unit of the stated quantities."""
     functions = [each for each in read_functions(file) if each.kind == _FREQUENCY_RESPONSE]
     if not functions:
         raise DataError(f"{file} holds no frequency response function", "a function of type 4 in a set 58")
@@ -138,28 +138,30 @@ def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, A
     if not 0 <= place < len(functions):
         raise DataError(f"{file} holds no function {wanted!r}, but {', '.join(names)}", "function = 1")
     found = functions[place]
-    return found.abscissa, np.asarray(found.values, complex), _stated(found), _guessed(found)
+    return found.abscissa, np.asarray(found.values, complex), _stated_unit(found), _unit_of_quantities(found)
 
 
-def _stated(found: Function) -> str:
+def _stated_unit(found: Function) -> str:
+    """Return the unit that a function of a universal file states, "" if none."""
     if found.unit and found.source_unit:
         return f"({found.unit})/({found.source_unit})"
     return found.unit
 
 
-def _guessed(found: Function) -> str | None:
+def _unit_of_quantities(found: Function) -> str | None:
+    """Return the SI unit of the quantities that a function states by number; None if one is unknown."""
     response, source = (_QUANTITIES.get(code) for code in found.quantities)
     return f"{response}/{source}" if response and source else None
 
 
 def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[FloatArray, Any, str, list[str]]:
-    """Return frequencies, values, the unit that is stated, and what is assumed."""
+    """Return frequencies, values, the stated unit, and notes about assumed units."""
     try:
         chosen = None if columns is None else tuple(columns)
         if chosen is not None and len(chosen) != 3:
             as_columns(chosen, 3)
         table, heads = read_numbers(str(file), chosen, 3)
-        slower, _ = unit_above(heads[0], ("Hz",)) or (1.0, "Hz")
+        to_hertz, _ = unit_above(heads[0], ("Hz",)) or (1.0, "Hz")
     except Hint as hint:
         raise DataError(f"{file}: {hint.complaint}", hint.suggestion) from None
     above = [" ".join(head) for head in heads]
@@ -174,7 +176,7 @@ def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[FloatArray
         other = _bracketed(above[2])
         if unit and other and unit != other:
             raise DataError(f"{file}: the real part is in {unit}, the imaginary part in {other}", "one unit for both")
-        return slower * table[:, 0], table[:, 1] + 1j * table[:, 2], unit or other, []
+        return to_hertz * table[:, 0], table[:, 1] + 1j * table[:, 2], unit or other, []
     magnitude = table[:, 1]
     if "db" in above[1].lower():
         magnitude, unit = 10 ** (magnitude / 20), re.sub(r"(?i)\s*(re\.?\s*1?|db)\s*", "", unit)
@@ -182,17 +184,17 @@ def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[FloatArray
         raise DataError(f"{file}: a magnitude is negative", "dB in the heading, if these are decibels")
     phase, angle = table[:, 2], _bracketed(above[2]).lower()
     if angle.startswith("rad"):
-        return slower * table[:, 0], magnitude * np.exp(1j * phase), unit, []
+        return to_hertz * table[:, 0], magnitude * np.exp(1j * phase), unit, []
     notes: list[str] = []
     if not (angle.startswith("deg") or angle == "°"):
         notes.append(
             f"{file} states no unit of the phase; degrees are assumed: the largest is {np.abs(phase).max():.4g} deg"
         )
-    return slower * table[:, 0], magnitude * np.exp(1j * np.radians(phase)), unit, notes
+    return to_hertz * table[:, 0], magnitude * np.exp(1j * np.radians(phase)), unit, notes
 
 
 def _bracketed(head: str) -> str:
-    """Return what a heading holds in its last brackets, which may hold brackets themselves."""
+    """Return the text in the outermost brackets of a heading."""
     start = min((k for k in (head.find("("), head.find("[")) if k >= 0), default=-1)
     return head[start + 1 : max(head.rfind(")"), head.rfind("]"))].strip() if start >= 0 else ""
 

@@ -34,6 +34,10 @@ def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, ref
     ValueError
         If a sample is not finite, times do not increase, or band or reference is not above zero.
 
+    Notes
+    -----
+    The smallest t_s for which abs(x(t)) <= band reference at all later samples t.
+
     Examples
     --------
     >>> import numpy as np
@@ -79,6 +83,10 @@ def peak_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:
     ValueError
         If a sample is not finite, or the signal without the damper is zero.
 
+    Notes
+    -----
+    1 - max abs(with_damper) / max abs(without).
+
     Examples
     --------
     >>> peak_reduction([0.0, 2.0, -1.0], [0.0, 0.5, -0.5])
@@ -105,6 +113,10 @@ def rms_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:
     ------
     ValueError
         If a sample is not finite, the lengths differ, or the signal without the damper is zero.
+
+    Notes
+    -----
+    1 - rms(with_damper) / rms(without), with rms(x)^2 the mean of x^2 over the samples.
 
     Examples
     --------

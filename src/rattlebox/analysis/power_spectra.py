@@ -101,12 +101,18 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
 
     Notes
     -----
-    Hann windows with 50 % overlap; the interval is that of a Gaussian signal, for each frequency separately. Peaks narrower
-    than two or three times the resolution are broadened: a mode of damping ratio z at f needs a resolution below z f / 2.
+    With K segments x_k of the length of a Hann window w, which overlap by 50 %, and the sampling rate f_s,
+
+        S(f) = 2 / (f_s sum(w^2)) mean over k of abs(sum over n of w_n x_k,n exp(-2 pi i f n / f_s))^2
+
+    The interval is nu S / chi^2(0.975; nu) to nu S / chi^2(0.025; nu) with nu degrees of freedom: that of a Gaussian signal,
+    for each frequency separately. Peaks narrower than two or three times the resolution are broadened: a mode of damping
+    ratio z at f needs a resolution below z f / 2.
 
     References
     ----------
-    P. D. Welch (1967), IEEE Trans. Audio Electroacoust. 15, 70-73, doi:10.1109/TAU.1967.1161901.
+    P. D. Welch (1967), The use of fast Fourier transform for the estimation of power spectra, IEEE Trans. Audio
+    Electroacoust. 15, 70-73, doi:10.1109/TAU.1967.1161901.
 
     Examples
     --------
@@ -163,8 +169,12 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
 
     Notes
     -----
-    Base-ten bands of IEC 61260-1: mid-band frequencies f = 1000 G^(k / b) for odd b and 1000 G^((2 k + 1) / (2 b)) for even
-    b, with G = 10^(3/10), and edges f G^(+-1 / (2 b)). The density is integrated as straight lines between its samples.
+    Base-ten bands: mid-band frequencies f = 1000 G^(k / b) for odd b and 1000 G^((2 k + 1) / (2 b)) for even b, with
+    G = 10^(3/10), and edges f G^(+-1 / (2 b)). The density is integrated as straight lines between its samples.
+
+    References
+    ----------
+    IEC 61260-1:2014, Electroacoustics - Octave-band and fractional-octave-band filters - Part 1: Specifications.
 
     Examples
     --------
@@ -322,9 +332,9 @@ def transmissibility(
     ValueError
         As `transfer_function`, and if the units of the two signals differ.
 
-    References
-    ----------
-    J. S. Bendat and A. G. Piersol (2010), Random Data, 4th ed., Wiley, chapter 6, doi:10.1002/9781118032428.
+    Notes
+    -----
+    H1 = S_xy / S_xx with the base as x; for equation and reference see `transfer_function`.
     """
     if units_of(base) != units_of(response):
         raise ValueError(
@@ -363,7 +373,7 @@ def miles_rms(frequency: float, damping_ratio: float, density: float) -> float:
 
     References
     ----------
-    J. W. Miles (1954), On structural fatigue under random loading, J. Aeronaut. Sci. 21, 753-762.
+    J. W. Miles (1954), On structural fatigue under random loading, J. Aeronaut. Sci. 21, 753-762, doi:10.2514/8.3199.
 
     Examples
     --------

@@ -23,7 +23,7 @@ def phase_portrait(run: Run, of: str | None = None) -> xarray.Dataset:
     run
         Run of T output times.
     of
-        Name of a ball or point; default the first ball, or the first point without balls.
+        Name of a ball or point; default the first ball, or the first point of a run without balls.
 
     Returns
     -------
@@ -67,8 +67,14 @@ def poincare_section(run: Run, period: float, *, phase: float = 0.0, of: str | N
 
     Notes
     -----
-    A motion of period n has n points. Between output times the motion is interpolated by cubics through positions and
-    velocities, which do not resolve impacts: choose output times at the samples, or dense ones.
+    The points are (x(t_n), v(t_n)) with t_n = (n + phase / (2 pi)) period. A motion of period n has n points. Between output
+    times the motion is interpolated by cubics through positions and velocities, which do not resolve impacts: choose output
+    times at the samples, or dense ones.
+
+    References
+    ----------
+    J. Guckenheimer, P. Holmes (1983), Nonlinear Oscillations, Dynamical Systems, and Bifurcations of Vector Fields,
+    Springer, section 1.5, doi:10.1007/978-1-4612-1140-2.
     """
     from scipy.interpolate import CubicHermiteSpline
 

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 WAYS = ("complex power", "energy")
 
-
 MIN_SAMPLES = 8
 """Fewest samples in a cycle; with fewer, higher harmonics are aliased to the first."""
 
@@ -69,8 +68,14 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     With the complex amplitudes F of the force and V of the velocity, P = F* V / 2; the real part is the absorbed power, and
     the effective mass is -Im P / (pi f abs(V)^2). The samples give the mean force of each sampling step h, the change of the
     momentum over h. The mean over a step has the amplitude sinc(f h) = sin(pi f h) / (pi f h) of a harmonic, by which the
-    amplitude F is divided. Both amplitudes are exact for harmonic motions at any number of samples. Of a force of short
-    impulses, harmonic 1 + k N at N samples per cycle adds to F with the factor 1 / (1 + k N): increase N until P converges.
+    amplitude F is divided. Both amplitudes are exact for harmonic motions at any number of samples. With N samples per
+    cycle, the harmonics 1 + k N of a force of short impulses are aliased to F with the factor 1 / (1 + k N): increase N
+    until P converges.
+
+    References
+    ----------
+    N. Meyer, R. Seifried (2021), Toward a design methodology for particle dampers by analyzing their energy dissipation,
+    Computational Particle Mechanics 8, 681-699, doi:10.1007/s40571-020-00363-0.
     """
     import xarray
 
@@ -142,7 +147,7 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
 def force_harmonics(
     times: FloatArray, momentum: FloatArray, frequency: float, count: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Compute the harmonics of the force on the particles, and how much the first one varies from cycle to cycle.
+    """Compute the harmonics of the force on the particles, and the variation of the first one from cycle to cycle.
 
     Parameters
     ----------
@@ -164,7 +169,8 @@ def force_harmonics(
 
     Notes
     -----
-    Like in `shaken_cavity`, a sampling step has the mean force of the change of momentum over it.
+    F_n = 2 f / sinc(n f h) times the mean over the cycles of the sum of dp exp(-2 pi i n f t) over a cycle, with the change
+    dp of the momentum in each sampling step h around t; see `shaken_cavity` for sinc.
     """
     step = float(times[-1] - times[0]) / (times.size - 1)
     turns = frequency * (0.5 * (times[1:] + times[:-1]) - times[0])

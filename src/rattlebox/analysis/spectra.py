@@ -44,13 +44,18 @@ def amplitude_spectrum(
 
     Notes
     -----
-    A sine of amplitude a at the frequency of a bin has the amplitude a for any window; between two bins it is reduced by
-    the scalloping loss of the window (hann 15 %, boxcar 36 %, flattop 0.1 %; less with padding). The value at zero
-    frequency is the magnitude of the mean.
+    With the window w and the sampling rate f_s,
+
+        a(f) = 2 / sum(w) abs(sum over n of w_n x_n exp(-2 pi i f n / f_s))
+
+    without the factor of 2 at zero frequency, where it is the magnitude of the mean, and at half the sampling rate. A sine
+    of amplitude a at the frequency of a bin has the amplitude a for any window; between two bins it is reduced by the
+    scalloping loss of the window (hann 15 %, boxcar 36 %, flattop 0.1 %; less with padding).
 
     References
     ----------
-    F. J. Harris (1978), Proceedings of the IEEE 66, 51-83, doi:10.1109/PROC.1978.10837.
+    F. J. Harris (1978), On the use of windows for harmonic analysis with the discrete Fourier transform, Proceedings of the
+    IEEE 66, 51-83, doi:10.1109/PROC.1978.10837.
 
     Examples
     --------
@@ -87,6 +92,6 @@ def _check_window(window: str | tuple[str, float]) -> None:
         get_window(window, 4)
     except (ValueError, TypeError) as error:
         raise ValueError(
-            f"window is {window!r}: {error} Known are boxcar, hann, hamming, blackman, blackmanharris, nuttall, flattop, "
+            f"window is {window!r}: {error} Allowed are boxcar, hann, hamming, blackman, blackmanharris, nuttall, flattop, "
             '("kaiser", beta), ("tukey", share) and the others of scipy.signal.get_window'
         ) from None
