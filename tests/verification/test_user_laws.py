@@ -36,12 +36,18 @@ def rebound(force: Any, mass: float, speed: float, *, tension: bool = False) -> 
     return -float(motion.y_events[0][-1][1])
 
 
-def impact(contact: Any, speed: float = SPEED) -> Any:
+def impact(contact: Any, speed: float = SPEED, method: Any = None) -> Any:
     """Return a run of a ball that hits the wall of a fixed cavity in the 1-D engine."""
     damper = rb.ImpactDamper(
         ball=rb.Sphere(radius=RADIUS, material=STEEL), gap="1 mm", velocity=speed, wall=STEEL, contact=contact
     )
-    return rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=2e-3 / speed))
+    case = rb.Case(
+        structure=rb.Fixed(),
+        damper=damper,
+        duration=2e-3 / speed,
+        method=rb.EventDriven() if method is None else method,
+    )
+    return rb.simulate(case)
 
 
 def particle(contact: Any, speed: float = SPEED, **options: Any) -> Any:
@@ -166,6 +172,14 @@ def test_measured_curves_give_back_what_unloading_holds(speed: float) -> None:
     assert float(run.arrays.plastic_loss.sum(axis=(1, 2))[-1]) == pytest.approx(
         0.5 * MASS * speed**2 * (1 - expected**2), rel=5e-3
     )
+
+
+@pytest.mark.parametrize("speed", [2.0, 12.0, 40.0])
+def test_hard_impacts_of_a_measured_curve_lose_as_much_as_its_contact(speed: float) -> None:
+    """Below and beyond the last point of the curve, the method Newton has the rebound of the contact with a duration."""
+    soft, hard = (impact(MEASURED, speed, method).impacts for method in (rb.EventDriven(), rb.Newton()))
+    assert (float(soft.peak_overlap[0]) > OVERLAP[-1]) == (speed > 10)
+    assert float(hard.separation_speed[0]) == pytest.approx(float(soft.separation_speed[0]), rel=1e-4)
 
 
 def test_a_measured_curve_without_unloading_is_elastic() -> None:

@@ -8,7 +8,7 @@
 // r d_max, g(r) = 0; reloading follows it up to d_max. Without an unloading curve the contact is elastic:
 // unloading follows f. Rate independent.
 //
-// F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021.
+// F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, doi:10.1137/0905021.
 #pragma once
 
 #include <algorithm>

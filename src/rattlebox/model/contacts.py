@@ -32,6 +32,9 @@ from .units import (
 
 Ending = Literal["zero_force", "zero_overlap"]
 
+EXTRAPOLATED = 1000.0
+"""Largest overlap in the restitution table of a measured contact, over the last measured one."""
+
 
 class FixedDamping(NamedTuple):
     """A dashpot with the same restitution at every speed.
@@ -39,9 +42,13 @@ class FixedDamping(NamedTuple):
     Attributes
     ----------
     ratio
-        Damping ratio of the contact.
+        Damping ratio zeta of the contact: alpha / 5^(1/2) of Tsuji's law, c / (2 (k m*)^(1/2)) of a linear contact.
     ending
         End of the contact: "zero_force" or "zero_overlap".
+
+    See Also
+    --------
+    rattlebox.restitution_of_alpha : Restitution of a damping ratio, with equation and source.
     """
 
     ratio: Any
@@ -64,7 +71,14 @@ class Contact(Part):
         raise NotImplementedError
 
     def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
-        """Return `coefficients` with moduli divided by a factor; dashpots are scaled so that the restitution is the same."""
+        """Return `coefficients` with moduli divided by a factor; dashpots are scaled so that the restitution is the same.
+
+        Notes
+        -----
+        With a modulus E / s the coefficient of a linear dashpot is c / s^(1/2), since its damping ratio c / (2 (k m*)^(1/2))
+        is the same. A limiting pressure is p_y / s^(4/5), since the speed at which yield begins is proportional to
+        p_y^(5/2) / E^2 (see `ThorntonRestitution`).
+        """
         name, values = self.coefficients(pair)
         scale = {"stiffness": 1.0, "modulus": 1.0, "damping": 0.5, "yield_pressure": 0.8}
         return name, {key: value / softening ** scale.get(key, 0.0) for key, value in values.items()}
@@ -98,10 +112,12 @@ class Tsuji(Contact):
     Notes
     -----
     N = K d^(3/2) + alpha (m* K)^(1/2) d^(1/4) d', with Hertz's stiffness K = 4/3 E* R*^(1/2), the effective mass m* and the
-    overlap d.
+    overlap d. The restitution depends on alpha alone; `restitution_of_alpha` has the equation.
 
     References
     ----------
+    H. Hertz, J. reine angew. Math. 92 (1882) 156, doi:10.1515/crll.1882.92.156.
+
     Y. Tsuji, T. Tanaka, T. Ishida, Powder Technology 71 (1992) 239, doi:10.1016/0032-5910(92)88030-L.
     """
 
@@ -160,11 +176,15 @@ class Linear(Contact):
 
     Notes
     -----
-    N = k d + c d', with the overlap d.
+    N = k d + c d', with the overlap d. With the damping ratio zeta = c / (2 (k m*)^(1/2)) < 1, a contact that ends at zero
+    overlap has the restitution e = exp(-pi zeta / (1 - zeta^2)^(1/2)); one that ends at zero force has e = exp(-2 b cot b),
+    where zeta = cos b.
 
     References
     ----------
     P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
+
+    T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z (restitution).
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("stiffness", "contact_time"), ("restitution", "damping"))
@@ -188,7 +208,7 @@ class Linear(Contact):
         return self.restitution
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
-        """Return stiffness, mass and, if fixed, damping."""
+        """Return stiffness, mass and, if fixed, damping; a contact time t has the stiffness m* (pi / t)^2."""
         if self.stiffness is not None:
             stiffness = self.stiffness
         else:
@@ -223,13 +243,18 @@ class Thornton(Contact):
 
     Notes
     -----
-    Loading follows Hertz up to the overlap at which the pressure at the centre reaches p_y, and is linear beyond it, with
-    the slope pi R* p_y. Unloading follows Hertz with a larger effective radius.
+    Loading follows Hertz, F = K d^(3/2) with K = 4/3 E* R*^(1/2), up to the overlap d_y = R* (pi p_y / (2 E*))^2 at which
+    the pressure at the centre reaches p_y. Beyond it the force is linear, F = F_y + pi R* p_y (d - d_y). Unloading from
+    F_max and reloading follow Hertz with a larger effective radius, F = 4/3 E* R_p^(1/2) (d - d_p)^(3/2), with R_p = 4 E* /
+    (3 F_max) ((2 F_max + F_y) / (2 pi p_y))^(3/2) and the residual overlap d_p, at which F = 0.
 
     References
     ----------
     C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres, J. Appl. Mech. 64
-    (1997) 383-386.
+    (1997) 383-386, eqs 8 to 18.
+
+    C. Thornton, Z. Ning, Powder Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0 (the same contact, with
+    adhesion).
     """
 
     kind: Literal["thornton"] = "thornton"
@@ -251,7 +276,7 @@ class Thornton(Contact):
 
 
 class PowerLaw(Contact):
-    """Contact law with powers of the overlap in the elastic force and the dashpot, N = k d^n + c d^p d'.
+    """Contact law with powers of the overlap in the elastic force and in the dashpot.
 
     Parameters
     ----------
@@ -272,12 +297,16 @@ class PowerLaw(Contact):
 
     Notes
     -----
-    c is constant for the pair: unless p = (n - 1)/2, the restitution depends on the speed.
+    N = k d^n + c d^p d', with the overlap d. c is constant for the pair: unless p = (n - 1)/2, the restitution depends on
+    the speed V. For a given restitution, c = gamma m* V / L^(p + 1) with L = (m* V^2 / k)^(1/(n + 1)); gamma is the root of
+    e(gamma), which is computed from x'' + gamma x^p x' + x^n = 0, x(0) = 0, x'(0) = 1.
 
     References
     ----------
     K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440, doi:10.1115/1.3423596.
+
     G. Kuwabara, K. Kono, Jpn. J. Appl. Phys. 26 (1987) 1230, doi:10.1143/JJAP.26.1230.
+
     H. M. Lankarani, P. E. Nikravesh, J. Mech. Des. 112 (1990) 369, doi:10.1115/1.2912617.
 
     Examples
@@ -300,11 +329,15 @@ class PowerLaw(Contact):
     def _determined(self) -> PowerLaw:
         one_of("restitution = 0.9", restitution=self.restitution, damping=self.damping)
         if self.stiffness is None and self.exponent != 1.5:
-            raise Hint("materials give the stiffness of exponent = 1.5 only", "stiffness = 1e9", ["stiffness"])
+            raise Hint(
+                "moduli determine the stiffness only of a Hertz contact, exponent = 1.5",
+                "stiffness = 1e9",
+                ["stiffness"],
+            )
         same_at_every_speed = 2 * self.damping_exponent == self.exponent - 1
         if self.restitution is not None and self.impact_speed is None and not same_at_every_speed:
             raise Hint(
-                "with these exponents the restitution depends on the speed, so that the speed of the impact is needed",
+                "with these exponents the restitution depends on the speed: the speed of the impact is needed",
                 'impact_speed = "1 m/s"',
                 ["impact_speed"],
             )
@@ -338,7 +371,12 @@ class PowerLaw(Contact):
         }
 
     def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
-        """Return the coefficients with the stiffness divided by a factor and the same restitution at each speed."""
+        """Return the coefficients with the stiffness divided by a factor and the same restitution at each speed.
+
+        Notes
+        -----
+        k / s and c / s^((p + 1)/(n + 1)) leave gamma = c L^(p + 1) / (m* V), with L = (m* V^2 / k)^(1/(n + 1)), unchanged.
+        """
         name, values = self.coefficients(pair)
         values["stiffness"] = values["stiffness"] / softening
         values["damping"] = values["damping"] / softening**self._similarity
@@ -350,7 +388,9 @@ class PowerLaw(Contact):
             return Constant.model_construct(e=self.restitution)
         _, values = self.coefficients(pair)
         if any(isinstance(value, np.ndarray) for value in values.values()):
-            raise Hint("hard impacts cannot vary a power law within one study", "method = EventDriven()")
+            raise Hint(
+                "the method Newton cannot vary a power law within one study; EventDriven can", "method = EventDriven()"
+            )
         speeds = np.geomspace(1e-6, 1e3, 181)
         length = (pair.mass * speeds**2 / values["stiffness"]) ** (1 / (self.exponent + 1))
         gammas = values["damping"] * length ** (self.damping_exponent + 1) / (pair.mass * speeds)
@@ -380,13 +420,17 @@ class Curve(Part):
 
 
 def check_curve(overlap: tuple[float, ...], force: tuple[float, ...]) -> None:
-    """Raise unless a curve has as many forces as overlaps, both increase, and no force is negative."""
+    """Raise if overlaps and forces differ in number, if overlaps or forces decrease, or if a force is negative."""
     if len(overlap) != len(force) or len(overlap) < 2:
         raise Hint(f"{len(overlap)} overlaps, but {len(force)} forces", "as many of both, at least two", ["force"])
     if any(b <= a for a, b in pairwise(overlap)):
-        raise Hint("overlaps must increase", place=["overlap"])
+        raise Hint("overlaps must increase", "points in the order of the overlap", ["overlap"])
     if any(b < a for a, b in pairwise(force)) or force[0] < 0 or force[-1] <= 0:
-        raise Hint("forces must not be negative and must not decrease with the overlap", place=["force"])
+        raise Hint(
+            "forces must not be negative and must not decrease with the overlap",
+            "the part of the measurement up to its largest force",
+            ["force"],
+        )
 
 
 class TabulatedNormal(Contact):
@@ -404,13 +448,15 @@ class TabulatedNormal(Contact):
 
     Notes
     -----
-    Between points the curves are monotone piecewise cubics (Fritsch and Carlson); beyond the last point the force continues
-    with the last slope. The unloading curve is scaled to other largest overlaps: F = f(d_max) g(d/d_max). The curves hold
-    for the pair, independent of materials and sizes.
+    Loading follows F = f(d). Between points, f is a monotone piecewise cubic whose slope at a point is the weighted harmonic
+    mean of the slopes of the two chords (Fritsch and Butland); beyond the last point the force continues with the last
+    slope. Unloading from the overlap d_max follows F = f(d_max) g(d / d_max), where g is the unloading curve over its
+    largest force and overlap: it keeps its shape for other largest overlaps. The curves hold for the pair, independent of
+    materials and sizes. The restitution is the square root of the work of unloading over that of loading.
 
     References
     ----------
-    F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021.
+    F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, doi:10.1137/0905021 (interpolation).
     """
 
     kind: Literal["tabulated"] = "tabulated"
@@ -422,11 +468,13 @@ class TabulatedNormal(Contact):
     def _validate(self) -> TabulatedNormal:
         check_curve(self.overlap, self.force)
         if self.overlap[0] != 0 or self.force[0] != 0:
-            raise Hint("a loading curve begins with no overlap and no force", "overlap = [0, ...], force = [0, ...]")
+            raise Hint("a loading curve must begin at zero overlap and force", "overlap = [0, ...], force = [0, ...]")
         if self.unloading is not None:
             with at("unloading"):
                 if self.unloading.force[0] != 0 or self.unloading.overlap[0] < 0:
-                    raise Hint("an unloading curve begins at the residual overlap with no force", "force = [0, ...]")
+                    raise Hint(
+                        "an unloading curve must begin at the residual overlap with zero force", "force = [0, ...]"
+                    )
                 top = self.unloading.overlap[-1]
                 there = float(self._loading(top)) if top <= self.overlap[-1] else math.nan
                 if not abs(self.unloading.force[-1] - there) <= 0.01 * there:
@@ -461,7 +509,16 @@ class TabulatedNormal(Contact):
         if self._unloading is None:
             return np.ones_like(deepest)
         area = self._unloading.integrate(self._unloading.x[0], 1.0)
-        return self._loading(deepest) * deepest * area / self._loading.antiderivative()(deepest)
+        force, work = self._load(deepest)
+        return force * deepest * area / work
+
+    def _load(self, overlap: Any) -> tuple[Any, Any]:
+        """Return force [N] and work [J] of loading, also beyond the last point, where the force has the last slope."""
+        last = self.overlap[-1]
+        inside, beyond = np.minimum(overlap, last), np.maximum(overlap - last, 0.0)
+        force, slope = self._loading(inside), float(self._loading(last, 1))
+        work = self._loading.antiderivative()(inside) + beyond * (force + slope * beyond / 2)
+        return force + slope * beyond, work
 
     def secant_stiffness(self, force: float) -> float:
         """Return the secant stiffness of the loading curve at a force [N/m]."""
@@ -487,10 +544,12 @@ class TabulatedNormal(Contact):
         """Return the restitution of this contact as a table over the speed."""
         if isinstance(pair.mass, np.ndarray):
             raise Hint(
-                "hard impacts cannot vary masses of measured contacts within one study", "method = EventDriven()"
+                "the method Newton cannot vary masses of measured contacts within one study; EventDriven can",
+                "method = EventDriven()",
             )
-        deepest = np.linspace(0, self.overlap[-1], 181)[1:]
-        work = self._loading.antiderivative()(deepest)
+        last = self.overlap[-1]
+        deepest = np.concatenate([np.linspace(0, last, 181)[1:], last * np.geomspace(1, EXTRAPOLATED, 181)[1:]])
+        _, work = self._load(deepest)
         returned = np.minimum(self._returned_share(deepest), 1.0)
         return Tabulated(speeds=tuple(np.sqrt(2 * work / pair.mass)), values=tuple(np.sqrt(returned)))
 

@@ -48,11 +48,16 @@ class Mindlin(Friction):
 
     Notes
     -----
-    k_t = 8 G* (R* d)^(1/2), with the overlap d and 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2.
+    The tangential force is that of a spring and a dashpot and at most mu N. The stiffness is k_t = 8 G* (R* d)^(1/2), with
+    the overlap d and 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2. The history is the force of the spring, dF = k_t ds, with the
+    tangential displacement s; if k_t decreases during unloading, the spring force decreases in proportion, so that the
+    spring never gains energy.
 
     References
     ----------
-    R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327, doi:10.1115/1.4010702.
+    R. D. Mindlin, J. Appl. Mech. 16 (1949) 259, doi:10.1115/1.4009973 (stiffness).
+
+    R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327, doi:10.1115/1.4010702 (history).
     """
 
     positional: ClassVar[tuple[str, ...]] = ("coefficient",)
@@ -81,6 +86,11 @@ class LinearSpring(Friction):
         Ratio of the tangential stiffness to that of the linear contact, in place of `stiffness`.
     damping
         Damping ratio of the tangential dashpot over that of the normal one.
+
+    Notes
+    -----
+    The tangential force is k_t s + c_t s', with the tangential displacement s since the contact began or slipped, and at
+    most mu N. k_t is the stiffness, or the ratio times the stiffness k of the linear contact.
 
     References
     ----------
@@ -124,6 +134,11 @@ class Rolling(Part):
     damping
         Damping ratio of the dashpot.
 
+    Notes
+    -----
+    The moment is k_r theta + c_r theta', with the rolling angle theta, and at most mu_r R* N (model C of the reference).
+    k_r is the stiffness times k_t R*^2, with the tangential stiffness k_t of the friction law.
+
     References
     ----------
     J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technology 206 (2011) 269, doi:10.1016/j.powtec.2010.09.030.
@@ -140,7 +155,7 @@ class Rolling(Part):
         def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
 
     def coefficients(self) -> dict[str, float]:
-        """Return the coefficients for the core."""
+        """Return mu_r, k_r / (k_t R*^2) and the damping ratio for the core."""
         return {"coefficient": self.coefficient, "stiffness": self.stiffness, "damping": self.damping}
 
 

@@ -40,7 +40,8 @@ def dimensionless_damping(restitution: float, exponent: float, damping_exponent:
 
     Notes
     -----
-    With overlap over L and time over L/V the motion obeys x'' + gamma x^p x' + x^n = 0, x(0) = 0, x'(0) = 1.
+    With overlap over L and time over L/V the motion obeys x'' + gamma x^p x' + x^n = 0, x(0) = 0, x'(0) = 1. `PowerLaw`
+    names the sources.
     """
     from scipy.optimize import brentq
 
@@ -57,8 +58,8 @@ def dimensionless_damping(restitution: float, exponent: float, damping_exponent:
                 return math.exp(brentq(excess, low, high, xtol=1e-13, rtol=1e-13))
             high += 1.0
     raise Hint(
-        f"no dashpot with this exponent gives a restitution of {restitution:g}",
-        "a larger restitution, or damping",
+        f"no dashpot with this exponent has a restitution of {restitution:g}",
+        "a larger restitution, or damping in place of it",
         ["restitution"],
     )
 

@@ -55,12 +55,20 @@ class Restitution(Part):
 
 
 class Constant(Restitution):
-    """Constant restitution.
+    """Constant restitution (Newton's law of restitution).
 
     Parameters
     ----------
     e
         Rebound speed over approach speed.
+
+    Notes
+    -----
+    V' = e V, with the approach speed V and the rebound speed V'.
+
+    References
+    ----------
+    B. Brogliato (2016), Nonsmooth Mechanics, 3rd ed., Springer, doi:10.1007/978-3-319-28664-8.
     """
 
     positional: ClassVar[tuple[str, ...]] = ("e",)
@@ -97,7 +105,7 @@ class Tabulated(Restitution):
         if len(self.speeds) != len(self.values) or not self.speeds:
             raise Hint(f"{len(self.speeds)} speeds, but {len(self.values)} values", "as many of both, at least one")
         if any(b <= a for a, b in zip(self.speeds, self.speeds[1:], strict=False)):
-            raise Hint("speeds must increase", place=["speeds"])
+            raise Hint("speeds must increase", "points in the order of the speed", ["speeds"])
         return self
 
     def coefficients(self, pair: Pair) -> Coefficients:
@@ -106,7 +114,7 @@ class Tabulated(Restitution):
 
 
 class JacksonGreen(Restitution):
-    """Restitution of elasto-plastic impacts after Jackson and Green, from yield stress and elastic constants.
+    """Restitution of elasto-plastic impacts by Jackson, Green and Marghitu, from yield stress and elastic constants.
 
     Parameters
     ----------
@@ -118,10 +126,23 @@ class JacksonGreen(Restitution):
     extrapolate
         Whether the law is used above 1000 critical speeds; a run counts these impacts.
 
+    Notes
+    -----
+    With the approach speed over the critical speed, w = V / V_c, the law is a fit to finite-element results::
+
+        e = 1                                                                     w < 1
+        e = 1 - 0.1 ln w ((w - 1) / 59)^0.156                                1 <= w < 60
+        e = 1 - 0.1 ln 60 - 0.11 ln(w / 60) (w - 60)^(2.36 eps_y)           60 <= w <= 1000
+
+    eps_y = S_y / E is the yield strain of the body that yields first, the one with the lower hardness C S_y,
+    C = 1.295 exp(0.736 nu); `critical_speed` has the equation of V_c.
+
     References
     ----------
     R. L. Jackson, I. Green, D. B. Marghitu, Predicting the coefficient of restitution of impacting elastic-perfectly plastic
-    spheres, Nonlinear Dynamics 60 (2010) 217.
+    spheres, Nonlinear Dynamics 60 (2010) 217-229.
+
+    R. L. Jackson, I. Green, J. Tribol. 127 (2005) 343, doi:10.1115/1.1866166 (critical load and hardness).
     """
 
     kind: Literal["jackson_green"] = "jackson_green"
@@ -130,7 +151,13 @@ class JacksonGreen(Restitution):
     extrapolate: bool = False
 
     def critical_speed(self, pair: Pair) -> float:
-        """Return the critical speed V_c at which yield begins [m/s]."""
+        """Return the critical speed V_c at which yield begins [m/s].
+
+        Notes
+        -----
+        V_c = (4 d_c P_c / (5 m*))^(1/2), with the overlap d_c = (pi C S_y / (2 E*))^2 R* and the load
+        P_c = 4/3 (R*/E*)^2 (pi C S_y / 2)^3 at which yield begins; for the sources see the class.
+        """
         pair = pair.against(self.wall)
         strength, _ = self._strength(pair)
         pressure = math.pi * strength / 2
@@ -176,19 +203,32 @@ class ThorntonRestitution(Restitution):
     Parameters
     ----------
     yield_pressure
-        Limiting contact pressure [Pa]; default 1.6 times the smaller yield stress.
+        Limiting contact pressure p_y [Pa]; default 1.6 times the smaller yield stress.
+
+    Notes
+    -----
+    e = (6 3^(1/2) / 5)^(1/2) (1 - r^2/6)^(1/2) (r / (r + 2 (6/5 - r^2/5)^(1/2)))^(1/4) with r = V_y / V, and e = 1 for
+    V <= V_y; `yield_speed` has the equation of V_y. The contact `Thornton` has this restitution.
 
     References
     ----------
     C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres, J. Appl. Mech. 64
-    (1997) 383-386.
+    (1997) 383-386, eq. 19.
+
+    C. Thornton, Z. Ning, Powder Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0 (the same contact, with
+    adhesion).
     """
 
     kind: Literal["thornton"] = "thornton"
     yield_pressure: Modulus | None = None
 
     def yield_speed(self, pair: Pair) -> float:
-        """Return the speed V_y at which yield begins [m/s]."""
+        """Return the speed V_y at which yield begins [m/s].
+
+        Notes
+        -----
+        V_y = (pi / (2 E*))^2 (8 pi R*^3 / (15 m*))^(1/2) p_y^(5/2); for the source see the class.
+        """
         pressure = yield_pressure(pair, self.yield_pressure, "Thornton's law")
         speed: float = (
             power(math.pi / (2 * pair.modulus), 2)
@@ -203,12 +243,17 @@ class ThorntonRestitution(Restitution):
 
 
 class Johnson(Restitution):
-    """Restitution of a fully plastic impact, (V/V_0)^(-1/4).
+    """Restitution of a fully plastic impact.
 
     Parameters
     ----------
     speed_scale
-        V_0 [m/s]; default 3.8^4 (Y/E*)^2 sqrt(2 Y R*^3/m*), with the yield stress Y of the body that yields first.
+        V_0 [m/s]; default that of the yield stress.
+
+    Notes
+    -----
+    e = (V / V_0)^(-1/4), at most 1, for V much larger than V_0 = 3.8^4 (Y/E*)^2 (2 Y R*^3 / m*)^(1/2), with the yield stress
+    Y of the body that yields first.
 
     References
     ----------
@@ -219,7 +264,7 @@ class Johnson(Restitution):
     speed_scale: PositiveVelocity | None = None
 
     def coefficients(self, pair: Pair) -> Coefficients:
-        """Return the speed scale."""
+        """Return V_0."""
         scale = self.speed_scale
         if scale is None:
             strength = yield_pressure(pair, None, "Johnson's law") / 1.6
@@ -229,7 +274,7 @@ class Johnson(Restitution):
 
 
 def as_restitution(value: Any) -> Any:
-    """Return the table of a constant restitution for a bare number, any other value unchanged."""
+    """Return the table of a constant restitution for a bare number; return any other value unchanged."""
     return bare_number(
         value,
         lambda e: {"kind": "constant", "e": e},
