@@ -110,11 +110,14 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
     with at("file"):
         modes = read_modes(path, count)
     name = Path(path).name
+    masses = None
+    if given.get("modal_masses") is not None:
+        with at("modal_masses"):
+            masses = _modal_masses(given["modal_masses"], given, in_kg=True)
     if isinstance(modes, dict):
-        masses = given.get("modal_masses", modes.pop("modal_masses", None))
-        if masses is not None:
-            with at("modal_masses"):
-                masses = np.array([parse(mass, ("kg",))[0] for mass in masses])
+        if masses is None and "modal_masses" in modes:
+            with at("file"):
+                masses = _modal_masses(modes["modal_masses"], given, in_kg=False)
         shapes = {point: numbers(row) for point, row in modes["shapes"].items()}
         modes = ModesInFile(
             frequencies=np.array([parse(f, ("Hz",))[0] for f in modes["frequencies"]]),
@@ -124,9 +127,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
             participation=numbers(modes["participation"]) if "participation" in modes else None,
             mass_unit=1.0,
         )
-    elif given.get("modal_masses") is not None:
-        with at("modal_masses"):
-            masses = np.array([parse(mass, ("kg",))[0] for mass in given["modal_masses"]])
+    elif masses is not None:
         modes = replace(modes, modal_masses=masses, mass_unit=1.0)
     first = slice(None, count)
     total = modes.frequencies.size
@@ -155,6 +156,23 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         )
     size = f"the largest mass-normalised shape is {largest:.4g} kg^-0.5, at {point}"
     return fields, [f"{note}; {size}" for note in (*notes, *modes.notes)]
+
+
+def _modal_masses(values: Any, given: Mapping[str, Any], *, in_kg: bool) -> Vector:
+    """Read modal masses [kg]; numbers without unit are in kg, or, unless `in_kg`, in the unit of mass of the file.
+
+    Raises
+    ------
+    Hint
+        If `mass_unit` states another unit than kg for masses that are in kg: it would multiply them.
+    """
+    masses, own = zip(*(parse(mass, ("kg",)) for mass in values), strict=True) if len(values) else ((), ())
+    if given.get("mass_unit") not in (None, "kg") and (in_kg or any(own)):
+        raise Hint(
+            f"modal masses have their own unit, or are in kg, and mass_unit = {given['mass_unit']!r} contradicts that",
+            f'modal_masses = ["1 {given["mass_unit"]}", ...] for mass-normalised shapes in that unit, without mass_unit',
+        )
+    return np.array(masses)
 
 
 def _scale(modes: ModesInFile, given: Mapping[str, Any], name: str, path: str) -> tuple[Vector, list[str]]:

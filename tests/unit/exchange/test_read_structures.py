@@ -105,6 +105,23 @@ def test_modes_of_set_55_need_modal_masses() -> None:
         np.testing.assert_allclose(four.shapes[name], np.array(shape) / 2, rtol=1e-12)
 
 
+def test_a_unit_of_mass_does_not_multiply_modal_masses_in_another_one(tmp_path: Path) -> None:
+    """`mass_unit` applies to masses without unit in a file; with modal masses in kg or with units it is refused."""
+    (tmp_path / "modes.csv").write_text("frequency (Hz),damping (1),tip\n10,0.01,1\n")
+    modes = rb.Modal.from_file(tmp_path / "modes.csv", modal_masses=["2 t"]).modes()
+    assert modes.effective_mass("tip") == pytest.approx(2000.0)
+    for masses in (["2 t"], [2.0]):
+        with pytest.raises(rb.CaseError, match="mass_unit = 't' contradicts"):
+            rb.Modal.from_file(tmp_path / "modes.csv", modal_masses=masses, mass_unit="t")
+    text = 'frequencies = ["10 Hz"]\ndamping_ratios = [0.01]\nmodal_masses = [{}]\n[shapes]\ntip = [1]\n'
+    (tmp_path / "modes.toml").write_text(text.format(2))
+    modes = rb.Modal.from_file(tmp_path / "modes.toml", mass_unit="t").modes()
+    assert modes.effective_mass("tip") == pytest.approx(2000.0)
+    (tmp_path / "modes.toml").write_text(text.format('"2 kg"'))
+    with pytest.raises(rb.CaseError, match="mass_unit = 't' contradicts"):
+        rb.Modal.from_file(tmp_path / "modes.toml", mass_unit="t")
+
+
 def test_tables_of_modes(tmp_path: Path) -> None:
     """Modal masses, damping in percent and participation of a table are converted to mass-normalised modes."""
     (tmp_path / "modes.csv").write_text(TABLE)
