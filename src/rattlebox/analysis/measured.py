@@ -55,7 +55,7 @@ def read_frequency_response(
     columns
         Numbers (from 1) or names of the three columns of a text file; needed if there are more.
     unit
-        Unit of the values, response over source such as "m/s^2/N", "g_0/N" or "mm/N", in place of the one in the file.
+        Unit of the values, response over source such as "m/s^2/N", "g/N" or "mm/N", in place of the one in the file.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def read_frequency_response(
         notes.insert(
             0,
             f"{file} states no unit; {si or 'SI'} is assumed: the largest magnitude is {largest} "
-            f'at {frequency[peak]:.4g} Hz; if not, try: unit = "g_0/N"',
+            f'at {frequency[peak]:.4g} Hz; if not, try: unit = "g/N"',
         )
     for note in notes:
         warnings.warn(note, stacklevel=2)
@@ -211,5 +211,5 @@ def _ratio_in_si(unit: str, where: str) -> tuple[float, str]:
     if unit.strip() in ("1", "-", "g/g", "dimensionless"):
         return 1.0, "1"
     raise DataError(
-        f"{where}: {unit!r} is not a unit of a response over a source", 'unit = "m/s^2/N", "g_0/N", "mm/N" or "1"'
+        f"{where}: {unit!r} is not a unit of a response over a source", 'unit = "m/s^2/N", "g/N", "mm/N" or "1"'
     )

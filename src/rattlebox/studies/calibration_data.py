@@ -423,7 +423,7 @@ class ShakerLoss:
         if unit is None:
             with at("amplitude"):
                 raise Hint(
-                    "the unit distinguishes a displacement from an acceleration", '"20 m/s^2", "2 g_0" or "0.5 mm"'
+                    "the unit distinguishes a displacement from an acceleration", '"20 m/s^2", "2 g" or "0.5 mm"'
                 )
         amplitude = _one_or_all("amplitude", amplitude, loss.size)
         frequency = _one_or_all("frequency", read_column("frequency", self.frequency, ("Hz",)).values, loss.size)
