@@ -132,11 +132,11 @@ MESSAGES = {
     ),
     "unknown material": (
         changed('"steel"', '"stel"'),
-        "damper.ball.material = 'stel'\n  no material of that name\n  try: did you mean 'steel'?",
+        "damper.ball.material = 'stel'\n  there is no material of this name\n  try: did you mean 'steel'?",
     ),
     "unknown material of the case": (
         changed('"steel"', '"rubbr"') + "[materials.rubber]\ndensity = 1100\nyoung = 1e7\npoisson = 0.49\n",
-        "damper.ball.material = 'rubbr'\n  no material of that name\n  try: did you mean 'rubber'?",
+        "damper.ball.material = 'rubbr'\n  there is no material of this name\n  try: did you mean 'rubber'?",
     ),
     "invalid material of the case": (
         GOOD + '[materials.rubber]\ndensity = "1 g"\nyoung = 1e7\npoisson = 0.6\n',
@@ -229,7 +229,8 @@ MESSAGES = {
     ),
     "cavity shorter than the ball": (
         changed('gap = "0.4 mm"', 'cavity_length = "66 mm"'),
-        "damper.cavity_length = '66 mm'\n  the balls alone are 0.06634 m long\n  try: cavity_length = \"67 mm\"",
+        "damper.cavity_length = '66 mm'\n  is shorter than the row of balls, which is 66.34 mm long\n"
+        '  try: cavity_length = "67 mm"',
     ),
     "tolerance": (
         GOOD + '[method]\nkind = "event_driven"\ntolerance = 1\n',

@@ -81,7 +81,7 @@ class Beam(DampedModes):
 
     References
     ----------
-    S. S. Rao (2007): Vibration of Continuous Systems, Wiley, chapter 11.
+    S. S. Rao (2007): Vibration of Continuous Systems, Wiley, chapter 11, ISBN 978-0-471-77171-5.
 
     G. R. Cowper (1966): The shear coefficient in Timoshenko's beam theory. Journal of Applied Mechanics 33, 335-340,
     doi:10.1115/1.3625046.
@@ -113,12 +113,15 @@ class Beam(DampedModes):
     def _validate(self) -> Self:
         if self.material is not None:
             if self.bending_stiffness is not None or self.mass_per_length is not None:
-                raise Hint("a material and bending_stiffness or mass_per_length exclude each other", "one or the other")
+                raise Hint(
+                    "a material excludes bending_stiffness and mass_per_length",
+                    "material and cross-section, or bending_stiffness and mass_per_length",
+                )
             one_of('diameter = "20 mm", or width and height', diameter=self.diameter, height=self.height)
             if self.height is not None and self.width is None:
                 raise Hint("a rectangular cross-section needs a width", 'width = "30 mm"', ["width"])
             if self.inner_diameter is not None and not self.inner_diameter < (self.diameter or 0.0):
-                raise Hint("must be less than the diameter", place=["inner_diameter"])
+                raise Hint("must be less than the diameter", "the diameter of the bore", ["inner_diameter"])
         else:
             if self.bending_stiffness is None or self.mass_per_length is None:
                 raise Hint(
@@ -165,7 +168,7 @@ class Beam(DampedModes):
         return np.sqrt(self.modes().stiffness) / (2 * math.pi)
 
     def modes(self) -> ModalModel:
-        """Compute the lowest mass-normalised modes."""
+        """Compute the lowest mass-normalised modes; the class has the equation."""
         stiffness, per_length = self.section
         mass = per_length * self.length
         mu = self.tip_mass / mass

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint
-from .space import Direction, Lengths, components_along, unit_vector
+from .space import Direction, Lengths, components_along, to_global, unit_vector
 from .units import PositiveLength, radius_of_diameter
 
 WallForm = Literal["plane", "cylinder", "sphere"]
@@ -90,7 +90,7 @@ class Cavity(Part):
         return np.asarray(self.depth(positions) - radii)
 
     def extent(self, direction: Vector) -> float:
-        """Return the width of the cavity along a unit vector [m]."""
+        """Return the width of the cavity along a unit vector u [m]; that of a box is the sum of abs(u_i) times its edges."""
         return float(np.sum(np.abs(components_along(self.frame, direction)) * self.lengths))
 
     @property
@@ -103,11 +103,19 @@ class Cavity(Part):
 
         Notes
         -----
-        The points k * (1/g, 1/g^2, 1/g^3) modulo 1, with g^4 = g + 1, fill the bounding box more evenly than random ones:
-        the share of points in a part of the cavity has an error of about 1e-4 for 1e5 of them.
+        The points k * (1/g, 1/g^2, 1/g^3) modulo 1, with g^4 = g + 1 and k = 0, 1, ..., are a Kronecker sequence. They fill
+        the bounding box more evenly than random ones: the share of points in a part of the cavity has an error of about 1e-4
+        for 1e5 of them.
+
+        References
+        ----------
+        H. Niederreiter (1992), Random Number Generation and Quasi-Monte Carlo Methods, SIAM, section 3.1,
+        doi:10.1137/1.9781611970081.
+
+        M. Roberts (2018), The unreasonable effectiveness of quasirandom sequences, extremelearning.com.au (choice of g).
         """
         steps = _SPREAD ** -np.arange(1.0, 4.0)
-        points = ((np.arange(count)[:, None] * steps + 0.5) % 1.0 - 0.5) * self.lengths @ self.frame
+        points = to_global(((np.arange(count)[:, None] * steps + 0.5) % 1.0 - 0.5) * self.lengths, self.frame)
         return np.asarray(points[self.depth(points) >= 0])
 
 

@@ -21,7 +21,17 @@ from .errors import Hint, at, one_of
 from .materials import AnyMaterial, AnyWall
 from .particle_damper import MAX_DAMPERS
 from .signals import as_several
-from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, Whole, parse, text
+from .units import (
+    SI,
+    Acceleration,
+    NotNegativeLength,
+    PositiveLength,
+    PositiveMass,
+    Whole,
+    parse,
+    radius_of_diameter,
+    text,
+)
 
 _GOLDEN = (math.sqrt(5) - 1) / 2
 """The fractional parts of its multiples are evenly spread, for any number of them."""
@@ -52,12 +62,7 @@ class Sphere(Part):
     def _one_size(cls, values: Any) -> Any:
         if isinstance(values, dict):
             one_of('radius = "10 mm"', radius=values.get("radius"), diameter=values.get("diameter"))
-            if values.get("radius") is None:
-                with at("diameter"):
-                    diameter = parse(values["diameter"], ("m",))[0]
-                rest = {key: value for key, value in values.items() if key != "diameter"}
-                return {**rest, "radius": diameter / 2}
-        return values
+        return radius_of_diameter(values)
 
     @property
     def half(self) -> float:
@@ -133,7 +138,7 @@ class ImpactDamper(Part):
         Point of the structure; needed if there are several.
     number
         Number of identical dampers at the point. The first has the given start, the others start at other places between
-        the walls, evenly spread: with the same start all would move in step, like a single heavier one.
+        the walls, evenly spread: with the same start all would move in step, like one heavier damper.
     name
         Name in results and messages; default "damper", "damper2", ...
 
@@ -181,7 +186,7 @@ class ImpactDamper(Part):
             return values
         values = cls.expand_aliases(values)
         if values.get("gap") is not None and values.get("cavity_length") is not None:
-            raise Hint("give gap or cavity_length, not both", 'gap = "0.4 mm"')
+            raise Hint("gap and cavity_length exclude each other", 'gap = "0.4 mm"')
         return values
 
     @model_validator(mode="after")
@@ -191,7 +196,7 @@ class ImpactDamper(Part):
             row = self.row
             if self.cavity_length < row:
                 raise Hint(
-                    f"the balls alone are {row:.6g} m long",
+                    f"is shorter than the row of balls, which is {1e3 * row:.6g} mm long",
                     f'cavity_length = "{1e3 * row * 1.01:.4g} mm"',
                     ["cavity_length"],
                 )
@@ -204,7 +209,7 @@ class ImpactDamper(Part):
     def _row_fits(self) -> ImpactDamper:
         count = len(self.balls)
         if count == 0:
-            raise Hint("a damper needs at least one ball", place=["balls"])
+            raise Hint("a damper needs at least one ball", 'ball = { material = "steel", radius = "10 mm" }', ["balls"])
         if isinstance(self.start, list) and len(self.start) != count:
             raise Hint(f"{len(self.start)} positions, but there are {count} balls", "one for each ball", ["start"])
         if len(self.velocity) not in (1, count):
@@ -225,7 +230,7 @@ class ImpactDamper(Part):
     def _starts_apart(self) -> ImpactDamper:
         if self.number > 1 and isinstance(self.start, list):
             raise Hint(
-                f"{self.number} dampers start at different places, and a list of starts is for one",
+                f"{self.number} identical dampers start at different places, but a list of starts holds for one damper",
                 "start = 0, or a list of dampers",
                 ["start"],
             )

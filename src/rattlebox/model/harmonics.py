@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Harmonic(Signal):
-    """Harmonic signal, amplitude sin(2 pi frequency t + phase) for start <= t < stop.
+    """Harmonic signal.
 
     Parameters
     ----------
@@ -35,6 +35,10 @@ class Harmonic(Signal):
         Phase [rad], or text in "deg".
     start, stop
         Begin and end [s]; default unlimited from 0.
+
+    Notes
+    -----
+    amplitude sin(2 pi frequency t + phase) for start <= t < stop, else 0. The phase is that at t = 0, not at the start.
     """
 
     kind: Literal["harmonic"] = "harmonic"
@@ -68,7 +72,7 @@ class Harmonic(Signal):
         }
 
     def acceleration(self) -> Harmonic:
-        """Return the acceleration of a harmonic displacement."""
+        """Return the acceleration of a harmonic displacement, -(2 pi frequency)^2 times it."""
         factor = -power(2 * math.pi * self.frequency, 2)
         return self.model_copy(update={"amplitude": self.amplitude * factor, "unit": "m/s^2"})
 
@@ -122,8 +126,12 @@ class SineSweep(Polyline):
     r is negative for a downward sweep. The sweep ends with the half cycle in which it reaches the last frequency.
 
     The sweep consists of straight lines between 32 points in each cycle, at equal steps of phase. Their values are divided
-    by sinc^2(1/32), so that the amplitude of the fundamental is exact at all frequencies; the remaining errors are the
-    harmonics 31 and 33, of 0.1 % each, and a peak that is 0.3 % too high.
+    by sinc^2(1/32), so that the amplitude of the fundamental is exact at all frequencies (see `Record`); the remaining
+    errors are the harmonics 31 and 33, of 0.1 % each, and a peak that is 0.3 % too high.
+
+    References
+    ----------
+    IEC 60068-2-6 (2007), Environmental testing, test Fc: vibration (sinusoidal).
     """
 
     kind: Literal["sine_sweep"] = "sine_sweep"

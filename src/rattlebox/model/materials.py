@@ -87,11 +87,11 @@ def _library() -> dict[str, Material]:
 
 
 def find_material(value: Any, info: ValidationInfo) -> Any:
-    """Look a name up in the library and among the case file's own; anything else passes."""
+    """Return the material of a name in the library or in the case file; return any other value unchanged."""
     if isinstance(value, str):
         library = _library() | (info.context or {})
         if value not in library:
-            raise Hint("no material of that name", nearest(value, library))
+            raise Hint("there is no material of this name", nearest(value, library))
         return library[value]
     return value
 

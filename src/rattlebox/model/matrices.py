@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 
 
 class Matrices(FilePart, DampedModes):
-    """Structure defined by its matrices, M z'' + C z' + K z = F, and reduced to modes.
+    """Structure defined by its mass, damping and stiffness matrices.
 
-    C is any symmetric, positive semidefinite matrix. If it is not diagonal in the modes of the undamped structure, it
-    couples them: flights are then computed as Taylor series, step by step, which takes longer. `damping_ratio` and
-    `rayleigh` are alternatives.
+    The structure is transformed to the modes of the undamped structure; all modes are used. C is any symmetric, positive
+    semidefinite matrix. If it is not diagonal in these modes, it couples them: flights are then computed as Taylor series,
+    step by step, which takes longer. `damping_ratio` and `rayleigh` are alternatives.
 
     Parameters
     ----------
@@ -50,6 +50,11 @@ class Matrices(FilePart, DampedModes):
         base along x, y and z, which are then needed for base motion.
     displacement, velocity
         Initial displacements and velocities of the degrees of freedom [m], [m/s]; default 0.
+
+    Notes
+    -----
+    M z'' + C z' + K z = F - M r a, with the influence r and the acceleration a of the base. The modes solve K phi = omega^2
+    M phi with phi^T M phi = 1, and z = phi q. `Modal` has the equations of the modal displacements q and their sources.
     """
 
     elementwise: ClassVar[bool] = False
@@ -108,7 +113,11 @@ class Matrices(FilePart, DampedModes):
                     self._where(name),
                 )
         if np.linalg.eigvalsh(mass).min() <= 0:
-            raise Hint("M is not positive definite; every motion needs a mass", place=self._where("M"))
+            raise Hint(
+                "M is not positive definite: some motion has no mass",
+                "a mass at each degree of freedom, or matrices without those that have none",
+                self._where("M"),
+            )
         if not self.points:
             raise Hint("at least one named point is needed", "points = { tip = 0 }", ["points"])
         for name, point in self.points.items():
@@ -128,11 +137,11 @@ class Matrices(FilePart, DampedModes):
         return self
 
     def _spatial(self) -> frozenset[str]:
-        """Points that move in 3-D."""
+        """Return the points that move in 3-D."""
         return frozenset(name for name, point in self.points.items() if np.ndim(point) == 2)
 
     def _where(self, name: str) -> list[str]:
-        """The field that gives a matrix, for messages."""
+        """Return the field with a matrix, for messages."""
         return ["file"] if self.file else [name]
 
     @classmethod
@@ -142,7 +151,7 @@ class Matrices(FilePart, DampedModes):
         Parameters
         ----------
         path
-            The file; it holds M, K, C unless there is no damping, and points as `point_<name>` or in a struct `points`.
+            The file, with M, K, optionally C, and points as `point_<name>` or in a struct `points`.
         **options
             points, influence, displacement, velocity.
 
@@ -154,7 +163,7 @@ class Matrices(FilePart, DampedModes):
         Raises
         ------
         CaseError
-            If a matrix is missing or describes no structure; the message names the file and lists its content.
+            If a matrix is missing or invalid; the message names the file and lists its content.
         """
         return cls(**{"file": os.fspath(path), **options})
 
@@ -174,21 +183,25 @@ class Matrices(FilePart, DampedModes):
         )
 
     def matrices(self) -> tuple[Vector, Vector, Vector]:
-        """Return mass, damping and stiffness, (n, n) each; the damping that modal damping ratios mean is not part of it."""
+        """Return mass, damping and stiffness, (n, n) each; the damping is zero if it is given by damping ratios."""
         mass, stiffness = np.array(self.M), np.array(self.K)
         if self.rayleigh is not None:
             return mass, self.rayleigh[0] * mass + self.rayleigh[1] * stiffness, stiffness
         return mass, np.zeros_like(mass) if self.C is None else np.array(self.C), stiffness
 
     def modes(self) -> ModalModel:
-        """Reduce to the modes of the undamped structure."""
+        """Compute the modes of the undamped structure, K phi = omega^2 M phi, and the modal damping phi^T C phi."""
         from scipy.linalg import eigh
 
         mass, damping, stiffness = self.matrices()
         values, vectors = eigh(stiffness, mass)
         largest = np.abs(values).max()
         if values.min() < -1e-9 * largest:
-            raise Hint("K is not positive semidefinite: the structure would be unstable", place=self._where("K"))
+            raise Hint(
+                "K is not positive semidefinite: the structure would be unstable",
+                "a matrix whose eigenvalues are not negative",
+                self._where("K"),
+            )
         values = np.where(np.abs(values) < 1e-12 * largest, 0.0, values)
         vectors = _align(vectors, values, damping, 1e-9 * largest)
         modal = vectors.T @ damping @ vectors
@@ -222,7 +235,7 @@ class Matrices(FilePart, DampedModes):
 
 
 def _read_each(files: dict[str, Any]) -> tuple[dict[str, str], dict[str, Vector]]:
-    """Paths and matrices of Matrix Market files, one for each."""
+    """Return paths and matrices of Matrix Market files, one file for each matrix."""
     for name in files:
         if name not in ("M", "C", "K"):
             raise Hint(f"there is no matrix {name!r} here", nearest(name, ("M", "C", "K")))
@@ -238,16 +251,16 @@ def _read_each(files: dict[str, Any]) -> tuple[dict[str, str], dict[str, Vector]
 
 
 def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
-    """Matrices and points in a file, by name."""
+    """Return matrices and points of a file, by name."""
     file = existing(path)
     if file.suffix.lower() not in (".npz", ".mat"):
         raise DataError(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
     arrays = read_arrays(file)
     if not arrays:
-        raise DataError(f"{path} holds no numbers", "arrays M, C and K")
+        raise DataError(f"{path} contains no numbers", "arrays M, C and K")
     for name in ("M", "K"):
         if name not in arrays:
-            raise DataError(f"{path} holds no {name}, but {', '.join(arrays)}", nearest(name, arrays))
+            raise DataError(f"{path} contains no {name}, but {', '.join(arrays)}", nearest(name, arrays))
     matrices: dict[str, Vector] = {name: np.atleast_2d(arrays[name]) for name in ("M", "C", "K") if name in arrays}
     points: dict[str, Vector] = {}
     for name, array in arrays.items():
@@ -266,7 +279,7 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
 
 
 def _align(vectors: Vector, values: Vector, damping: Vector, tolerance: float) -> Vector:
-    """Turn the modes of a repeated frequency so that damping is diagonal among them."""
+    """Return the modes, with those of a repeated frequency rotated so that damping does not couple them."""
     vectors = vectors.copy()
     start = 0
     for end in range(1, len(values) + 1):

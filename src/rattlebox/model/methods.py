@@ -27,10 +27,20 @@ class EventDriven(Part):
     collocation
         Whether single Hertz contacts are solved by collocation; False integrates them step by step, which is slower.
 
+    Notes
+    -----
+    A flight is the closed solution of each mode, q'' + 2 a q' + k q = f(t), and a parabola of each ball; it ends at the
+    first root of a distance, which is bracketed with a bound of the relative acceleration so that no contact is missed. A
+    contact is integrated by DOP853. A single Hertz contact is integrated in x = d^(1/4), with the overlap d, which removes
+    the singularity of the dashpot at the first touch, by collocation at Gauss-Legendre nodes.
+
     References
     ----------
-    E. Hairer, S. P. Nørsett and G. Wanner (1993), Solving Ordinary Differential Equations I, 2nd ed., Springer, section II.5
-    (DOP853), doi:10.1007/978-3-540-78862-1.
+    E. Hairer, S. P. Nørsett and G. Wanner (1993), Solving Ordinary Differential Equations I, 2nd ed., Springer, sections
+    II.5 and II.10 (DOP853), doi:10.1007/978-3-540-78862-1.
+
+    J.-P. Berrut and L. N. Trefethen (2004), SIAM Review 46, 501-517, doi:10.1137/S0036144502417715 (interpolation between
+    nodes).
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
@@ -50,6 +60,11 @@ class TwoStep(Part):
     inner
         "rk4": one Runge-Kutta step; "dopri5": an adaptive solution within each step, with the default tolerances of MATLAB's
         ode45.
+
+    Notes
+    -----
+    Each step integrates y' = f(t, y) of all modes and balls, with dt_contact if a contact is closed at its beginning and
+    dt_flight otherwise. A contact begins and ends at the end of a step: the overlap at its beginning is up to V dt_flight.
 
     References
     ----------
@@ -110,16 +125,25 @@ class Dem(Part):
         Automatic step over the duration of the shortest contact or the period of the fastest mode.
     threads
         Number of threads; by default it depends on the cores and the number of particles. Results are bitwise independent of
-        it.
+        the number.
     checkpoint
         Interval between checkpoints in wall-clock time [s], if the run has a checkpoint file; default ten minutes.
     checkpoint_every
         Interval between checkpoints in simulated time [s], in place of `checkpoint`.
 
+    Notes
+    -----
+    m x'' = sum of contact forces + m g and I w' = sum of moments of all particles, and the modes of the structure, are
+    integrated in steps by the velocity-Verlet method. Forces that depend on the velocity use one that is extrapolated from
+    the previous step, which keeps second order.
+
     References
     ----------
     P. A. Cundall and O. D. L. Strack (1979), A discrete numerical model for granular assemblies, Géotechnique 29, 47-65,
     doi:10.1680/geot.1979.29.1.47.
+
+    W. C. Swope, H. C. Andersen, P. H. Berens and K. R. Wilson (1982), J. Chem. Phys. 76, 637-649, doi:10.1063/1.442716
+    (velocity Verlet).
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
@@ -145,7 +169,7 @@ class Dem(Part):
     @model_validator(mode="after")
     def _one_clock(self) -> Dem:
         if self.checkpoint is not None and self.checkpoint_every is not None:
-            raise Hint("give checkpoint or checkpoint_every, not both")
+            raise Hint("checkpoint and checkpoint_every exclude each other", "one of them", ["checkpoint_every"])
         return self
 
 
@@ -206,14 +230,14 @@ class Output(Part):
     @model_validator(mode="after")
     def _one_of_both(self) -> Output:
         if self.rate is not None and self.times is not None:
-            raise Hint("give rate or times, not both")
+            raise Hint("rate and times exclude each other", "one of them", ["times"])
         return self
 
     @field_validator("times", "snapshots")
     @classmethod
     def _not_before(cls, times: tuple[float, ...] | int | None) -> tuple[float, ...] | int | None:
         if isinstance(times, tuple) and times and times[0] < 0:
-            raise Hint("output times must not be negative")
+            raise Hint("output times must not be negative", "times from 0 to the end of the run")
         return times
 
     @property

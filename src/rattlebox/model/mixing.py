@@ -39,6 +39,11 @@ def mixed(one: Any, other: Any, rule: Mixing) -> Any:
     ------
     TypeError
         If the laws differ in more than numbers.
+
+    Notes
+    -----
+    For two numbers a and b: "arithmetic" (a + b)/2, "geometric" (a b)^(1/2), "harmonic" 2 a b/(a + b), "smaller" min(a, b),
+    "larger" max(a, b).
     """
     if one is None or other is None:
         law = other if one is None else one

@@ -51,7 +51,7 @@ class ModalModel:
 
     @property
     def residual_mass(self) -> Vector | None:
-        """Mass of the truncated modes [kg]: total mass less the effective masses of the modes; None if it is unknown."""
+        """Mass of the truncated modes, r^T M r - p^T p, with the participation p [kg]; None if it is unknown."""
         if self.total_mass is None or self.participation is None:
             return None
         rows = self.participation
@@ -127,7 +127,11 @@ class ModalModel:
         Returns
         -------
         (F, m, n) complex
-            Modal displacements q of q'' + D q' + k q = f, with exp(i omega t).
+            Modal displacements q.
+
+        Notes
+        -----
+        q = (k - omega^2 + i omega D)^(-1) f, the amplitude of the solution of q'' + D q' + k q = f exp(i omega t).
         """
         dynamic = self.stiffness - omega[:, None] ** 2 + 2j * self.decay * omega[:, None]
         if self.coupling is None:

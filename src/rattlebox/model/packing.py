@@ -25,7 +25,10 @@ from .space import to_global
 from .units import SI, Number, Whole, in_si, numbers
 
 TOUCHING = 1e-9  # tolerance for overlaps by rounding, relative to the radius
-RANDOM_CLOSE_PACKING = 0.64  # largest share of the volume that equal spheres fill at random
+RANDOM_CLOSE_PACKING = 0.64
+"""Largest share of the volume that equal spheres fill at random.
+
+G. D. Scott, D. M. Kilgour, J. Phys. D 2 (1969) 863, doi:10.1088/0022-3727/2/6/311."""
 COMPACTED = 0.62  # volume of equal spheres over that of a compacted bed, far from walls
 LOOSEST = 0.571  # the same of a settled bed with a large coefficient of friction
 _FAR = 100.0  # distance over the size of the cavity from which positions are probably in other units
@@ -55,7 +58,7 @@ class Packing(Part):
 
 
 class Lattice(Packing):
-    """Particles on a lattice that fills the cavity, with random displacements within their cells.
+    """Particles on a lattice that fills the cavity, with random displacements in their cells.
 
     Parameters
     ----------
@@ -63,6 +66,12 @@ class Lattice(Packing):
         Largest displacement, from 0 to 1; 1 is the largest one at which particles cannot touch.
     seed
         Random seed of the displacements and of the order of particles.
+
+    Notes
+    -----
+    The lattice is the cubic or the face-centred one, whichever has the larger cell for the number of particles. With the
+    distance a between neighbouring sites, a particle of radius R is displaced by up to noise (a/2 - R), evenly distributed
+    in this sphere.
     """
 
     kind: Literal["lattice"] = "lattice"
@@ -119,10 +128,10 @@ class Bed(Packing):
 
 
 class Settled(Bed):
-    """Particles inserted at random and settled under gravity: a loose bed, as it is poured.
+    """Particles inserted at random and settled under gravity: a loose bed, like a poured one.
 
     The fall is computed before the run with soft, strongly damped contacts and the largest friction of the damper. Motion
-    that nothing slows, such as that of one ball in a round cavity, is stopped. In the end particles almost touch, without
+    without damping, such as that of one ball in a round cavity, is stopped. In the end particles almost touch, without
     overlap. Far from walls particles fill 0.57 of the volume with a coefficient of friction of 1, 0.60 with 0.3, and 0.64
     without friction.
 
@@ -132,17 +141,31 @@ class Settled(Bed):
         Random seed of the insertion.
     at_rest
         Kinetic energy of a bed at rest, relative to the energy of a fall by the mean radius.
+
+    Notes
+    -----
+    Random positions without overlap, found as for `Compacted`, then the discrete-element method (see `Dem`) with linear
+    contacts until the kinetic energy is below at_rest sum(m R) g. `bulk_density` has the equation of the density.
+
+    References
+    ----------
+    P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
     """
 
     kind: Literal["settled"] = "settled"
 
     def bulk_density(self, friction: float) -> float:
-        """Return the volume of particles over that of their bed, far from walls, with a coefficient of friction."""
+        """Return the volume of particles over that of their bed, far from walls, with a coefficient of friction.
+
+        Notes
+        -----
+        0.571 + 0.072 exp(-friction / 0.25), fitted to computed beds.
+        """
         return LOOSEST + 0.072 * math.exp(-friction / 0.25)
 
 
 class Compacted(Bed):
-    """Particles compacted at random without friction, then settled under gravity: a dense bed, as it is shaken down.
+    """Particles compacted at random without friction, then settled under gravity: a dense bed, like a tapped one.
 
     Particles far from walls fill 0.62 of the volume, near the largest value for random packings, 0.64. They are inserted at
     random under a lid at the height of such a bed, and pushed apart until none overlap; then the lid is removed, and the bed
@@ -155,6 +178,17 @@ class Compacted(Bed):
         Random seed of the insertion.
     at_rest
         Kinetic energy of a bed at rest, relative to the energy of a fall by the mean radius.
+
+    Notes
+    -----
+    Overlaps d of particles with each other and with the walls are removed by minimising sum(d^2) from random positions, with
+    the FIRE method.
+
+    References
+    ----------
+    C. S. O'Hern, L. E. Silbert, A. J. Liu, S. R. Nagel, Physical Review E 68 (2003) 011306, doi:10.1103/PhysRevE.68.011306.
+
+    E. Bitzek et al., Physical Review Letters 97 (2006) 170201, doi:10.1103/PhysRevLett.97.170201 (FIRE).
     """
 
     kind: Literal["compacted"] = "compacted"
@@ -208,7 +242,7 @@ class Positions(FilePart, Packing):
             return values
         twice = sorted(set(cls.file_fields) & set(values))
         if twice:
-            raise Hint(f"give {twice[0]} or a file, not both")
+            raise Hint(f"{twice[0]} and file exclude each other", "one of them", [twice[0]])
         with at("file"):
             path = absolute(values["file"])
             return {**values, **_read_positions(path), "file": path}
@@ -223,7 +257,7 @@ class Positions(FilePart, Packing):
                 positions = several(len(self.positions), "position")
                 raise Hint(f"{several(len(rows), 'row')} of {name}, but {positions}", "as many of both", [name])
         if self.radii is not None and not min(self.radii) > 0:
-            raise Hint("radii must be greater than zero", place=["file" if self.file else "radii"])
+            raise Hint("radii must be greater than zero", '"2 mm"', ["file" if self.file else "radii"])
         return self
 
     @property
@@ -301,7 +335,7 @@ _COUNTABLE = 1_000_000  # lattices with more sites are not built to count them
 class _Grid:
     """A cubic or face-centred lattice of sites for `count` particles, at least one cell apart.
 
-    Two sites across a round cavity lie outside it; with `middle` they are replaced by one in the middle.
+    If two sites across a round cavity would lie outside it, `middle` replaces them by one in the middle.
     """
 
     count: int
@@ -434,8 +468,13 @@ def random_density(cavity: AnyCavity, diameter: float, fill: float = 1.0, up: Ve
     Returns
     -------
     float
-        Volume of spheres over the volume below the lid. The coefficients are fitted to packings in boxes, cylinders and
-        spheres of 1.3 to 15 diameters, which are inserted in at most four attempts.
+        Volume of spheres over the volume below the lid.
+
+    Notes
+    -----
+    0.62 (1 - 0.205 x + 0.023 x^2 - 0.0035 x^3), with x the area of walls and surface over the volume, times the diameter, at
+    most 4. The coefficients are fitted to packings in boxes, cylinders and spheres of 1.3 to 15 diameters, which are
+    inserted in at most four attempts.
     """
     x = _wall_diameters(cavity, diameter, fill, up)
     density = COMPACTED * (1 - 0.205 * x + 0.023 * x**2 - 0.0035 * x**3)
@@ -467,9 +506,13 @@ def bed_density(cavity: AnyCavity, diameter: float, bulk: float, fill: float, up
     Returns
     -------
     float
-        Volume of spheres over that of the bed, at most such that they can be inserted. The coefficients are fitted to beds
-        in boxes, cylinders and spheres of 2 to 14 diameters, with an error of 3 % (standard deviation) where the bed is
-        higher than two diameters.
+        Volume of spheres over that of the bed, at most that which can be inserted (see `random_density`).
+
+    Notes
+    -----
+    bulk (1 - 0.165 x + 0.02 x^2), with x the area of walls and surface over the volume of the bed, times the diameter, at
+    most 4. The coefficients are fitted to beds in boxes, cylinders and spheres of 2 to 14 diameters, with an error of 3 %
+    (standard deviation) if the bed is higher than two diameters.
     """
     most = random_density(cavity, diameter)
     if up is None:

@@ -38,7 +38,7 @@ class Body:
     Attributes
     ----------
     material
-        None for a rigid body.
+        Material; None for a rigid body.
     radius, mass
         Radius of the surface [m], infinite for a wall; mass of the body [kg], infinite for a fixed body.
     """
@@ -97,22 +97,22 @@ class Pair:
 
     @property
     def modulus(self) -> float:
-        """Effective modulus E* [Pa]."""
+        """Effective modulus E* [Pa], with 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2."""
         return 1 / (self.below.compliance + self.above.compliance)
 
     @property
     def radius(self) -> float:
-        """Effective radius R* [m]."""
+        """Effective radius R* [m], with 1/R* = 1/R_1 + 1/R_2."""
         return 1 / (1 / self.below.radius + 1 / self.above.radius)
 
     @property
     def mass(self) -> float:
-        """Effective mass m* [kg]."""
+        """Effective mass m* [kg], with 1/m* = 1/m_1 + 1/m_2."""
         return 1 / (1 / self.below.mass + 1 / self.above.mass)
 
     @property
     def hertz_stiffness(self) -> float:
-        """Stiffness of Hertz's law, 4/3 E* R*^(1/2) [N/m^1.5]."""
+        """Stiffness of Hertz's law, 4/3 E* R*^(1/2) [N/m^1.5]; `Tsuji` names the source."""
         stiffness: float = 4 / 3 * self.modulus * sqrt(self.radius)
         return stiffness
 
@@ -140,7 +140,7 @@ class Pair:
 
 
 def contact_pairs(case: Case, index: int) -> list[Pair]:
-    """Return the pairs of an impact damper in order: trailing wall, ball 1 - ball 2, ..., leading wall.
+    """Return the pairs of bodies of an impact damper, from the trailing to the leading wall.
 
     Parameters
     ----------
@@ -152,7 +152,8 @@ def contact_pairs(case: Case, index: int) -> list[Pair]:
     Returns
     -------
     list of Pair
-        The pairs. Walls have the effective mass of the structure at the point of the damper.
+        The pairs: trailing wall and ball 1, ball 1 and ball 2, ..., last ball and leading wall. Walls have the effective
+        mass of the structure at the point of the damper, 1 / sum(phi^2) over the mass-normalised mode shapes phi.
     """
     damper = case.impact_dampers[index]
     wall_mass = case.modes.effective_mass(damper.point)

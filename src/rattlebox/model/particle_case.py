@@ -1,4 +1,4 @@
-"""A case with particle dampers: in which directions its parts move, and whether they fit together."""
+"""Cases with particle dampers: directions of motion, and checks of consistency."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ def direction_of_base(case: Case, signal: Signal) -> Vector:
     case
         The case.
     signal
-        One of its base or of its shaker's motion.
+        A signal of its base or of its shaker.
 
     Raises
     ------
     Hint
-        When there is no one direction.
+        If the signal has no direction and the dampers have several.
     """
     if signal.direction is not None:
         return unit_vector(signal.direction)
     directions = {damper.direction for damper in case.particle_dampers}
     if len(directions) > 1:
-        raise Hint("dampers move in several directions; which is that of the base?", 'direction = "x"', ["direction"])
+        raise Hint("dampers move in several directions, and the base needs one", 'direction = "x"', ["direction"])
     return unit_vector(directions.pop())
 
 
@@ -54,7 +54,7 @@ def inertia_along(case: Case, direction: Vector) -> Vector:
 
 
 def check_particle_case(case: Case) -> None:
-    """Refuse what does not fit together in a case with particle dampers.
+    """Raise if the parts of a case with particle dampers are inconsistent.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def check_particle_case(case: Case) -> None:
     Raises
     ------
     Hint
-        Saying what and where.
+        If methods, output times, gravity or directions are inconsistent.
     """
     first = case.particle_dampers[0]
     if case.impact_dampers:
@@ -88,7 +88,11 @@ def check_particle_case(case: Case) -> None:
         damper = instance(damper, ParticleDamper)
         with at("dampers", index):
             if damper.gravity != first.gravity:
-                raise Hint(f"gravity is {first.gravity} in another damper of this case", "the same", ["gravity"])
+                raise Hint(
+                    f"gravity must be the same for all dampers of a case, and another one has {list(first.gravity)} m/s^2",
+                    "the same gravity",
+                    ["gravity"],
+                )
             for number, point in enumerate(damper.points or (damper.point,)):
                 with at(*(("points", number) if damper.points else ("point",))):
                     case.modes.space_shape(point, damper.direction)

@@ -54,7 +54,7 @@ class _Bounded(Distribution):
 
         first, last = ndtr(low), ndtr(high)
         if not last - first > 1e-12:
-            raise Hint("the distribution is zero between smallest and largest", "a wider range")
+            raise Hint("the distribution is zero between smallest and largest", "a range around its mean or median")
         return np.clip(ndtri(first + share * (last - first)), low, high)
 
 
@@ -67,6 +67,11 @@ class NormalSizes(_Bounded):
         Mean and standard deviation of the diameter before truncation [m].
     smallest, largest
         Smallest and largest diameter [m].
+
+    Notes
+    -----
+    The density is proportional to exp(-(d - mean)^2 / (2 deviation^2)) between the smallest and the largest diameter d, and
+    0 outside.
     """
 
     kind: Literal["normal"] = "normal"
@@ -90,6 +95,11 @@ class LogNormal(_Bounded):
         Geometric standard deviation s, greater than 1: two thirds of the diameters lie between median / s and median x s.
     smallest, largest
         Smallest and largest diameter [m].
+
+    Notes
+    -----
+    The density of ln d is proportional to exp(-(ln(d / median) / ln s)^2 / 2) between the smallest and the largest diameter
+    d, and 0 outside.
     """
 
     kind: Literal["log_normal"] = "log_normal"
@@ -126,6 +136,10 @@ class Sieve(Distribution):
         Mesh sizes, increasing [m].
     passing
         Share of the mass that passes each of them, from 0 at the finest to 1 at the coarsest.
+
+    Notes
+    -----
+    Between two sieves the number of particles of diameter d is proportional to d^-3.
     """
 
     kind: Literal["sieve"] = "sieve"
@@ -137,7 +151,7 @@ class Sieve(Distribution):
         if len(self.sizes) != len(self.passing) or len(self.sizes) < 2:
             raise Hint(f"{len(self.sizes)} sizes, but {len(self.passing)} shares", "as many of both, at least two")
         if self.sizes[0] <= 0 or np.any(np.diff(self.sizes) <= 0):
-            raise Hint("sizes must be above zero and increase", place=["sizes"])
+            raise Hint("sizes must be greater than zero and increase", '["3 mm", "4 mm", "6 mm"]', ["sizes"])
         if self.passing[0] != 0 or self.passing[-1] != 1 or np.any(np.diff(self.passing) < 0):
             raise Hint("shares rise from 0 at the finest sieve to 1 at the coarsest", "[0, 0.3, 1]", ["passing"])
         return self
@@ -168,7 +182,7 @@ class Particles(Part):
         One of them: number of particles; total mass [kg]; volume of the particles over that of the cavity; or volume of
         their bed, with the voids in it, over that of the cavity, 1 for a full cavity. All are rounded to a whole number of
         particles. The number for a `bed_fill` follows from the usual density of such a bed, and the bed differs by some
-        percent; `rb.measure_bed` returns what it is.
+        percent; `rb.measure_bed` measures it.
     name
         Name of the species in `pairs`; default that of the material.
 
@@ -222,7 +236,7 @@ class Particles(Part):
                 ["fill_ratio"],
             )
         if self.bed_fill is not None and not 0 < self.bed_fill <= 1:
-            raise Hint("a bed fills more than 0 and at most 1 of the cavity, which is then full", "0.9", ["bed_fill"])
+            raise Hint("a bed fill must be greater than 0 and at most 1, a full cavity", "0.9", ["bed_fill"])
         if self.distribution is not None:
             with at("distribution"):
                 self.diameters(1)
@@ -256,7 +270,7 @@ class Particles(Part):
 
     @property
     def mean_diameter(self) -> float:
-        """Sum of the cubes of the diameters over the sum of their squares [m]."""
+        """Mean diameter by surface, sum(d^3) / sum(d^2) [m]."""
         some = self.diameters(1 if self.distribution is None else _MANY)
         return float(np.sum(some**3) / np.sum(some**2))
 
@@ -313,7 +327,10 @@ class Particles(Part):
         some = 1 if self.distribution is None else _MANY
         guess = filled * some / self._volume(some)
         if guess > MAX_PARTICLES:
-            raise Hint(f"this is {guess:.3g} particles; {MAX_PARTICLES:.0e} at most", "less of them, or larger ones")
+            raise Hint(
+                f"this is {guess:.3g} particles; at most {MAX_PARTICLES:.0e} are allowed",
+                "fewer of them, or larger ones",
+            )
         if self.distribution is None:
             return round(guess)
         from scipy.optimize import brentq

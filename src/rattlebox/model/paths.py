@@ -1,4 +1,4 @@
-"""Paths in a case, such as "damper.ball.radius": lookup, value, unit, replacement."""
+"""Paths to values in a case, such as "damper.ball.radius"."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rattlebox._util.narrow import instance
 
 from .base import Part, vocabulary
 from .dampers import ImpactDamper
-from .errors import Hint, nearest, translate
+from .errors import Hint, nearest, several, translate
 from .materials import Material
 from .signals import Signal
 from .units import SI, parse
@@ -60,7 +60,10 @@ def place_of(case: Case, path: str) -> Place:
             if not isinstance(node, (tuple, list)):
                 raise Hint(f"{path}: {so_far or 'a case'} is not a list", "the same without an index in brackets")
             if step >= len(node):
-                raise Hint(f"{path}: {so_far} has {len(node)} item{'s' * (len(node) != 1)}, counted from 0")
+                raise Hint(
+                    f"{path}: {so_far} has {several(len(node), 'item')}, counted from 0",
+                    f"an index of at most {len(node) - 1}" if node else "",
+                )
             place.append(step)
             node = node[step]
         elif isinstance(node, Part):
@@ -248,7 +251,8 @@ def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
             holder = part_at(case, place[:length])
             if isinstance(holder, Part) and step in holder.fields_from_file():
                 raise Hint(
-                    f"{path}: it comes from {getattr(holder, 'file', None)}", "the numbers themselves instead of a file"
+                    f"{path}: the value was read from {getattr(holder, 'file', None)}",
+                    "numbers in the case in place of the file",
                 )
         if places[place] is None:
             continue
@@ -286,7 +290,7 @@ def _with(node: Any, place: Place, value: Any) -> Any:
         from_file = _from_file(node)
         node = {name: getattr(node, name) for name in type(node).model_fields if name not in from_file}
     if not isinstance(node, dict):
-        raise Hint(f"there is no {step!r} in {node!r}", "a whole part, or what is in it, not both")
+        raise Hint(f"there is no {step!r} in {node!r}", "a whole part, or fields of it, not both")
     return {**node, step: _with(node.get(step), tuple(rest), value)}
 
 
@@ -340,7 +344,9 @@ def _only(row: Sequence[Any], path: str, name: str) -> int:
     if not row:
         raise Hint(f"{path}: there is no {name} in this case")
     if len(row) > 1:
-        raise Hint(f"{path}: which of {len(row)}?", f"{name}[0] to {name}[{len(row) - 1}]")
+        raise Hint(
+            f"{path}: the case has {len(row)} of {name}, and an index is needed", f"{name}[0] to {name}[{len(row) - 1}]"
+        )
     return 0
 
 

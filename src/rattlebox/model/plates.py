@@ -123,7 +123,7 @@ class Plate(DampedModes):
         return math.pi**2 * ((m / self.length) ** 2 + (n / self.width) ** 2)
 
     def modes(self) -> ModalModel:
-        """Compute the lowest mass-normalised modes."""
+        """Compute the lowest mass-normalised modes; the class has the equation."""
         stiffness, per_area = self.section
         pairs = np.array(self.half_waves)
         squared = stiffness / per_area * np.array([self._squared_wave_number(m, n) for m, n in self.half_waves]) ** 2

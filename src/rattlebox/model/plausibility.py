@@ -17,13 +17,13 @@ from .recorded import Record
 from .shocks import Shock
 from .signals import Sampled, Signal
 from .space import Direction, unit_vector
+from .units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from .case import Case
     from .modes import ModalModel
     from .particle_damper import ParticleDamper
 
-_GRAVITY = 9.80665  # m/s^2
 _LARGEST_BODY = 1.0  # m
 _LARGEST_FRICTION = 3.0
 _LEAST_PARTICIPATION = 1e-3
@@ -80,7 +80,7 @@ def _note_assumed_units(case: Case) -> Iterator[str]:
     for name, signal in _named_signals(case):
         if isinstance(signal, Record) and signal.unit_is_assumed:
             peak = abs(signal.scale) * float(np.max(np.abs(signal.values)))
-            in_g = f" = {peak / _GRAVITY:.4g} g" if signal.unit == "m/s^2" else ""
+            in_g = f" = {peak / STANDARD_GRAVITY:.4g} g" if signal.unit == "m/s^2" else ""
             file = " ".join(Path(signal.file or "").name.split())
             yield (
                 f"note: {name}: {file} states no unit; {signal.unit} is assumed, with a peak of {peak:.4g} {signal.unit}"
@@ -96,7 +96,7 @@ def _note_assumed_units(case: Case) -> Iterator[str]:
 
 
 def _check_peaks(case: Case) -> Iterator[str]:
-    """Warn of records of the base whose peak suggests another unit."""
+    """Yield a warning for each record of the base whose peak suggests another unit."""
     for name, signal in _named_signals(case):
         if not isinstance(signal, Record) or signal.unit not in _PEAKS:
             continue
@@ -123,7 +123,7 @@ def _check_structure(case: Case) -> Iterator[str]:
 
 
 def _check_participation(case: Case, modes: ModalModel) -> Iterator[str]:
-    """Warn of a base motion with small participation, and of an interface force without truncated modes."""
+    """Yield warnings about a base motion with small participation and a force on the base without truncated modes."""
     if not case.base or modes.participation is None or not modes.decay.size:
         return
     participation = modes.participation.reshape(modes.decay.size, 1, -1)
@@ -150,7 +150,7 @@ def _check_signals(case: Case) -> Iterator[str]:
     for name, signal in signals:
         if isinstance(signal, Record) and signal.times[-1] - signal.times[0] > _LONGEST_RECORD * case.duration:
             yield (
-                f"{name} is a record of {signal.times[-1] - signal.times[0]:.4g} s, but the run takes only"
+                f"{name} is a record of {signal.times[-1] - signal.times[0]:.4g} s, but the run simulates only"
                 f" {case.duration:.4g} s; the times of a record are in seconds"
             )
     for name, signal in signals:
@@ -179,7 +179,7 @@ def _check_signals(case: Case) -> Iterator[str]:
 
 
 def _check_interpolation(case: Case) -> Iterator[str]:
-    """Warn where straight lines between the samples of a record change the response of a mode."""
+    """Yield a warning for each record whose straight lines between samples change the response of a mode."""
     modes = case.modes
     elastic = np.flatnonzero(modes.stiffness > 0)
     for name, signal in _named_signals(case):
@@ -224,7 +224,7 @@ def _spectrum(record: Sampled) -> tuple[float, Vector, Vector] | None:
 
 
 def change_by_interpolation(rate: float, frequency: Vector, power: Vector, natural: float, decay: float) -> float:
-    """Compute how much straight lines between samples change the RMS response of a mode.
+    """Compute the relative change of the RMS response of a mode by straight lines between samples.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ def change_by_interpolation(rate: float, frequency: Vector, power: Vector, natur
 
 
 def _check_directions(case: Case) -> Iterator[str]:
-    """Warn of a base that moves across the only direction of the structure."""
+    """Yield a warning for each base motion perpendicular to the only direction of the structure."""
     particles = [damper for damper in case.particle_dampers if case.modes.point(damper.point) not in case.modes.spatial]
     for number, signal in enumerate(case.base, 1):
         if signal.direction is None or not particles:

@@ -14,7 +14,7 @@ from pydantic import Field, WithJsonSchema, model_validator
 from .elementwise import Vector
 from .errors import Hint, at, nearest
 from .signals import UNIT_NAMES, UNITS, Points, Sampled
-from .units import PositiveFrequency, PositiveTime, Whole, factor_of, parse, parse_density
+from .units import STANDARD_GRAVITY, PositiveFrequency, PositiveTime, Whole, factor_of, parse, parse_density
 
 if TYPE_CHECKING:
     from typing import Self
@@ -26,9 +26,7 @@ LEVELS: dict[str, tuple[tuple[float, float], ...]] = {
     "gevs_qualification": ((20.0, 0.026), (50.0, 0.16), (800.0, 0.16), (2000.0, 0.026)),
     "gevs_acceptance": ((20.0, 0.013), (50.0, 0.08), (800.0, 0.08), (2000.0, 0.013)),
 }
-"""Named densities: frequency [Hz] and density [g_0^2/Hz]."""
-
-_GRAVITY = 9.80665  # m/s^2
+"""Named densities: frequency [Hz] and density [g^2/Hz]."""
 
 Density = Annotated[
     str | tuple[tuple[float, float], ...],
@@ -46,7 +44,7 @@ Density = Annotated[
                     },
                 },
             ],
-            "examples": [[["20 Hz", "0.01 g_0^2/Hz"], ["2 kHz", "0.01 g_0^2/Hz"]]],
+            "examples": [[["20 Hz", "0.01 g^2/Hz"], ["2 kHz", "0.01 g^2/Hz"]]],
         }
     ),
 ]
@@ -61,7 +59,7 @@ class Random(Sampled):
     Parameters
     ----------
     psd
-        Break points (frequency [Hz], one-sided density), numbers or text with units: ("20 Hz", "0.04 g_0^2/Hz"). The density
+        Break points (frequency [Hz], one-sided density), numbers or text with units: ("20 Hz", "0.04 g^2/Hz"). The density
         is linear in log-log scales between points, and zero outside. Or a name: "gevs_qualification" (14.1 g RMS, 20 to
         2000 Hz, 0.16 g^2/Hz from 50 to 800 Hz) or "gevs_acceptance" (10.0 g RMS, half of that density), for components of
         up to 22.7 kg.
@@ -75,7 +73,7 @@ class Random(Sampled):
         several directions need different seeds.
     unit
         Unit of the signal, whose square per Hz is the unit of densities without one: "N", "m/s^2", "m", or another of these
-        dimensions, such as "g_0", "gal", "kN" or "mm".
+        dimensions, such as "g", "gal", "kN" or "mm".
 
     Notes
     -----
@@ -97,7 +95,7 @@ class Random(Sampled):
     Examples
     --------
     >>> import rattlebox as rb
-    >>> shaking = rb.Random([("20 Hz", "0.01 g_0^2/Hz"), ("2 kHz", "0.01 g_0^2/Hz")], "0.5 s", direction="x")
+    >>> shaking = rb.Random([("20 Hz", "0.01 g^2/Hz"), ("2 kHz", "0.01 g^2/Hz")], "0.5 s", direction="x")
     >>> round(shaking.rms / 9.80665, 2)
     4.45
     """
@@ -116,7 +114,7 @@ class Random(Sampled):
             return values
         if isinstance(values["psd"], str):
             if values["psd"] not in LEVELS:
-                raise Hint("unknown name of a density", nearest(values["psd"], LEVELS), ["psd"])
+                raise Hint("there is no density of this name", nearest(values["psd"], LEVELS), ["psd"])
             if values.get("unit") not in (None, "m/s^2"):
                 raise Hint(f"{values['psd']} is an acceleration", "leave unit out", ["unit"])
             return {**values, "unit": "m/s^2"}
@@ -127,7 +125,10 @@ class Random(Sampled):
     def _in_the_band(self) -> Self:
         if not self._harmonics.size:
             raise Hint(
-                f"no frequency of a signal of {self.duration:g} s lies in the band", "a longer duration", ["duration"]
+                f"a signal of {self.duration:g} s has no frequency in the band: its frequencies are multiples of"
+                f" {1 / self.duration:.4g} Hz",
+                "a longer duration",
+                ["duration"],
             )
         return self
 
@@ -135,12 +136,12 @@ class Random(Sampled):
     def corners(self) -> NDArray[np.float64]:
         """Break points of the density, (n, 2): frequency [Hz] and density [unit^2/Hz]."""
         if isinstance(self.psd, str):
-            return np.array(LEVELS[self.psd]) * (1.0, _GRAVITY**2)
+            return np.array(LEVELS[self.psd]) * (1.0, STANDARD_GRAVITY**2)
         return np.array(self.psd)
 
     @property
     def rms(self) -> float:
-        """Root of the expected mean square, the integral of the density."""
+        """Root of the expected mean square, which is the integral of the density over the frequency."""
         (f, g), (f2, g2) = self.corners[:-1].T, self.corners[1:].T
         slope = np.log(g2 / g) / np.log(f2 / f) + 1
         flat = np.abs(slope) < 1e-12  # density as 1 / f
@@ -201,12 +202,12 @@ def _densities(psd: Any, unit: str | None) -> tuple[NDArray[np.float64], Any]:
         with at("unit"):
             known = factor_of(unit, UNITS) if isinstance(unit, str) else None
             if known is None:
-                raise Hint(f"{unit!r} is not a unit of force, acceleration or displacement", 'unit = "g_0"')
+                raise Hint(f"{unit!r} is not a unit of force, acceleration or displacement", 'unit = "g"')
             factor, found = known
     corners = []
     with at("psd"):
         needed = "a PSD needs positive (frequency, density) pairs with rising frequencies"
-        advice = '[(10, 1e-3), (200, 1e-3)] or [(10, "0.04 g_0^2/Hz"), (200, "0.04 g_0^2/Hz")]'
+        advice = '[(10, 1e-3), (200, 1e-3)] or [(10, "0.04 g^2/Hz"), (200, "0.04 g^2/Hz")]'
         if isinstance(psd, (str, Mapping)) or np.ndim(np.asarray(psd, dtype=object)) != 2 or np.shape(psd)[1] != 2:
             raise Hint(needed, advice)
         for index, (frequency, density) in enumerate(psd):

@@ -129,11 +129,6 @@ def _column(value: Any) -> tuple[float, ...]:
 class Record(FilePart, Sampled):
     """A record with linear interpolation between its points; it must cover the whole run.
 
-    Linear interpolation between samples at a rate R multiplies the amplitude at frequency f by
-    sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, and adds images at k R +- f of amplitude sinc^2(k +- f / R). The
-    amplitude falls by 1 % at 18 samples per period, by 3 % at 10 and by 19 % at 4. A run warns if this changes the response
-    of a mode by more than 2 %.
-
     Parameters
     ----------
     times
@@ -154,6 +149,15 @@ class Record(FilePart, Sampled):
         Columns or variables with times and values, by number in the order of the file from 1, or by name: `columns=(1, 3)`,
         `columns=("t", "a")`. With `dt` only that of the values; in a universal file the number of the time history. Optional
         if the file has only two columns (with `dt` one), or variables called time and value.
+
+    Notes
+    -----
+    Linear interpolation between samples at a rate R multiplies the amplitude at frequency f by
+    sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, and adds images at k R +- f of amplitude sinc^2(k +- f / R). The
+    amplitude falls by 1 % at 18 samples per period, by 3 % at 10 and by 19 % at 4. A run has a warning if this changes the
+    response of a mode by more than 2 %.
+
+    The acceleration of the base is used as it is, without a correction of the baseline: its mean and drift remain.
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("times", "values")
@@ -220,7 +224,7 @@ class Record(FilePart, Sampled):
         if len(self.times) != len(self.values):
             raise Hint(f"{len(self.times)} times, but {len(self.values)} values", "as many of both")
         if len(self.times) < 2:
-            raise Hint("a record needs at least two points", place=self.where)
+            raise Hint("a record needs at least two points", "the points of a whole record", self.where)
         steps = np.flatnonzero(np.diff(self.times) <= 0)
         if steps.size:
             raise Hint(
@@ -238,7 +242,7 @@ class Record(FilePart, Sampled):
 
     @property
     def where(self) -> tuple[str, ...]:
-        """The field that gives the numbers, for messages."""
+        """Field with the numbers, for messages."""
         return ("file",) if self.file else ("times",)
 
     @model_serializer(mode="wrap")

@@ -38,7 +38,7 @@ class ShearBuilding(DampedModes):
 
     References
     ----------
-    A. K. Chopra (2017): Dynamics of Structures, 5th edition, Pearson, section 9.1.
+    A. K. Chopra (2017): Dynamics of Structures, 5th edition, Pearson, section 9.1, ISBN 978-0-13-455512-6.
 
     Examples
     --------
@@ -72,7 +72,7 @@ class ShearBuilding(DampedModes):
         return np.sqrt(self.modes().stiffness) / (2 * math.pi)
 
     def modes(self) -> ModalModel:
-        """Compute the mass-normalised modes."""
+        """Compute the mass-normalised modes; the class has the equation."""
         from scipy.linalg import eigh_tridiagonal
 
         root, storeys = np.sqrt(np.array(self.masses)), np.array(self.stiffnesses)

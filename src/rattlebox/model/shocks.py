@@ -27,14 +27,22 @@ class Shock(Signal):
 
 
 class HalfSine(Shock):
-    """A half-sine pulse, amplitude sin(pi (t - start) / duration) for start <= t < start + duration.
+    """A half-sine pulse.
 
     Parameters
     ----------
     amplitude
         Peak value, with its unit.
     duration, start
-        Length and begin of the pulse [s].
+        Length D and begin of the pulse [s].
+
+    Notes
+    -----
+    amplitude sin(pi (t - start) / D) for start <= t < start + D, else 0. The velocity changes by 2 amplitude D / pi.
+
+    References
+    ----------
+    IEC 60068-2-27 (2008), Environmental testing, test Ea: shock.
     """
 
     kind: Literal["half_sine"] = "half_sine"
@@ -71,7 +79,13 @@ class Sawtooth(Shock, Polyline):
 
     Notes
     -----
-    The velocity changes by amplitude D / 2. IEC 60068-2-27 and MIL-STD-810 use the pulse with a terminal peak.
+    amplitude (t - start) / D with a terminal peak, amplitude (1 - (t - start) / D) with an initial one, for
+    start <= t < start + D. The velocity changes by amplitude D / 2. IEC 60068-2-27 and MIL-STD-810 use the pulse with a
+    terminal peak.
+
+    References
+    ----------
+    IEC 60068-2-27 (2008), Environmental testing, test Ea: shock.
     """
 
     kind: Literal["sawtooth"] = "sawtooth"
@@ -101,7 +115,13 @@ class Trapezoid(Shock, Polyline):
 
     Notes
     -----
-    The velocity changes by amplitude (D - (rise + fall) / 2). IEC 60068-2-27 has a trapezoid with tenths.
+    At the time t after the start the value is amplitude t / rise in the rise, then the amplitude, and amplitude (D - t) /
+    fall in the fall. The velocity changes by amplitude (D - (rise + fall) / 2). The trapezoid of IEC 60068-2-27 rises and
+    falls in a tenth of the duration.
+
+    References
+    ----------
+    IEC 60068-2-27 (2008), Environmental testing, test Ea: shock.
     """
 
     kind: Literal["trapezoid"] = "trapezoid"

@@ -82,7 +82,9 @@ def _point(value: Any) -> Any:
     try:
         return operator.index(value)
     except TypeError:
-        raise Hint("the index of a degree of freedom is needed, from 0, or a list of weights") from None
+        raise Hint(
+            "the index of a degree of freedom, from 0, or a list of weights is needed", "points = { tip = 0 }"
+        ) from None
 
 
 Numbers = Annotated[list[float], BeforeValidator(_numbers)]
@@ -114,7 +116,7 @@ class StructurePart(Part):
 
 
 class SDOF(StructurePart):
-    """Single degree of freedom, M z'' + C z' + K z = F, with the point "mass".
+    """Single degree of freedom with the point "mass".
 
     Parameters
     ----------
@@ -126,6 +128,10 @@ class SDOF(StructurePart):
         C [N s/m] or C / (2 sqrt(K M)), which may exceed 1; default undamped.
     displacement, velocity
         Initial displacement and velocity relative to the base [m], [m/s].
+
+    Notes
+    -----
+    M z'' + C z' + K z = F - M a, with the displacement z relative to the base, which accelerates with a.
 
     Examples
     --------
@@ -157,7 +163,7 @@ class SDOF(StructurePart):
         return self
 
     def modes(self) -> ModalModel:
-        """Return the only mode."""
+        """Return the only mode, with the decay rate C / (2 M), the stiffness K / M and the shape M^(-1/2)."""
         by_frequency = self.stiffness is None
         stiffness = (
             power(2 * math.pi * present(self.frequency), 2) if by_frequency else present(self.stiffness) / self.mass
@@ -186,8 +192,16 @@ class DampedModes(StructurePart):
     damping_ratio
         Damping ratio of all modes, or a list with one for each mode; default undamped. Rigid-body modes have no damping.
     rayleigh
-        Coefficients alpha [1/s] and beta [s] of Rayleigh damping, C = alpha M + beta K; the damping ratio at the angular
-        frequency omega is alpha / (2 omega) + beta omega / 2.
+        Coefficients alpha [1/s] and beta [s] of Rayleigh damping.
+
+    Notes
+    -----
+    Rayleigh damping is C = alpha M + beta K; the damping ratio at the angular frequency omega is
+    alpha / (2 omega) + beta omega / 2.
+
+    References
+    ----------
+    A. K. Chopra (2017): Dynamics of Structures, 5th edition, Pearson, section 11.4, ISBN 978-0-13-455512-6.
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("damping_ratio", "rayleigh"),)
@@ -198,11 +212,11 @@ class DampedModes(StructurePart):
     def _one_kind_of_damping(self) -> Self:
         given = [name for name in ("C", "damping_ratio", "rayleigh") if getattr(self, name, None) is not None]
         if len(given) > 1:
-            raise Hint(f"{' and '.join(given)} are both damping", "give one of them", [given[-1]])
+            raise Hint(f"{' and '.join(given)} exclude each other: each states the damping", "one of them", [given[-1]])
         return self
 
     def decay_rates(self, stiffness: Vector) -> Vector:
-        """Return the decay rate of each mode [1/s].
+        """Return the decay rate of each mode [1/s]: damping ratio times natural angular frequency.
 
         Parameters
         ----------
@@ -235,11 +249,19 @@ def check_damping(matrix: Vector, count: int) -> None:
     """
     place = ["damping_matrix"]
     if matrix.shape != (count, count):
-        raise Hint(f"the matrix has shape {matrix.shape}, but there are {several(count, 'mode')}", place=place)
+        raise Hint(
+            f"the matrix has shape {matrix.shape}, but there are {several(count, 'mode')}",
+            "a square matrix with a row for each mode",
+            place,
+        )
     if not np.allclose(matrix, matrix.T, rtol=1e-12, atol=1e-12 * np.abs(matrix).max()):
         raise Hint("the matrix is not symmetric", "D = (D + D^T) / 2, if the difference is rounding", place)
     if np.linalg.eigvalsh(matrix).min() < -1e-9 * np.abs(matrix).max():
-        raise Hint("the matrix is not positive semidefinite: a motion would gain energy", place=place)
+        raise Hint(
+            "the matrix is not positive semidefinite: a motion would gain energy",
+            "a matrix whose eigenvalues are not negative",
+            place,
+        )
 
 
 def _one_each(value: Any) -> Any:
@@ -282,6 +304,20 @@ class Modal(FilePart, StructurePart):
         Unit of mass of the file, "kg", "t" or "g", if the file does not state it.
     modal_masses
         Modal mass of each mode of the file [kg], if the file does not state them; "1 kg" for mass-normalised shapes.
+
+    Notes
+    -----
+    q'' + D q' + w^2 q = phi^T F - p a, with the modal displacements q, the angular frequencies w, the shapes phi, the
+    participation p = phi^T M r and the acceleration a of the base, along which a rigid structure moves by r. A point moves
+    by phi q. The modes are those of the undamped structure; D is diagonal, 2 zeta w, unless it is given as a matrix. Modes
+    that are left out add their inertia to the force on the base, (m - p^T p) a, if the total mass m = r^T M r is known.
+
+    References
+    ----------
+    T. K. Caughey, M. E. J. O'Kelly, J. Appl. Mech. 32 (1965) 583, doi:10.1115/1.3627262 (modes that damping does not
+    couple).
+
+    A. K. Chopra (2017): Dynamics of Structures, 5th edition, Pearson, chapters 12 and 13, ISBN 978-0-13-455512-6.
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("frequencies", "damping_ratios", "shapes", "participation")
@@ -525,6 +561,11 @@ class Shaker(StructurePart):
     ----------
     motion
         One signal or several: a Harmonic displacement [m], or accelerations [m/s^2].
+
+    Notes
+    -----
+    The acceleration of the cavity is the sum of the signals; a displacement A sin(omega t + phi) is the acceleration
+    -A omega^2 sin(omega t + phi).
     """
 
     kind: Literal["shaker"] = "shaker"

@@ -47,6 +47,13 @@ class TunedMass(Part):
     name
         Name of its point in the results; default "tuned mass".
 
+    Notes
+    -----
+    m y'' + 2 zeta omega m (y' - z') + omega^2 m (y - z) = -m a, with the displacements y of the mass and z of the point
+    relative to the base, which accelerates with a, and the angular frequency omega of the mass on its spring. Spring and
+    dashpot act on the point with the opposite force. `den_hartog` and `warburton` have the equations and sources of optimal
+    dampers.
+
     Examples
     --------
     >>> import rattlebox as rb
@@ -104,7 +111,7 @@ class TunedMass(Part):
 
         References
         ----------
-        J. P. Den Hartog (1956), Mechanical Vibrations, 4th ed., McGraw-Hill, section 3.3.
+        J. P. Den Hartog (1956), Mechanical Vibrations, 4th ed., McGraw-Hill, section 3.3; reprint ISBN 978-0-486-64785-2.
         """
         ratio, frequency = cls._of_mode(structure, mass, mode, options)
         damping = math.sqrt(3 * ratio / (8 * (1 + ratio)))

@@ -24,6 +24,9 @@ from .errors import Hint, at, nearest
 if TYPE_CHECKING:
     import pint
 
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity, the unit g [m/s^2]."""
+
 LARGEST = 1e30
 """Largest number in SI units; its inverse is the smallest positive one. Powers of other numbers would overflow."""
 
@@ -68,7 +71,7 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
         "mN": (1, 1e3),
         "kN": (1e3, 1),
         "MN": (1e6, 1),
-        "kgf": (9.80665, 1),
+        "kgf": (STANDARD_GRAVITY, 1),
         "lbf": (4.4482216152605, 1),
         "dyn": (1, 1e5),
     },
@@ -85,12 +88,12 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
         "mGal": (1, 1e5),
         "in/s^2": (0.0254, 1),
         "ft/s^2": (0.3048, 1),
-        "g_0": (9.80665, 1),
-        "g": (9.80665, 1),
-        "gn": (9.80665, 1),
-        "mg": (9.80665, 1e3),
-        "ug": (9.80665, 1e6),
-        "µg": (9.80665, 1e6),
+        "g_0": (STANDARD_GRAVITY, 1),
+        "g": (STANDARD_GRAVITY, 1),
+        "gn": (STANDARD_GRAVITY, 1),
+        "mg": (STANDARD_GRAVITY, 1e3),
+        "ug": (STANDARD_GRAVITY, 1e6),
+        "µg": (STANDARD_GRAVITY, 1e6),
     },
     "Hz": {"Hz": (1, 1), "kHz": (1e3, 1)},
     "Pa": {"Pa": (1, 1), "kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1)},
@@ -218,7 +221,7 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
     Parameters
     ----------
     value
-        Number, or text such as "0.04 g_0^2/Hz" or "3.8 (m/s^2)^2/Hz".
+        Number, or text such as "0.04 g^2/Hz" or "3.8 (m/s^2)^2/Hz".
     units
         SI units allowed for the signal.
 
@@ -245,7 +248,7 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
     if not known:
         raise Hint(
             f"{match[2]!r} is not the unit of a power spectral density, the square of a unit per Hz",
-            " or ".join(f'"1 {unit}"' for unit in ("g_0^2/Hz", "(m/s^2)^2/Hz", "N^2/Hz")),
+            " or ".join(f'"1 {unit}"' for unit in ("g^2/Hz", "(m/s^2)^2/Hz", "N^2/Hz")),
         )
     factor, unit = known
     return _finite(number * factor**2), unit
@@ -335,7 +338,7 @@ def are_alike(one: str, other: str) -> bool:
     Raises
     ------
     Hint
-        When a unit is unknown.
+        If a unit is unknown.
     """
     if one == other or any(one in known and other in known for known in _COMMON.values()):
         return True
@@ -359,6 +362,7 @@ def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
 
 
 def _finite(value: float) -> float:
+    """Return a number unchanged; raise if it is not finite or larger than `LARGEST`."""
     if not math.isfinite(value):
         raise Hint("a finite number is needed")
     if abs(value) > LARGEST:
@@ -385,7 +389,7 @@ def radius_of_diameter(values: Any) -> Any:
     if not isinstance(values, dict) or values.get("diameter") is None:
         return values
     if values.get("radius") is not None:
-        raise Hint("give radius or diameter, not both")
+        raise Hint("radius and diameter exclude each other", "one of them", ["diameter"])
     with at("diameter"):
         radius = _positive(parse(values["diameter"], ("m",))[0]) / 2
     return {**{name: value for name, value in values.items() if name != "diameter"}, "radius": radius}

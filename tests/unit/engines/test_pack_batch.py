@@ -322,7 +322,11 @@ def test_no_axes() -> None:
         ("structure", [rb.SDOF(mass=1.0, stiffness=1.0), TWO_MODES], ["structure", "mode_decay"]),
         ("damper.gap", [1e-3, -1e-3], ["the variant with damper.gap = -0.001", "must not be negative"]),
         ("damper.start", [0.0, 1.01, 0.0], ["the variant with damper.start = 1.01", "inside a wall"]),
-        ("damper.cavity_length", [0.07, 0.0663, 0.07], ["damper.cavity_length = 0.0663", "the balls alone"]),
+        (
+            "damper.cavity_length",
+            [0.07, 0.0663, 0.07],
+            ["damper.cavity_length = 0.0663", "shorter than the row of balls"],
+        ),
         ("damper.gpa", [1.0, 2.0], ["did you mean 'gap'?"]),
         ("damper.ball.material", ["steel", "stel"], ["did you mean 'steel'"]),
     ],

@@ -65,9 +65,9 @@ def test_a_structure_without_damping(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arrays", "options", "message"),
     [
-        ({"M": M, "C": C}, {}, r"beam\.npz holds no K, but M, C"),
+        ({"M": M, "C": C}, {}, r"beam\.npz contains no K, but M, C"),
         ({"M": np.array("soft")}, {}, r"beam\.npz .*no numbers\n  try: arrays M, C and K"),
-        ({"M": M, "stiffness": K}, {}, r"holds no K, but M, stiffness"),
+        ({"M": M, "stiffness": K}, {}, r"contains no K, but M, stiffness"),
         ({"M": M, "K": K}, {}, r"points.*\n  at least one named point"),
         ({"M": M, "K": K[:2]}, {"points": {"tip": 2}}, r"beam\.npz\'\n  K has shape \(2, 3\), but M has 3 rows"),
         ({"M": M, "K": np.triu(K)}, {"points": {"tip": 2}}, r"beam\.npz\'\n  K is not symmetric"),

@@ -58,7 +58,7 @@ def test_studies_vary_the_number() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"number": 2, "start": [0.1]}, "a list of starts is for one"),
+        ({"number": 2, "start": [0.1]}, "a list of starts holds for one damper"),
         ({"number": 2, "gap": 0}, "would move in step"),
         ({"number": 0}, "at least 1"),
         ({"number": 2, "point": "tip"}, "no point 'tip'"),

@@ -108,7 +108,7 @@ def test_numbers_of_restitution_have_no_unit() -> None:
         (CASE, "damper.gap.mm", ["there is no 'mm' in damper.gap"]),
         (CASE, "damper..gap", ["not a path"]),
         (CASE, "", ["not a path"]),
-        (TWO, "damper.gap", ["damper.gap: which of 2?", "damper[0] to damper[1]"]),
+        (TWO, "damper.gap", ["damper.gap: the case has 2 of damper, and an index is needed", "damper[0] to damper[1]"]),
         (TWO, "structure.shapes.top[0]", ["there is no 'top' in structure.shapes", "tip"]),
     ],
 )
@@ -210,5 +210,5 @@ def test_a_file_stays(tmp_path: pytest.TempPathFactory) -> None:
     np.save(file, np.array([[0.0, 1.0], [1.0, 2.0]]))
     case = paths.replaced(CASE, {"load": rb.Record.from_file(file)})
     assert paths.replaced(case, {"load.scale": 3.0}).loads[0].evaluate(0.5) == pytest.approx(4.5)
-    with pytest.raises(rb.CaseError, match="it comes from"):
+    with pytest.raises(rb.CaseError, match="was read from"):
         paths.replaced(case, {"load.values[0]": 3.0})

@@ -138,7 +138,7 @@ def test_units_of_densities(given: dict[str, Any], factor: float, unit: str | No
             r"psd\[0\]\[1\] = '1 g\^2/Hz'\n  the density of an acceleration",
         ),
         ([(10, "1 furlong^2/Hz"), (20, 1)], {}, "not the unit of a power spectral density"),
-        ("psd.csv", {}, "unknown name of a density"),
+        ("psd.csv", {}, "there is no density of this name"),
     ],
 )
 def test_wrong_units_of_densities(psd: Any, options: dict[str, Any], message: str) -> None:

@@ -327,8 +327,8 @@ def test_a_case_file_keeps_packing_and_fill() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"bed_fill": 1.2}, r"bed_fill = 1.2\n  a bed fills more than 0 and at most 1"),
-        ({"bed_fill": 0}, "a bed fills more than 0"),
+        ({"bed_fill": 1.2}, r"bed_fill = 1.2\n  a bed fill must be greater than 0 and at most 1"),
+        ({"bed_fill": 0}, "a bed fill must be greater than 0"),
         ({"bed_fill": "90 mm"}, "bed_fill"),
         ({"bed_fill": 0.5, "fill_ratio": 0.3}, "fill_ratio and bed_fill exclude each other"),
         ({"bed_fill": 1e-4}, "less than one particle"),
