@@ -54,11 +54,11 @@ def responses(
     and the stiffness k. The force on the base is L . (D p + k q) - R a with the participation L: the force in springs and
     dashpots, and the truncated modes, which follow the acceleration a of the base without vibrating. Their residual mass is
     R = r^T M r - L^T L, the total mass less the effective masses of the modes; if the total mass is unknown, the second
-    term is left out and a run warns. For a fixed cavity the force is the contact force.
+    term is omitted and a run warns. For a fixed cavity the force is the contact force.
 
     References
     ----------
-    R. W. Clough and J. Penzien, Dynamics of Structures, 2nd ed., McGraw-Hill, 1993.
+    R. W. Clough, J. Penzien (1993), Dynamics of Structures, 2nd ed., McGraw-Hill, ISBN 0-07-011394-7.
     """
     modes, three_d = case.modes, base.ndim == 2
     internal = 2 * modes.decay * p + modes.stiffness * q

@@ -86,7 +86,7 @@ def final_status(ledger: Ledger, limit: float, mass: float) -> Status:
     Returns
     -------
     Status
-        `finished`, `energy_error` or `not_finite`.
+        `finished`, `energy_error` or `not_finite`; see `Ledger.is_balanced` for the criterion.
     """
     if not np.isfinite(ledger.residual).all():
         return Status.not_finite

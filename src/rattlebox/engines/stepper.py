@@ -26,7 +26,7 @@ from .status import describe
 
 @dataclass(frozen=True)
 class StepResult:
-    """What a damper did in one step.
+    """Result of one step of a stepper.
 
     Attributes
     ----------
@@ -102,7 +102,10 @@ class Stepper:
     Notes
     -----
     The acceleration of the attachment, and each load, is constant in a step. For a smooth motion the error decreases with
-    the square of the step. Contacts continue from one step to the next.
+    the square of the step. Contacts continue from one step to the next. The mean force of a step of the length H follows
+    from the absolute momentum P of the particles or balls of the mass M, whose weight is M g,
+
+        F = M g - (P_1 - P_0) / H
 
     Examples
     --------
@@ -157,7 +160,7 @@ class Stepper:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was chosen for the case, and warnings, like `Run.notes`.
+        """Choices that were made for the case, and warnings, like `Run.notes`.
 
         Warnings are about a structure that is light against the damper, and about contacts since the start: overlaps beyond
         the range of the contact laws, speeds beyond a table of restitution, and a time step that is too long for contacts

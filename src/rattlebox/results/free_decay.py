@@ -47,6 +47,10 @@ def free_decay(arrays: RunArrays, amplitude: float | None = None, point: str | N
     The decay begins at the largest energy of the mode after loads and base have come to rest. The mode is the one with the
     largest energy E there, without the offset of its last quarter. While E falls from E_1 to E_2 in the time t,
     zeta = ln(E_1 / E_2) / (2 omega t), exact for a linear oscillator of small damping. E_1 / E_2 = 4 about the amplitude.
+
+    References
+    ----------
+    R. W. Clough, J. Penzien (1993), Dynamics of Structures, 2nd ed., McGraw-Hill, ISBN 0-07-011394-7.
     """
     time, omega = arrays.time, 2 * math.pi * arrays.mode_frequency
     acting = np.zeros(time.size, bool)

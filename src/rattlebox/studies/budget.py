@@ -62,9 +62,9 @@ class RunGroup(NamedTuple):
     Attributes
     ----------
     case
-        A typical one.
+        Typical case.
     runs
-        Their number.
+        Number of runs.
     settlings
         Number of them whose beds have to settle; others have the bed of another run.
     particles, steps

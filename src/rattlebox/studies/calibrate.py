@@ -112,7 +112,8 @@ def calibrate(
     with the measured values y, the polynomials f, the variances D of the measurement, and the covariance S of the
     leave-one-out errors, which contain the scatter of random packings: the measured damper is one of them. The interval of a
     parameter holds the values at which the smallest chi^2 over all other parameters is above its minimum by less than the
-    95 % quantile of F(1, n). The uncertainties of the data are assumed to be independent of each other.
+    95 % quantile of F(1, n). S is scaled so that its inverse is unbiased (Hartlap et al.). The uncertainties of the data are
+    assumed to be independent of each other.
 
     The model of the case is assumed to be right in all else: size and number of particles, cavity, damping of the structure.
     Their errors are in the result. Effective values of friction and restitution at the speeds of the measurement follow.
@@ -120,7 +121,13 @@ def calibrate(
     References
     ----------
     G. E. P. Box, K. B. Wilson (1951), On the experimental attainment of optimum conditions, Journal of the Royal Statistical
-    Society B 13, 1-45, doi:10.1111/j.2517-6161.1951.tb00067.x.
+    Society B 13, 1-45, doi:10.1111/j.2517-6161.1951.tb00067.x (response surface).
+    D. M. Allen (1974), The relationship between variable selection and data augmentation and a method for prediction,
+    Technometrics 16, 125-127, doi:10.1080/00401706.1974.10489157 (leave-one-out errors).
+    J. Hartlap, P. Simon, P. Schneider (2007), Why your model parameter confidences might be too optimistic, Astronomy &
+    Astrophysics 464, 399-404, doi:10.1051/0004-6361:20066170 (inverse of an estimated covariance).
+    D. J. Venzon, S. H. Moolgavkar (1988), A method for computing profile-likelihood-based confidence intervals, Journal of
+    the Royal Statistical Society C 37, 87-94, doi:10.2307/2347496.
 
     Examples
     --------

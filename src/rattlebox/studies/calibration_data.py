@@ -149,6 +149,8 @@ def _replace(data: Any, **values: Any) -> None:
 class Drops:
     """Drop tests: a ball falls from rest onto a plate, and the height of its first rebound is measured.
 
+    The restitution is the ratio of the speeds after and before the impact, sqrt(h_1 / h_0) without air.
+
     Parameters
     ----------
     height : (N,)
@@ -217,7 +219,7 @@ class Drops:
 class BounceTimes:
     """Times at which a ball that bounces on a plate hits it, as from a recorded sound.
 
-    The flight between two contacts takes 2 v/g, so that the restitution is the ratio of flights that follow each other.
+    The flight between two contacts takes T = 2 v / g, and the restitution is the ratio of consecutive flights, T_2 / T_1.
 
     Parameters
     ----------

@@ -225,6 +225,6 @@ class Fit:
         elif self.probability < _UNLIKELY:
             yield (
                 f"warning: no parameters in these ranges explain the data: chi^2 is {self.chi2:.3g} with {self.freedom} "
-                "degrees of freedom, and the intervals mean nothing; try: wider ranges, larger uncertainties, or a case "
+                "degrees of freedom, and the intervals are not valid; try: wider ranges, larger uncertainties, or a case "
                 "that is closer to the experiment (damping without particles, fill, direction, softening)"
             )

@@ -103,7 +103,7 @@ class Decay:
         return [Point("damping_ratio", level, "m", math.nan) for level in self.levels.tolist()]
 
     def describe(self) -> dict[str, Any]:
-        """Return what is simulated, in JSON types."""
+        """Return a description of the simulations, in JSON types."""
         return {"kind": "ring-down", "levels": self.levels.tolist(), "mode": self.data.mode, "point": self.data.point}
 
 
@@ -175,7 +175,7 @@ class Shaken:
         return [Point(data.measure, amplitude, data.unit, frequency) for amplitude, frequency in pairs]
 
     def describe(self) -> dict[str, Any]:
-        """Return what is simulated, in JSON types."""
+        """Return a description of the simulations, in JSON types."""
         data = self.data
         return {
             "kind": "shaker",

@@ -72,6 +72,9 @@ def check_softening(
     With Hertz contacts a run at softening s has s^0.4 times fewer steps than one at 1. The default study therefore takes
     about (1 + 1.7 + 3) times `packings` times as long as the case.
 
+    With the mean m_s over n packings and their standard deviation s_s, the standard error is e_s = s_s / sqrt(n), the change
+    m_s - m_r from the reference r, and its error sqrt(e_s^2 + e_r^2).
+
     Examples
     --------
     >>> import rattlebox as rb

@@ -23,7 +23,6 @@ def compare(
 ) -> Comparison:
     """Simulate several cases and compare their results in one table.
 
-
     Parameters
     ----------
     cases
@@ -32,7 +31,7 @@ def compare(
     threads
         Number of threads; default all cores.
     progress
-        As of `rb.simulate_many`.
+        See `rb.simulate_many`.
 
     Returns
     -------

@@ -145,9 +145,9 @@ def damping_curve(
     Notes
     -----
     "decay": see `rattlebox.analysis.damping_over_amplitude`. "energy": zeta is the mean of (dW/dphi) / (2 E) over the phase
-    phi in which the amplitude falls through a band, with the energy W that the structure has lost (the losses, and what the
-    particles have gained) and the energy E = (w q)^2 / 2 of the mode with modal amplitude q. "shaking": zeta =
-    W / (2 pi (w q)^2) with the energy W lost in a cycle. Each is the ratio of the linear oscillator with the same loss.
+    phi in which the amplitude falls through a band, with the energy W that the structure has lost (the losses and the energy
+    of the particles) and the energy E = (w q)^2 / 2 of the mode with modal amplitude q. "shaking": zeta = W / (2 pi (w q)^2)
+    with the energy W lost in a cycle. Each is the ratio of the linear oscillator with the same loss.
 
     The interval covers the scatter of random initial states alone. A decay and a steady vibration also differ because
     particles move as an earlier, larger amplitude made them: one ball by about half a cycle, a thrown bed by as long as it
@@ -156,6 +156,11 @@ def damping_curve(
     of 1/700, 1/70 and 1/23 of the mass of the structure, "shaking" is above "decay" by 0.3, 3.3 and 9 %, and the estimates
     are 0.4, 3.6 and 10 %. Where several steady motions coexist, random positions may select others than the one that a
     decay follows. "energy" has a relative error of up to a third of zeta, since energy is lost in two steps a cycle.
+
+    References
+    ----------
+    M. Feldman (1994), Mechanical Systems and Signal Processing 8, 119-127, doi:10.1006/mssp.1994.1011 ("decay").
+    E. E. Ungar, E. M. Kerwin (1962), J. Acoust. Soc. Am. 34, 954-957, doi:10.1121/1.1918227 ("energy" and "shaking").
 
     Examples
     --------
@@ -368,7 +373,7 @@ def ratios_of_decays(
     way
         "decay" or "energy".
     evaluate
-        Function that simulates cases and returns what another function makes of each run; see `evaluate_cases`.
+        Function that simulates cases and applies another function to each run; see `evaluate_cases`.
     remarks
         Gets the warnings of the runs.
 
@@ -397,7 +402,7 @@ def ratios_of_decays(
 
 
 class _Row(NamedTuple):
-    """Result of a run: why it failed, if it did, its warnings and exceeded limits, and what is needed of it.
+    """Result of a run: the reason if it failed, its warnings and exceeded limits, and its values.
 
     Attributes
     ----------
@@ -481,8 +486,8 @@ def _energy_ratios(
     # 1 / E, limited far below the bands, where the decay ends in rounding errors.
     logarithm = np.maximum(decay.log_amplitude, math.log(bands.amplitude[0]) - 5)
     share = 2 * (mode.shape / mode.omega) ** 2 * np.exp(-2 * logarithm)
-    # What the structure has lost: the losses, and what the particles have gained. A bed that was thrown settles again and
-    # dissipates the energy of its weight, which is not that of the structure.
+    # The structure has lost the losses and the energy of the particles, which includes their potential energy: a bed that
+    # was thrown settles again, and dissipates the work of its weight, which does not come from the structure.
     arrays = run.arrays
     gained = run.ledger.particles + (arrays.contact_energy + arrays.gravity_energy).sum(axis=1)
     lost = np.interp(decay.time, *mean_over_period(time, run.ledger.losses + gained, 1 / mode.frequency))

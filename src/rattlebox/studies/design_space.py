@@ -201,7 +201,7 @@ def pareto_front(values: NDArray[np.float64], feasible: NDArray[np.bool_]) -> ND
     Returns
     -------
     (n,) int
-        Feasible trials that no other one dominates; only the best trial if there is one objective.
+        Feasible trials that no other one dominates (see `rb.design`); only the best trial if there is one objective.
     """
     numbers = np.flatnonzero(feasible)
     if not numbers.size:

@@ -1,4 +1,4 @@
-"""Runs of single cases on a backend, each reduced to what is needed of it."""
+"""Runs of single cases on a backend, to each of which a function is applied."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ def evaluate_cases(
     workers: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> list[Any]:
-    """Simulate cases and return what a function makes of each run, in the order of the cases.
+    """Simulate cases and return the value of a function of each run, in the order of the cases.
 
     Parameters
     ----------
     cases
         The cases.
     evaluate
-        Function of a Run; with processes or a cluster it is sent to them, and so is what it returns.
+        Function of a Run; processes and clusters receive it, and send back its value.
     backend, workers
         Backend that runs the cases, see `make_backend`.
     progress
-        As of `rb.sweep`.
+        See `rb.sweep`.
 
     Raises
     ------

@@ -43,7 +43,6 @@ class ImpactWork(CaseWork):
     motion: bool = False
     last: int = 0
     state: bool = False
-    intervals: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_parts"}

@@ -44,7 +44,29 @@ class Measure(NamedTuple):
 
 
 class Measures(Catalogue[Measure]):
-    """Descriptions of measures by name."""
+    """Descriptions of measures by name.
+
+    Notes
+    -----
+    Over a window of the length t, which holds n cycles, with the sample step h:
+
+        rms                  sqrt(1 / t integral of x^2 dt), by the trapezoidal rule
+        mean over a step     (v_k - v_(k - 1)) / h, of an acceleration
+        settling_time        see `rattlebox.analysis.settling_time`
+        loss_per_cycle       W = loss in the damper / n
+        reduced_loss         W / (m V^2); m is the mass of all balls or particles, V the velocity amplitude of the cavity
+        effective_mass       m' of the apparent mass m' - i m'', see `rb.loss_map`
+        damping_mass         m''
+        loss_factor          m'' / abs(m')
+        energy_residual      see `rattlebox.results.ledger.Ledger`
+
+    With several dampers, the power of all of them is referred to the motion of the first cavity.
+
+    References
+    ----------
+    N. Meyer, R. Seifried (2021), Computational Particle Mechanics 8, 681-699, doi:10.1007/s40571-020-00363-0 (reduced loss,
+    effective mass, loss factor).
+    """
 
     plural = "measures"
     columns = ("name", "unit", "meaning", "needs")

@@ -38,7 +38,7 @@ class Observed:
 
     @classmethod
     def of(cls, modes: ModalModel, text: str) -> Observed:
-        """Return what a text names.
+        """Return the quantity that a text names.
 
         Parameters
         ----------

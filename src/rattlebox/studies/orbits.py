@@ -64,7 +64,7 @@ def period_of(strobes: Vector, tolerance: float) -> tuple[Whole, Vector]:
     -------
     tuple of array
         Period, up to half the number of samples, and 0 if there is none; largest difference between states one period
-        apart, or the smallest such difference of all numbers of cycles if there is no period.
+        apart, or the smallest such difference of all numbers of cycles if there is no period. `rb.basins` states the rule.
     """
     count = strobes.shape[-2]
     difference = np.stack(

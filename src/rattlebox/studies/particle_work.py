@@ -101,7 +101,7 @@ class Window:
 
     @property
     def damper_force(self) -> NDArray[np.float64]:
-        """Force of all particles on their cavities, averaged between samples [N]: what their momentum lacks."""
+        """Force of all particles on their cavities, averaged between samples [N], from the change of their momentum."""
         force = mean_damper_force(self.run.arrays, self.run.case).sum(axis=1)
         return np.asarray(np.linalg.norm(force, axis=1))
 

@@ -116,6 +116,11 @@ def response_from_map(
     A map holds one motion of the damper at each amplitude, the one that follows from the initial state of its case. Others
     may exist. One of them is included: balls at rest without gravity, where the amplitude without dampers is below the gap.
 
+    References
+    ----------
+    A. Gelb, W. E. Vander Velde (1968), Multiple-Input Describing Functions and Nonlinear System Design, McGraw-Hill.
+    N. Meyer, R. Seifried (2021), Granular Matter 23, 64, doi:10.1007/s10035-021-01128-z.
+
     Examples
     --------
     >>> import rattlebox as rb

@@ -62,6 +62,16 @@ class Surfaces:
             Parameters over their ranges, 0 to 1.
         values : (N, M) float
             Results.
+
+        Notes
+        -----
+        The polynomial through all other points differs from a result by e_i / (1 - h_i), with the residual e_i and the
+        leverage h_i of its point.
+
+        References
+        ----------
+        D. M. Allen (1974), The relationship between variable selection and data augmentation and a method for prediction,
+        Technometrics 16, 125-127, doi:10.1080/00401706.1974.10489157.
         """
         count, width = points.shape
         powers = _powers(width)
@@ -133,9 +143,13 @@ class Agreement:
     def covariance(self) -> FloatArray:
         """Covariance of measured minus simulated values, (M, M).
 
-        The one measured damper and each simulated one have random packings of their own: the leave-one-out errors of the
-        surfaces contain this scatter, and what the surfaces do not follow. The covariance of n errors of m values is
-        enlarged by n / (n - m - 1), the factor by which the mean of its inverse is too large.
+        The measured damper and each simulated one have random packings of their own: the leave-one-out errors of the
+        surfaces contain this scatter, and also the error of the surfaces. The covariance of n errors of m values is enlarged
+        by n / (n - m - 1), the factor by which the mean of its inverse is too large.
+
+        References
+        ----------
+        J. Hartlap, P. Simon, P. Schneider (2007), Astronomy & Astrophysics 464, 399-404, doi:10.1051/0004-6361:20066170.
         """
         errors, freedom = self.surfaces.errors, self.surfaces.freedom
         result = np.diag(self.error**2)
@@ -216,7 +230,12 @@ class Region:
         return np.asarray(self.chi2.min(axis=others) - self.chi2.min())
 
     def limits(self, index: int, threshold: float) -> tuple[float, float]:
-        """Return the limits of the interval in which the profile of a parameter is below a threshold."""
+        """Return the limits of the interval in which the profile of a parameter is below a threshold.
+
+        References
+        ----------
+        D. J. Venzon, S. H. Moolgavkar (1988), Journal of the Royal Statistical Society C 37, 87-94, doi:10.2307/2347496.
+        """
         profile, axis = self.profile(index), self.axes[index]
         inside = np.flatnonzero(profile <= threshold)
         ends = []

@@ -14,6 +14,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.results.quantities import amount
 
 from .calibration_data import Contacts, Drops
+from .calibration_space import NORMAL
 
 if TYPE_CHECKING:
     import xarray
@@ -107,9 +108,13 @@ def speed_after_fall(height: FloatArray, ball: Sphere, *, rising: bool = False) 
     rising
         Whether the sphere rises, so that drag and weight have the same direction.
 
+    Notes
+    -----
+    The drag coefficient at the Reynolds number Re is 24 / Re (1 + 0.15 Re^0.687), and 0.44 above Re = 1000.
+
     References
     ----------
-    L. Schiller, A. Naumann, Zeitschrift des Vereines Deutscher Ingenieure 77 (1933) 318.
+    L. Schiller, A. Naumann (1933), Zeitschrift des Vereines Deutscher Ingenieure 77, 318-320.
     """
     area = math.pi * ball.half**2
 
@@ -153,7 +158,7 @@ def restitution_of(data: Sequence[Contacts]) -> xarray.Dataset:
     values = np.concatenate([each.restitution for each in sets])
     logs, count = np.log(values), values.size
     errors = np.array([each.error for each in sets])
-    reading = 1.959964 * math.sqrt(float(np.sum(errors**2))) / count  # NaN if one is not given
+    reading = NORMAL * math.sqrt(float(np.sum(errors**2))) / count  # NaN if one is not given
     if count < 2 and math.isnan(reading):
         few = "contacts have one ratio of flights" if not isinstance(data[0], Drops) else "drop has no scatter"
         raise Hint(

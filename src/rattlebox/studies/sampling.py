@@ -43,7 +43,7 @@ class Spaced:
 
 
 def linspace(start: Any, stop: Any, count: int) -> Spaced:
-    """Return evenly spaced values of a parameter, ends included.
+    """Return evenly spaced values of a parameter, start + (stop - start) k / (count - 1), k = 0 ... count - 1.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def linspace(start: Any, stop: Any, count: int) -> Spaced:
 
 
 def geomspace(start: Any, stop: Any, count: int) -> Spaced:
-    """Return geometrically spaced values of a parameter, ends included.
+    """Return geometrically spaced values of a parameter, start (stop / start)^(k / (count - 1)), k = 0 ... count - 1.
 
     Parameters
     ----------
@@ -171,10 +171,12 @@ def random_design(
 
     References
     ----------
-    I. M. Sobol' (1967), USSR Computational Mathematics and Mathematical Physics 7(4), 86-112,
-    doi:10.1016/0041-5553(67)90144-9.
-    J. H. Halton (1960), Numerische Mathematik 2, 84-90, doi:10.1007/BF01386213.
-    M. D. McKay, R. J. Beckman, W. J. Conover (1979), Technometrics 21(2), 239-245, doi:10.2307/1268522.
+    I. M. Sobol' (1967), On the distribution of points in a cube and the approximate evaluation of integrals, USSR
+    Computational Mathematics and Mathematical Physics 7(4), 86-112, doi:10.1016/0041-5553(67)90144-9.
+    J. H. Halton (1960), On the efficiency of certain quasi-random sequences of points in evaluating multi-dimensional
+    integrals, Numerische Mathematik 2, 84-90, doi:10.1007/BF01386213.
+    M. D. McKay, R. J. Beckman, W. J. Conover (1979), A comparison of three methods for selecting values of input variables
+    in the analysis of output from a computer code, Technometrics 21(2), 239-245, doi:10.2307/1268522.
 
     Examples
     --------
@@ -210,8 +212,9 @@ class Replicas:
 def replicas(reach: Mapping[str, Any], count: int, *, seed: int = 0) -> Replicas:
     """Repeat each variant with small offsets, along the dimension "replica", to estimate the scatter of chaotic results.
 
-    The offsets are a Latin hypercube sample between -reach and +reach, the same for every variant. They are added to the
-    value of the case or of another axis. Start positions beyond a wall of the cavity are mirrored at the wall.
+    The offsets are a Latin hypercube sample (see `random_design`) between -reach and +reach, the same for every variant.
+    They are added to the value of the case or of another axis. Start positions beyond a wall of the cavity are mirrored at
+    the wall.
 
     Parameters
     ----------

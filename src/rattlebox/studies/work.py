@@ -73,7 +73,7 @@ class Work(Protocol):
         """Return the coordinates of the dimensions beyond those of the grid."""
 
     def describe(self) -> Mapping[str, Any]:
-        """Return what is computed of each variant, in JSON types; a store refuses work that differs in it."""
+        """Return a description of the results of each variant, in JSON types; a store refuses work with another one."""
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
         """Run a range of variants.
@@ -192,7 +192,7 @@ def make_chains(
         Whether each block is finished, (len(blocks),).
     has_state
         Function that returns whether the state at the end of a block is known, by the number of the block. Chains that
-        need an unknown state run again from their begin, or from the last known one.
+        need an unknown state run again from their beginning, or from the last known one.
 
     Returns
     -------

@@ -211,10 +211,10 @@ def test_parameters_that_act_together_are_told_apart_by_a_known_one() -> None:
 
 
 def test_data_that_no_parameter_explains_are_reported() -> None:
-    """Losses far above those of all restitutions give a warning that the intervals mean nothing."""
+    """Losses far above those of all restitutions give a warning that the intervals are not valid."""
     data = shaken(0.6)
     wrong = rb.ShakerLoss(LEVELS, "40 Hz", reduced_loss=data.loss * [1.0, 2.0, 0.5], error="3 %")
-    assert "the intervals mean nothing" in " ".join(calibrated(wrong).warnings)
+    assert "the intervals are not valid" in " ".join(calibrated(wrong).warnings)
 
 
 def test_a_parameter_at_the_end_of_its_range_is_not_bounded() -> None:

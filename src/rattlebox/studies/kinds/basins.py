@@ -77,6 +77,23 @@ class Basins(Study):
     CaseError
         If an argument is not valid for the case.
 
+    Notes
+    -----
+    With the dimensionless state s_k at the end of cycle k, the period is the smallest number n of cycles for which
+
+        max over k and components of abs(s_(k + n) - s_k) <= tolerance
+
+    and two motions of period n have the same attractor if for one of the shifts j = 0 ... n - 1
+
+        max over k and components of abs(s_k - r_(k + j)) <= apart
+
+    References
+    ----------
+    J. Guckenheimer, P. Holmes (1983), Nonlinear Oscillations, Dynamical Systems, and Bifurcations of Vector Fields,
+    Springer, doi:10.1007/978-1-4612-1140-2.
+    G. Datseris, A. Wagemakers (2022), Effortless estimation of basins of attraction, Chaos 32, 023104,
+    doi:10.1063/5.0076568.
+
     Examples
     --------
     >>> import rattlebox as rb

@@ -87,6 +87,18 @@ class Bifurcation(Study):
     CaseError
         If an argument is not valid for the case.
 
+    Notes
+    -----
+    The state once per cycle is a point of the Poincare section at a constant phase of the load, s_k = s(t_0 + k T). The
+    period is determined as in `rb.basins`.
+
+    References
+    ----------
+    S. W. Shaw, P. J. Holmes (1983), A periodically forced piecewise linear oscillator, Journal of Sound and Vibration 90,
+    129-155, doi:10.1016/0022-460X(83)90407-8.
+    A. B. Nordmark (1991), Non-periodic motion caused by grazing incidence in an impact oscillator, Journal of Sound and
+    Vibration 145, 279-297, doi:10.1016/0022-460X(91)90592-8.
+
     Examples
     --------
     >>> import rattlebox as rb

@@ -131,8 +131,12 @@ class Design(Study):
     packing it follows from the intervals of the runs (see `rb.sweep`): of the worst run, of the middle ones, or of the mean
     of independent runs; NaN for measures without an interval.
 
+    A trial with the objectives f dominates another one, g, if all f_k <= g_k and one f_k < g_k (of objectives to minimise).
+    The front is the feasible trials that no other one dominates.
+
     References
     ----------
+    K. Miettinen (1999), Nonlinear Multiobjective Optimization, Springer, doi:10.1007/978-1-4615-5563-6.
     J. Bergstra, R. Bardenet, Y. Bengio, B. Kegl (2011), Algorithms for hyper-parameter optimization, Advances in Neural
     Information Processing Systems 24.
     T. Akiba et al. (2019), Optuna, Proc. 25th ACM SIGKDD, 2623-2631, doi:10.1145/3292500.3330701.

@@ -94,6 +94,19 @@ class FrequencyResponse(Study):
         If the case has not exactly one harmonic load or base motion, its structure has no modes, or an argument is not
         valid for it.
 
+    Notes
+    -----
+    The first harmonic of the displacement x over the evaluated cycles, of the length t, is
+
+        A = 2 / t abs(integral of x exp(-2 pi i f t) dt)
+
+    with whose phase that of the load is subtracted. `rattlebox.analysis.mean_interval` describes the intervals.
+
+    References
+    ----------
+    A. H. Nayfeh, D. T. Mook (1979), Nonlinear Oscillations, Wiley, doi:10.1002/9783527617586 (coexisting steady motions and
+    jumps between them).
+
     Examples
     --------
     >>> import rattlebox as rb

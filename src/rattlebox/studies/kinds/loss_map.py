@@ -73,6 +73,19 @@ class LossMap(Study):
     CaseError
         If the case is not on a shaker with one harmonic motion, or an argument is not valid.
 
+    Notes
+    -----
+    With the complex amplitudes F of the force that drives the damper and a of the acceleration of the cavity,
+
+        m' - i m'' = F / a,   loss factor m'' / abs(m'),   reduced loss W / (m V^2)
+
+    where W is the energy lost in a cycle.
+
+    References
+    ----------
+    N. Meyer, R. Seifried (2021), Toward a design methodology for particle dampers by analyzing their energy dissipation,
+    Computational Particle Mechanics 8, 681-699, doi:10.1007/s40571-020-00363-0.
+
     Examples
     --------
     >>> import rattlebox as rb

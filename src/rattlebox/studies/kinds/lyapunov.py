@@ -91,14 +91,22 @@ class Lyapunov(Study):
     single transient, such as the time after a pulse of a record.
 
     The distance is the norm of positions times the square root of the mass, and of velocities times the same factor over
-    the angular frequency of the cycle or of the fastest mode. The exponent is a weighted average over the steps, with the
-    bump function exp(-1/(s (1 - s))), 0 < s < 1, as weight, which converges much faster for regular motion.
+    the angular frequency of the cycle or of the fastest mode. With the distance d_k to which d_0 grows in step k of the
+    length t, the exponent is the weighted average
+
+        lambda = sum over k of w_k ln(d_k / d_0) / (t sum over k of w_k),   w_k ~ exp(-1 / (s (1 - s))),   0 < s < 1
+
+    where s is the place of the step in the motion. This weight converges much faster for regular motion than an even one.
 
     References
     ----------
-    G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn (1980), Meccanica 15, 9-20 and 21-30, doi:10.1007/BF02128236 and
-    doi:10.1007/BF02128237.
-    E. Sander, J. D. Meiss (2024), arXiv:2409.08496.
+    G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn (1980), Lyapunov characteristic exponents for smooth dynamical
+    systems and for Hamiltonian systems, Meccanica 15, 9-20 and 21-30, doi:10.1007/BF02128236 and doi:10.1007/BF02128237.
+    P. C. Müller (1995), Calculation of Lyapunov exponents for dynamic systems with discontinuities, Chaos, Solitons &
+    Fractals 5, 1671-1681, doi:10.1016/0960-0779(94)00170-U (jump conditions of the variational equation).
+    S. Das, Y. Saiki, E. Sander, J. A. Yorke (2017), Quantitative quasiperiodicity, Nonlinearity 30, 4111-4140,
+    doi:10.1088/1361-6544/aa84c2 (weight).
+    E. Sander, J. D. Meiss (2024), doi:10.48550/arXiv.2409.08496.
 
     Examples
     --------

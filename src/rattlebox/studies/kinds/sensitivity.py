@@ -103,10 +103,18 @@ class Sensitivity(Study):
     MissingDependency
         If SALib is not installed.
 
+    Notes
+    -----
+    With the measure Y, the parameter x_i and all others x_~i, the first-order index S and the total index T are
+
+        S_i = V[E(Y | x_i)] / V[Y],   T_i = E[V(Y | x_~i)] / V[Y]
+
     References
     ----------
-    I. M. Sobol' (2001), Mathematics and Computers in Simulation 55, 271-280, doi:10.1016/S0378-4754(00)00270-6.
-    A. Saltelli et al. (2010), Computer Physics Communications 181, 259-270, doi:10.1016/j.cpc.2009.09.018.
+    I. M. Sobol' (2001), Global sensitivity indices for nonlinear mathematical models and their Monte Carlo estimates,
+    Mathematics and Computers in Simulation 55, 271-280, doi:10.1016/S0378-4754(00)00270-6.
+    A. Saltelli et al. (2010), Variance based sensitivity analysis of model output, Computer Physics Communications 181,
+    259-270, doi:10.1016/j.cpc.2009.09.018.
     J. Herman, W. Usher (2017), SALib, Journal of Open Source Software 2(9), 97, doi:10.21105/joss.00097.
 
     Examples
