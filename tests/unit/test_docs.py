@@ -156,6 +156,25 @@ def test_cases_on_the_page_of_fields_run(tmp_path):
         assert run.status == "finished"
 
 
+def cells(row: str) -> int:
+    """Return the number of cells of a row of a table; a pipe in a formula or a text ends a cell unless it is escaped."""
+    return len(re.findall(r"(?<!\\)\|", row.strip())) - 1
+
+
+def test_rows_of_tables_have_the_cells_of_their_header():
+    """No pipe inside a cell moves the cells after it into other columns."""
+    wrong, count = [], 0
+    for page in DOCS.rglob("*.md"):
+        if {"_build", "gallery"} & set(page.parts):
+            continue
+        text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        for table in re.findall(r"(?:^[ ]*\|.*\n)+", text, re.MULTILINE):
+            header, _, *rows = table.splitlines()
+            count += len(rows)
+            wrong += [f"{page.name}: {row}" for row in rows if cells(row) != cells(header)]
+    assert count > 500 and not wrong
+
+
 def test_tour_names_files_that_exist():
     """Every source file named in the tour exists."""
     named = re.findall(r"`((?:src|core)/\S+)`", (DOCS / "developing" / "tour.md").read_text(encoding="utf-8"))
