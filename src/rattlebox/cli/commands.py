@@ -71,7 +71,7 @@ def _check_single(ctx: typer.Context, first: Path) -> None:
         )
 
 
-@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox run case.toml -o out")
 def run(
     ctx: typer.Context,
     case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
@@ -95,14 +95,20 @@ def run(
     run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, replace=replace)
 
 
-@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+@app.command(
+    cls=_Command,
+    context_settings=_EXTRA_ARGUMENTS,
+    epilog="Example: rattlebox sweep study.toml -o study.zarr --workers 4",
+)
 def sweep(
     ctx: typer.Context,
     study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder for results (Zarr); default named after the study file.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(min=1, help="Number of threads; default one per core.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, metavar="<int>", help="Number of threads; default one per core.")
+    ] = None,
     dask: Annotated[
         str | None, typer.Option(help="Address or scheduler file of a Dask cluster on which to run.")
     ] = None,
@@ -117,14 +123,16 @@ def sweep(
 _ALONE = typer.Option("--alone", help="Only the damper: its attachment moves as prescribed, and it returns the force.")
 
 
-@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+@app.command(
+    cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox fmu case.toml --alone -o damper.fmu"
+)
 def fmu(
     ctx: typer.Context,
     case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="File to write; default named after the case file.")
     ] = None,
-    fmi: Annotated[int, typer.Option(help="Version of FMI: 2 or 3.")] = 3,
+    fmi: Annotated[int, typer.Option(help="Version of FMI, 2 or 3.")] = 3,
     input: Annotated[
         str, typer.Option(help="Input of a damper alone: velocity or acceleration of its attachment.")
     ] = "velocity",
@@ -141,7 +149,9 @@ def fmu(
     write_fmu(case, out, fmi, input, alone, other_systems)
 
 
-@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+@app.command(
+    cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox pack case.toml --alone -o damper.bin"
+)
 def pack(
     ctx: typer.Context,
     case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
@@ -166,7 +176,7 @@ def _check_results(path: Path) -> None:
         raise DataError(f"{path} is a case file or a study file, not a result", suggestion)
 
 
-@app.command(cls=_Command)
+@app.command(cls=_Command, epilog="Example: rattlebox show out")
 def show(results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc.")]) -> None:
     """Print the summary, notes and files of a run, or the progress, axes and results of a study."""
     _check_results(results)
@@ -182,7 +192,9 @@ def show(results: Annotated[Path, typer.Argument(help="Folder written by run or 
     show_study(results)
 
 
-@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+@app.command(
+    cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox plot out --kind energy -o energy.pdf"
+)
 def plot(
     ctx: typer.Context,
     results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc or run.vtkhdf.")],
@@ -206,7 +218,10 @@ def plot(
     of: Annotated[str | None, typer.Option(help="Measure to draw; default the first. Studies only.")] = None,
     at: Annotated[
         list[str] | None,
-        typer.Option(help='Fix a further axis at a value, "load.amplitude=5 kN"; may be repeated. Studies only.'),
+        typer.Option(
+            metavar="<axis=value>",
+            help='Value of a further axis, such as "load.amplitude=5 kN"; may be repeated. Studies only.',
+        ),
     ] = None,
     number: Annotated[
         int | None, typer.Option(help="Number of the snapshot, from 0; default the last. Particles only.")
@@ -249,12 +264,12 @@ def plot(
     plot_study(results, out, kind=kind, of=of, at=at or (), number=number, size=size)
 
 
-@app.command(cls=_Command)
+@app.command(cls=_Command, epilog="Example: rattlebox report bare damped -o comparison.html")
 def report(
     results: Annotated[
         list[Path],
         typer.Argument(
-            help="Folder written by run or sweep, or a file run.nc. Several runs are compared with each other."
+            help="Folder written by run or sweep, or a file run.nc. Several runs are compared with each other.",
         ),
     ],
     out: Annotated[
@@ -274,7 +289,7 @@ def report(
     write(results, out, title, question)
 
 
-@app.command(cls=_Command)
+@app.command(cls=_Command, epilog="Example: rattlebox demo -o demo")
 def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
 ) -> None:
@@ -284,11 +299,13 @@ def demo(
     run_demo(out)
 
 
-@app.command("app", cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+@app.command("app", cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox app my_dampers")
 def browser_app(
     ctx: typer.Context,
     folder: Annotated[Path, typer.Argument(help="Folder for case files and results.")] = Path("rattlebox"),
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port on 127.0.0.1; 0 chooses a free one.")] = 0,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, metavar="<int>", help="Port on 127.0.0.1; 0 chooses a free one.")
+    ] = 0,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address only.")] = False,
 ) -> None:
     """Open the browser application: change a case and watch it, map it, keep results."""
@@ -301,7 +318,7 @@ def browser_app(
     serve(folder, port=port, show=not no_browser)
 
 
-@app.command(cls=_Command)
+@app.command(cls=_Command, epilog="Example: rattlebox schema -o case.schema.json")
 def schema(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="File to write; default: print on the terminal.")
@@ -331,7 +348,7 @@ def materials() -> None:
 
 @app.command(cls=_Command)
 def doctor() -> None:
-    """Print versions, the instruction set of the compiled core in use, and missing packages."""
+    """Print versions, the instruction set of the compiled core in use, and the required and optional libraries."""
     from rattlebox.cli.doctor import print_environment
 
     print_environment()

@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import rattlebox as rb
+from rattlebox._util.atomic_io import atomic_write, require_folder
+from rattlebox._util.exceptions import DataError
 from rattlebox.engines.fmu import fmu_and_notes
 
 
@@ -25,8 +27,18 @@ def write_fmu(case: Path, out: Path | None, fmi: Any, by: Any, alone: bool, othe
 
 
 def write_packed(case: Path, out: Path | None, alone: bool) -> None:
-    """Write a case file as a packed case, for `rattlebox.h`."""
-    stepper = rb.Stepper(rb.Case.from_file(case), alone=alone or None)
+    """Write a case file as a packed case, for `rattlebox.h`.
+
+    Raises
+    ------
+    DataError
+        If the file would overwrite the case file, or its folder does not exist.
+    """
     file = out or Path(f"{case.stem}.bin")
-    file.write_bytes(stepper.packed)
+    if file.exists() and file.samefile(case):
+        raise DataError(f"-o {file}: this is the case file, which is not overwritten", f"-o {case.stem}.bin")
+    require_folder(file)
+    stepper = rb.Stepper(rb.Case.from_file(case), alone=alone or None)
+    with atomic_write(file) as name:
+        name.write_bytes(stepper.packed)
     print(f"{file}: inputs {', '.join(stepper.inputs)}", *stepper.notes, sep="\n  ")

@@ -1,10 +1,12 @@
-"""`rattlebox doctor`: versions, compiled core and packages."""
+"""`rattlebox doctor`: versions, compiled core and libraries."""
 
 from __future__ import annotations
 
 import os
 import platform
-from importlib.metadata import PackageNotFoundError, version
+import re
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, requires, version
 
 from rich.table import Table
 from rich.text import Text
@@ -13,11 +15,12 @@ from rattlebox import __version__
 from rattlebox.cli.terminal import terminal
 from rattlebox.core.choose import built, choice, core, supported
 
-_PACKAGES = ("numpy", "scipy", "xarray", "h5netcdf", "h5py", "pydantic", "pint", "matplotlib")
+_FOR_DEVELOPERS = ("dev", "docs")
+"""Extras whose libraries are not listed."""
 
 
 def print_environment() -> None:
-    """Print the versions, the processor cores, the compiled core in use and the installed packages."""
+    """Print the versions, the processor cores, the compiled core in use, and the required and optional libraries."""
     level, reason = choice()
     table = Table(show_header=False, box=None)
     table.add_row("rattlebox", __version__)
@@ -28,9 +31,18 @@ def print_environment() -> None:
         "", f"built: {', '.join(built())}; runnable here: {', '.join(supported())}; RATTLEBOX_SIMD selects another"
     )
     table.add_row("", f"loaded from {core().__name__}")
-    for name in _PACKAGES:
+    for name, extra in _libraries():
         try:
-            table.add_row(name, version(name))
+            table.add_row(name, f"{version(name)}{f' (optional, {extra})' * bool(extra)}")
         except PackageNotFoundError:
-            table.add_row(name, Text.assemble(("missing", "bold"), f": python -m pip install {name}"))
+            state, package = ("not installed", f"'rattlebox[{extra}]'") if extra else ("missing", name)
+            table.add_row(name, Text.assemble((state, "" if extra else "bold"), f": python -m pip install {package}"))
     terminal().print(table)
+
+
+def _libraries() -> Iterator[tuple[str, str]]:
+    """Yield the name of each required and optional library, and the extra that installs it, "" if it is required."""
+    for line in requires("rattlebox") or ():
+        name, extra = re.match(r"[\w.-]+", line), re.search(r"extra == [\"'](.+?)[\"']", line)
+        if name and not (extra and extra[1] in _FOR_DEVELOPERS):
+            yield name[0], extra[1] if extra else ""

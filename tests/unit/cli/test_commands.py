@@ -138,9 +138,23 @@ def test_schema_that_cannot_be_written(tmp_path: Path, run_cli: RunCli) -> None:
     assert error == f"error: {tmp_path} cannot be written: Is a directory\n  try: another folder\n"
 
 
+def test_pack_does_not_overwrite_its_case(tmp_path: Path, run_cli: RunCli) -> None:
+    """The case file stays, and a folder that does not exist is named."""
+    case = tmp_path / "case.toml"
+    rb.reference_case(duration=0.1).to_file(case)
+    before = case.read_bytes()
+    code, _, error = run_cli("pack", case, "-o", case)
+    assert code == 2 and "is the case file" in error
+    assert case.read_bytes() == before
+    code, _, error = run_cli("pack", case, "-o", tmp_path / "none" / "case.bin")
+    assert code == 2 and "there is no folder" in error
+
+
 def test_doctor_and_materials(monkeypatch: pytest.MonkeyPatch, run_cli: RunCli) -> None:
-    """Doctor prints the compiled core in use; materials prints the library in fewer than 80 lines."""
-    assert "core" in run_cli("doctor")[1]
+    """Doctor prints the core in use and optional libraries; materials prints the library in fewer than 80 lines."""
+    shown = run_cli("doctor")[1]
+    assert "core" in shown and "numpy" in shown and "pytest" not in shown
+    assert all(name in shown for name in ("distributed", "optuna", "pyvista", "nicegui"))
     monkeypatch.setenv("COLUMNS", "80")
     shown = run_cli("materials")[1]
     assert "tungsten_carbide" in shown
