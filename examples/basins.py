@@ -23,8 +23,8 @@ case = rb.Case(
     method=rb.Newton(),
 )
 starts = {
-    "damper.start": rb.linspace(-1, 1, 41),
-    "damper.velocity": rb.linspace("-0.2 m/s", "0.2 m/s", 41),
+    "damper.start": rb.linspace(-1, 1, 61),
+    "damper.velocity": rb.linspace("-0.2 m/s", "0.2 m/s", 61),
 }
 maps = rb.basins(case, starts, cycles=(200, 16))
 rb.plot_basins(maps).savefig("basins.png")

@@ -58,9 +58,12 @@ def percent(result):
     return 100 * result.damping_ratio.values, 50 * (result.upper - result.lower).values
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     figure, panels = plt.subplots(1, 2, figsize=(7, 3.4), sharey=True, layout="constrained")
     colours = dict(zip((0.1, 0.2, 0.4), rb.plots.SERIES_COLOURS, strict=False))
+    marks = dict(zip(colours, "o^s", strict=True))
     for (way, fill), known in WAYS.items():
         ratios, halves = percent(BAR["curve"](fill, way=way, packings=4))
         print(
@@ -68,7 +71,7 @@ if __name__ == "__main__":
             *(f"{ratio:.2f}" for ratio in ratios),
             f"± {halves.min():.2f} to {halves.max():.2f} %",
         )
-        style = {"decay": "--", "shaking": "-"}[way]
+        style = marks[fill] + {"decay": "--", "shaking": "-"}[way]
         micrometres = [float(amplitude.split()[0]) for amplitude in AMPLITUDES]
         panels[0].plot(micrometres, ratios, style, color=colours[fill], label=f"{way}, fill {fill}")
         assert np.allclose(ratios, known, rtol=0.08)
@@ -77,17 +80,22 @@ if __name__ == "__main__":
         print(f"harmonic force, fill {fill}: {1e6 * found:.0f} um, {ratio:.2f} %")
         panels[0].plot(1e6 * found, ratio, "x", color=colours[fill])
         assert abs(ratio / known - 1) < 0.1
-    for softening, known in SOFTENINGS.items():
+    for (softening, known), mark in zip(SOFTENINGS.items(), rb.plots.SERIES_MARKERS, strict=False):
         ratios, halves = percent(BAR["curve"](0.4, softening, LOW, packings=4))
         print(
             f"softening {softening}:",
             *(f"{ratio:.2f} ± {half:.2f}" for ratio, half in zip(ratios, halves, strict=True)),
         )
-        panels[1].plot([10, 20, 40, 80], ratios, "o-", ms=4, label=f"softening {softening}")
+        panels[1].plot([10, 20, 40, 80], ratios, f"{mark}-", ms=4, label=f"softening {softening}")
         assert (abs(ratios - known) < halves + 0.1 * np.array(known)).all()
     panels[0].plot([], [], "kx", label="harmonic force")
     panels[0].set_ylabel("Damping ratio (%)")
     for panel in panels:
         panel.set(xlabel="Amplitude (µm)", ylim=0)
-        panel.legend(frameon=False, fontsize="small")
+        panel.margins(x=0.03)
+        panel.legend()
     figure.savefig("boring_bar_checks.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

@@ -53,6 +53,6 @@ for (name, run), mark, colour in zip(result.runs.items(), "o^sD", rb.plots.SERIE
         panel.plot(values, range(1, 6), f"{mark}-", color=colour, label=name)
 panels[0].set(xlabel="Peak drift (mm)", ylabel="Storey", yticks=range(1, 6), xlim=0)
 panels[1].set(xlabel="RMS drift (mm)", xlim=0)
-panels[1].legend()
+panels[1].legend(frameon=False)
 figure.savefig("building.png", dpi=200)
 assert np.allclose([row[0] for row in rms.values()], [7.0, 4.8, 5.6, 6.1], rtol=0.05)

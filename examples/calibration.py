@@ -61,7 +61,9 @@ def calibrations(drops, losses, **options):
     ]
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     drops, losses = measurements()
     results = calibrations(drops, losses)
     for name, result in zip(("losses alone", "with the drop test"), results, strict=True):
@@ -82,7 +84,8 @@ if __name__ == "__main__":
         label="simulated at the result",
     )  # fmt: skip
     panels[0].set(xlabel="Amplitude (g)", ylabel="Loss a cycle / mV²", ylim=(0, None))
-    panels[0].legend(frameon=False)
+    panels[0].margins(x=0.05)
+    panels[0].legend()
     for result, colour, name in zip(
         results, rb.plots.SERIES_COLOURS, ("losses alone", "with the drop test"), strict=False
     ):
@@ -92,5 +95,9 @@ if __name__ == "__main__":
         panels[1].plot([], [], color=colour, label=name)
     panels[1].plot(RESTITUTION, FRICTION, "k+", ms=9, mew=2, label="true values")
     panels[1].set(xlabel="Restitution", ylabel="Friction", xlim=RANGES["damper.contact.restitution"], ylim=(0, 0.6))
-    panels[1].legend(frameon=False, loc="upper left")
+    panels[1].legend(loc="upper left")
     figure.savefig("calibration.png", dpi=150)
+
+
+if __name__ == "__main__":
+    main()

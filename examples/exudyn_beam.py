@@ -113,7 +113,9 @@ def rms(result):
     return np.sqrt(np.trapezoid(displacement**2, time) / time[-1])
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     own, bare, whole = coupled(), coupled(damped=False), whole_run()
     remaining, difference = rms(own) / rms(bare), rms(own) / rms(whole) - 1
     print(f"RMS {100 * remaining:.0f} % of that without balls; rb.simulate differs by {100 * abs(difference):.1f} %")
@@ -121,8 +123,12 @@ if __name__ == "__main__":
     figure, axes = plt.subplots(figsize=(6, 3), layout="constrained")
     axes.plot(bare[0], 1e3 * bare[1], "0.7", label="without balls")
     axes.plot(own[0], 1e3 * own[1], label="Exudyn with Rattlebox")
-    axes.plot(whole[0], 1e3 * whole[1], "k:", label="rb.simulate")
-    axes.set(xlabel="time (s)", ylabel="displacement of the tip (mm)", xlim=(0, DURATION))
+    axes.plot(whole[0], 1e3 * whole[1], ":", lw=1.6, label="rb.simulate")
+    axes.set(xlabel="Time (s)", ylabel="Displacement of the tip (mm)", xlim=(0, DURATION))
     axes.set_ylim(top=3.6)
-    axes.legend(frameon=False, ncols=3, loc="upper right")
+    axes.legend(ncols=3, loc="upper right")
     figure.savefig("exudyn_beam.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

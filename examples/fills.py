@@ -29,7 +29,9 @@ def cylinder(bed_fill, packing, friction=0.3, **size):
     )
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     beds = {
         "poured, 90 %": rb.measure_bed(cylinder(0.9, rb.Settled(seed=1))),
         "shaken down, 90 %": rb.measure_bed(cylinder(0.9, rb.Compacted(seed=1))),
@@ -55,9 +57,9 @@ if __name__ == "__main__":
         panels[0].bar(places, values, width=0.4, label=part, color=rb.plots.SERIES_COLOURS[int(shift > 0)])
     panels[0].set_xticks(range(len(beds)), [name.replace(", ", "\n") for name in beds])
     panels[0].set(ylabel="Part of the cavity (%)", ylim=(0, 125))
-    panels[0].legend(frameon=False, ncols=2, loc="upper left")
+    panels[0].legend(ncols=2, loc="upper left")
     densities, errors = [bed.bulk_density for bed in poured], [bed.bulk_error for bed in poured]
-    panels[1].errorbar(FRICTIONS, densities, errors, fmt="o-", capsize=3, label="poured")
+    panels[1].errorbar(FRICTIONS, densities, errors, fmt="o-", ms=4, capsize=3, label="poured")
     panels[1].axhspan(
         shaken.bulk_density - shaken.bulk_error,
         shaken.bulk_density + shaken.bulk_error,
@@ -65,5 +67,10 @@ if __name__ == "__main__":
         label="shaken down",
     )
     panels[1].set(xlabel="Coefficient of friction", ylabel="Volume fraction far from walls")
-    panels[1].legend(frameon=False)
+    panels[1].margins(x=0.03)
+    panels[1].legend()
     figure.savefig("fills.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

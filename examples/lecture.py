@@ -48,7 +48,9 @@ def amplitudes():
     return 1e3 * amplitude, 1e-3 * loss.values / amplitude**2
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     gap, rms = gaps()
     print(f"row: RMS {rms.min():.1f} mm at a gap of {gap[rms.argmin()]:.0f} mm, {rms[-1]:.1f} mm without contact")
     start, impacts, same = starts()
@@ -69,6 +71,8 @@ if __name__ == "__main__":
     panels[1, 0].set(xlabel="Balls of 60 g in total", ylabel="Loss (mJ)")
     panels[1, 1].plot(amplitude, quotient, "o-", ms=3)
     panels[1, 1].set(xlabel="Amplitude (mm)", ylabel="Loss over its square (kJ/m²)", xscale="log", ylim=0)
+    for panel in panels.flat:
+        panel.margins(x=0.03)
     figure.savefig("lecture.png", dpi=140)
     assert abs(rms.min() - 1.3) < 0.05 and 4 < gap[rms.argmin()] < 8 and np.allclose(rms[gap > 14], 3.0, atol=0.01)
     assert (impacts.min(), impacts.max()) == (196, 236) and np.ptp(same) < 0.006 * same.mean()
@@ -77,3 +81,7 @@ if __name__ == "__main__":
     for share in ("share_sliding", "share_at_particle"):
         assert summaries[0][share] < summaries[-1][share]
     assert quotient.argmax() in (5, 6) and np.allclose(quotient[[0, 5, 7]], [2.1, 10, 5.6], rtol=0.12)
+
+
+if __name__ == "__main__":
+    main()

@@ -47,7 +47,9 @@ def gain_in_sweep() -> float:
     return float(peak * (2 * math.pi * FREQUENCY) ** 2 / G)
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     simulated, miles = rms_under_gevs()
     gain = gain_in_sweep()
     figure, panels = plt.subplots(1, 2, figsize=(7, 3), layout="constrained")
@@ -55,7 +57,7 @@ if __name__ == "__main__":
     panels[0].plot(random.time, 1e6 * random.displacement.sel(point="mass"), lw=0.5, color=rb.plots.SERIES_COLOURS[0])
     panels[0].axhspan(-1e6 * miles, 1e6 * miles, color="0.85", zorder=0, label="± RMS by Miles' equation")
     panels[0].set(xlabel="Time (s)", ylabel="Displacement (µm)", title="Random vibration")
-    panels[0].legend(frameon=False, loc="upper right")
+    panels[0].legend(loc="upper right")
     hertz = 70 * 2 ** (sweep.time / 10)  # 6 octaves a minute
     static = G / (2 * math.pi * FREQUENCY) ** 2
     panels[1].plot(hertz, sweep.displacement.sel(point="mass") / static, lw=0.2, color=rb.plots.SERIES_COLOURS[0])
@@ -64,3 +66,7 @@ if __name__ == "__main__":
     figure.savefig("loads_of_standards.png", dpi=200)
     print(f"RMS {1e6 * simulated:.0f} um, by Miles {1e6 * miles:.0f} um; gain {gain:.1f} in the sweep")
     assert abs(simulated / miles - 1) < 0.1 and abs(gain / 25 - 1) < 0.03
+
+
+if __name__ == "__main__":
+    main()

@@ -75,18 +75,20 @@ def compare(name, loss, which):
         duration="1 s",
         **options(name),
     )
-    hertz = (peak * STEPS).tolist()
-    simulated = rb.frequency_response(case, hertz, direction="up", cycles=CYCLES[name])
-    return rb.response_from_map(structure, loss, frequencies=hertz, **from_map), simulated
+    hertz = peak * STEPS
+    simulated = rb.frequency_response(case, hertz.tolist(), direction="up", cycles=CYCLES[name])
+    smooth = np.union1d(hertz, np.linspace(hertz[0], hertz[-1], 101))
+    return rb.response_from_map(structure, loss, frequencies=smooth.tolist(), **from_map), simulated
 
 
 def draw(axes, name, which, from_map, simulated):
-    """Draw the response from the map, its interval at the peak, and the simulated one."""
+    """Draw the response from the map, the 95 % interval of its peak, and the simulated one."""
     hertz, one = from_map.frequency.values, from_map.isel(at=0, number=0, level=0)
     axes.plot(hertz, 1e3 * one.amplitude.max("solution"), label="map")
     half = 1e3 * one.peak_interval.item()
-    axes.errorbar(one.peak_frequency, 1e3 * one.peak, yerr=half, color="tab:blue", capsize=4)
-    axes.plot(hertz, 1e3 * simulated.amplitude.values.ravel(), "o", label="simulated")
+    axes.errorbar(one.peak_frequency, 1e3 * one.peak, yerr=half, color=rb.plots.SERIES_COLOURS[0], capsize=4)
+    axes.plot(simulated.frequency, 1e3 * simulated.amplitude.values.ravel(), "o", label="simulated")
+    axes.margins(x=0.03)
     axes.set(
         title=f"{name}, {which}, {LEVELS[name][which]}",
         xlabel="Frequency (Hz)",
@@ -95,6 +97,7 @@ def draw(axes, name, which, from_map, simulated):
     )
 
 
+@rb.plots.figure_style("page")
 def main():
     """Compare the responses of both dampers on both structures, and draw them."""
     figure, panels = plt.subplots(2, 2, figsize=(8, 6), layout="constrained")

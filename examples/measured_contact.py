@@ -31,7 +31,9 @@ def impact(speed: float) -> rb.Run:
     return rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=2.5e-3 / speed))
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     for speed in (0.1, 0.2, 0.3, 0.6):
         run = impact(speed)
         hit = run.impacts.isel(impact=0)
@@ -40,17 +42,18 @@ if __name__ == "__main__":
         for note in run.notes:
             print(f"  {note}")
     figure, panels = plt.subplots(1, 2, figsize=(7, 3), layout="constrained")
-    for curve, name in ((PAD, "loading"), (PAD.unloading, "unloading")):
-        panels[0].plot(1e6 * np.array(curve.overlap), curve.force, "o-", label=name)
+    for curve, style, name in ((PAD, "o-", "loading"), (PAD.unloading, "s--", "unloading")):
+        panels[0].plot(1e6 * np.array(curve.overlap), curve.force, style, label=name)
     panels[0].set(xlabel="Overlap (µm)", ylabel="Force (N)")
-    panels[0].legend(frameon=False)
+    panels[0].margins(0.03)
+    panels[0].legend()
     speeds = np.linspace(0.05, 0.6, 23)
     hits = [impact(float(speed)).impacts.isel(impact=0) for speed in speeds]
     panels[1].plot(speeds, [float(hit.separation_speed / hit.approach_speed) for hit in hits], "k")
     beyond = [speed for speed, hit in zip(speeds, hits, strict=True) if hit.peak_overlap > PAD.overlap[-1]]
     panels[1].axvspan(beyond[0], speeds[-1], color="0.9", label="beyond the measurement")
     panels[1].set(xlabel="Approach speed (m/s)", ylabel="Restitution", xlim=(0, speeds[-1]), ylim=(0, 1))
-    panels[1].legend(frameon=False, loc="lower right")
+    panels[1].legend(loc="lower right")
     figure.savefig("measured_contact.png", dpi=200)
     # For an impact as deep as the measurement, the areas below both curves give nearly the same restitution.
     loading = np.trapezoid(PAD.force, PAD.overlap)
@@ -58,3 +61,7 @@ if __name__ == "__main__":
     by_areas = np.sqrt(unloading / loading)
     print(f"from the areas below the measured points: {by_areas:.3f}")
     assert abs(by_areas - restitution) < 0.02
+
+
+if __name__ == "__main__":
+    main()

@@ -75,7 +75,9 @@ def difference(step=STEP):
     return np.abs(np.interp(time, t, x) - whole).max() / np.abs(whole).max()
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     (t, x), bare = coupled(), coupled(damped=False)[1]
     late = np.abs(x[t > 0.3]).max() / np.abs(bare[t > 0.3]).max()
     print(f"after 0.3 s {100 * late:.0f} % of that without the ball; rb.simulate differs by {100 * difference():.1f} %")
@@ -83,8 +85,12 @@ if __name__ == "__main__":
     figure, axes = plt.subplots(figsize=(6, 3), layout="constrained")
     axes.plot(t, 1e3 * bare, "0.7", label="without ball")
     axes.plot(t, 1e3 * x, label="MuJoCo with Rattlebox")
-    axes.plot(whole_run()[0], 1e3 * whole_run()[1], "k:", label="rb.simulate")
-    axes.set(xlabel="time (s)", ylabel="displacement of the tip (mm)", xlim=(0, DURATION))
-    axes.legend(frameon=False, ncols=3, loc="upper right")
+    axes.plot(whole_run()[0], 1e3 * whole_run()[1], ":", lw=1.6, label="rb.simulate")
+    axes.set(xlabel="Time (s)", ylabel="Displacement of the tip (mm)", xlim=(0, DURATION))
+    axes.legend(ncols=3, loc="upper right")
     axes.set_ylim(top=7)
     figure.savefig("mujoco_arm.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

@@ -54,7 +54,9 @@ def whole_run():
     return run.motion.displacement.values[-1]
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     exact = whole_run()
     errors = {n: np.array([np.abs(newmark(steps, n) - exact).max() for steps in STEPS]) for n in (1, 4)}
     for exchanges, each in errors.items():
@@ -65,6 +67,11 @@ if __name__ == "__main__":
     figure, axes = plt.subplots(figsize=(5, 3.5), layout="constrained")
     for (exchanges, each), line in zip(errors.items(), ("o-", "s--"), strict=True):
         axes.loglog(1e6 * DURATION / np.array(STEPS), 1e6 * each, line, label=f"{exchanges} in each step")
-    axes.set(xlabel="step (µs)", ylabel="largest error of displacement (µm)")
-    axes.legend(title="exchanges", frameon=False)
+    axes.set(xlabel="Step (µs)", ylabel="Largest error of displacement (µm)")
+    axes.margins(x=0.03)
+    axes.legend(title="Exchanges")
     figure.savefig("own_time_loop.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

@@ -50,6 +50,6 @@ for name, dampers in {"bare": {}, "with particles": {"damper": damper}}.items():
     print(f"{name:14} {levels[name][0]:.1f} g in the band of 200 Hz, {levels[name][1]:.0f} N on the base")
 axes.set_xticks(np.arange(level.size) + 0.2, level.nominal.values, rotation=90)
 axes.set(xlabel="Third-octave band (Hz)", ylabel="RMS acceleration ($g_0$)")
-axes.legend()
+axes.legend(frameon=False)
 figure.savefig("panel.png", dpi=200)
 assert np.allclose(list(levels.values()), [(53.5, 973), (29.3, 626)], rtol=0.12)

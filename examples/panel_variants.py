@@ -46,7 +46,9 @@ def filled(fill):
     return DAMPER.particles[0].model_copy(update={"fill_ratio": fill})
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     bands = ("160", "200", "250", "800", "1250")
     bare, with_half = levels(bands), levels(bands, packing=DAMPER.packing)
     for name, values in (("bare", bare), ("fill 0.5", with_half)):
@@ -82,3 +84,7 @@ if __name__ == "__main__":
     axes.invert_yaxis()
     axes.set_xlabel("RMS acceleration in the band of 200 Hz ($g_0$)")
     figure.savefig("panel_variants.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

@@ -67,26 +67,34 @@ def with_tuned_mass(change=1.0, damping_ratio=0.005):
     return float(response.amplitude.max()) * stiffness
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     study, levels = loss_map(), BEST * np.geomspace(0.012, 0.15, 16)
     lines = {"unchanged": (1.0, 0.005), "20 % lower": (0.8, 0.005), "3 % of damping": (1.0, 0.03)}
     figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
     gains = {}
-    for (name, (change, ratio)), colour, size in zip(lines.items(), rb.plots.SERIES_COLOURS, (8, 4, 4), strict=False):
+    marks = zip(rb.plots.SERIES_COLOURS, ("o", "^", "s"), (8, 4, 4), ("--", "-.", ":"), strict=False)
+    for (name, (change, ratio)), (colour, mark, size, dashes) in zip(lines.items(), marks, strict=True):
         particles = with_particles(study, levels, change=change, damping_ratio=ratio)
         tuned, bare = with_tuned_mass(change, ratio), 1 / (2 * ratio)
         least, most = np.nanmin(particles), np.nanmax(particles)
         gains[name] = bare, tuned, least, most
         print(f"{name:15} bare {bare:3.0f}, tuned mass {tuned:4.1f}, particles {least:4.1f} to {most:4.1f}")
-        axes.plot(levels / BEST, particles, "o-", ms=size, color=colour, label=f"particles, {name}")
-        axes.axhline(tuned, color=colour, ls="--", label=f"tuned mass, {name}")
+        axes.plot(levels / BEST, particles, f"{mark}-", ms=size, color=colour, label=f"particles, {name}")
+        axes.axhline(tuned, color=colour, ls=dashes, label=f"tuned mass, {name}")
     axes.set(xlabel="Static displacement (best amplitude)", ylabel="Largest over static displacement", yscale="log")
     axes.set_yticks([5, 10, 20, 40], ["5", "10", "20", "40"])
     axes.minorticks_off()
-    figure.legend(frameon=False, fontsize="small", ncols=2, loc="outside upper left")
+    axes.margins(x=0.03)
+    figure.legend(ncols=2, loc="outside upper left")
     figure.savefig("particles_or_tuned_mass.png", dpi=200)
     detuned = [with_tuned_mass(1 - lower) for lower in (0.0, 0.05, 0.1, 0.15, 0.2)]
     print("tuned mass, 0, 5, 10, 15 and 20 % lower:", ", ".join(f"{each:.1f}" for each in detuned))
     assert np.allclose(detuned, [6.1, 8.4, 11.8, 16.8, 23.5], atol=0.06)
     assert all(np.allclose(gains[name][2:], [16.5, 39.9], rtol=0.08) for name in ("unchanged", "20 % lower"))
     assert abs(gains["3 % of damping"][1] - 5.0) < 0.1 and abs(gains["3 % of damping"][2] - 9.1) < 0.7
+
+
+if __name__ == "__main__":
+    main()

@@ -71,7 +71,9 @@ def draw(panel, time, moved, balls):
     panel.set(xlabel="Time (cycles)", xlim=(0, 2))
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     regimes = {
         "locked\n0.7 g": (0.7 * ONE_G, EARTH),
         "bouncing\n2.2 g": (2.2 * ONE_G, EARTH),
@@ -87,7 +89,7 @@ if __name__ == "__main__":
     pictures, panels = upper.subplots(1, 4, sharey=True), lower.subplots(1, 2)
     for panel, (name, motion) in zip(pictures, regimes.items(), strict=True):
         draw(panel, *heights(*motion))
-        panel.set_title(name, fontsize="small")
+        panel.set_title(name)
     pictures[0].set_ylabel("Height (mm)")
     for (name, study), colour, mark in zip(maps.items(), rb.plots.SERIES_COLOURS, "os", strict=False):
         mass = study.effective_mass / study.particle_mass
@@ -101,7 +103,7 @@ if __name__ == "__main__":
     for panel in panels:
         panel.axvline(1, color="0.8", lw=0.8, zorder=0)
         panel.set(xlabel="Amplitude of the box ($L$/π)", xlim=0)
-    panels[0].legend(frameon=False, loc="lower right")
+    panels[0].legend(loc="lower right")
     figure.savefig("regimes.png", dpi=140)
 
     space, earth = (study.assign(mass=study.effective_mass / study.particle_mass) for study in maps.values())
@@ -117,3 +119,7 @@ if __name__ == "__main__":
     assert abs(bouncing.reduced_loss[0] - 1.3) < 0.25 and abs(bouncing.reduced_loss[-1] - 2.1) < 0.25
     assert abs(bouncing.mass[0] - 0.9) < 0.1 and abs(bouncing.mass[-1] - 0.2) < 0.1
     assert abs(earth.reduced_loss[7] - 3.1) < 0.3
+
+
+if __name__ == "__main__":
+    main()

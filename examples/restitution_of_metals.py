@@ -45,7 +45,9 @@ def block(hardness):
     return rb.materials()["steel"].model_copy(update={"yield_stress": hardness * 9.80665e6 / 2.8})
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     speeds = np.array([0.1, 1.0, 5.0])
     for name, ranges in RANGES.items():
         pairs = np.transpose([restitution(law, speeds, [name, name], name) for law in LAWS.values()])
@@ -63,15 +65,20 @@ if __name__ == "__main__":
 
     figure, axes = plt.subplots(figsize=(6.5, 3.5), layout="constrained")
     curve = np.geomspace(0.01, 10, 50)
-    for name, colour in zip(
-        ("steel", "brass", "copper", "tungsten_alloy", "lead"), rb.plots.SERIES_COLOURS, strict=False
-    ):
+    metals = ("steel", "brass", "copper", "tungsten_alloy", "lead")
+    for name, colour, mark in zip(metals, rb.plots.SERIES_COLOURS, rb.plots.SERIES_MARKERS, strict=False):
         for law, style in zip(LAWS.values(), ("--", "-"), strict=True):
             label = name.replace("_", " ") if style == "-" else None
-            axes.plot(curve, restitution(law, curve, [name, name], name), style, color=colour, label=label)
+            axes.plot(
+                curve, restitution(law, curve, [name, name], name), mark + style, color=colour, label=label, markevery=8
+            )
     axes.plot([10, 10], list(BLOCKS.values()), "kx", label="alumina on steel,\nmeasured")
-    axes.set(xlabel="Approach speed (m/s)", ylabel="Restitution", xscale="log", ylim=(0, 1.02))
+    axes.set(xlabel="Approach speed (m/s)", ylabel="Restitution", xscale="log", xlim=(0.009, 12), ylim=(0, 1.02))
     for style, name in (("k-", "Jackson and Green"), ("k--", "Thornton")):
         axes.plot([], [], style, label=name)
-    figure.legend(frameon=False, fontsize="small", loc="outside right center")
+    figure.legend(loc="outside right center")
     figure.savefig("restitution_of_metals.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

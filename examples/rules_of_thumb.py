@@ -76,7 +76,9 @@ def along_a_floor(accelerations=(0.1, 0.2, 0.5, 1.0)):
     return losses(damper, [G * each for each in accelerations], 60.0, unit="m/s^2")
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     beds = {name: losses(bed(**options)) for name, options in (CALM | LIVELY).items()}
     balls = {}
     for restitution in (0.0, 0.8):
@@ -108,11 +110,16 @@ if __name__ == "__main__":
     assert floor[:2].max() < 0.1 and np.allclose(floor[2:], [0.7, 1.8], rtol=0.2)
 
     figure, axes = plt.subplots(figsize=(6.5, 3.5), layout="constrained")
-    styles = [(CALM, "o-"), (LIVELY, "s--"), (balls, "k:")]
+    styles = [(CALM, "-"), (LIVELY, "--"), (balls, "k:")]
     for names, style in styles:
-        for name, alpha in zip(names, (1, 0.75, 0.5, 0.3), strict=False):
-            colour = {} if "k" in style else {"color": rb.plots.SERIES_COLOURS["s" in style]}
-            axes.plot(RATIOS, (beds | balls)[name], style, alpha=alpha, label=name, ms=4, **colour)
+        for name, alpha, mark in zip(names, (1, 0.75, 0.5, 0.3), "o^sD", strict=False):
+            colour = {} if "k" in style else {"color": rb.plots.SERIES_COLOURS[style == "--"]}
+            axes.plot(RATIOS, (beds | balls)[name], mark + style, alpha=alpha, label=name, ms=4, **colour)
     axes.set(xlabel="Amplitude ($L$/π)", ylabel="Loss a cycle ($m V^2$)", ylim=(0, 4.3))
-    figure.legend(loc="outside right center", frameon=False, fontsize="small")
+    axes.margins(x=0.03)
+    figure.legend(loc="outside right center")
     figure.savefig("rules_of_thumb.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

@@ -37,14 +37,16 @@ def losses(level, softenings, fraction=0.025, cycles=(15, 20), packings=6):
     return rb.sweep(case, axes, "reduced_loss", cycles=cycles).reduced_loss.values
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     figure, axes = plt.subplots(figsize=(5, 3.2), layout="constrained")
     found = {}
-    for level, colour in zip((0.6, 1.2, 20), rb.plots.SERIES_COLOURS, strict=False):
+    for level, colour, mark in zip((0.6, 1.2, 20), rb.plots.SERIES_COLOURS, "o^s", strict=False):
         packings = losses(level, SOFTENINGS)
         found[level] = np.median(packings, axis=1)
-        axes.plot(SOFTENINGS, packings, "o", ms=3, alpha=0.5, color=colour)
-        axes.plot(SOFTENINGS, found[level], color=colour, label=f"{level} g")
+        axes.plot(SOFTENINGS, packings, mark, ms=3, alpha=0.5, color=colour)
+        axes.plot(SOFTENINGS, found[level], f"{mark}-", color=colour, label=f"{level} g")
         print(
             f"{level:4} g:",
             ", ".join(f"{each:.2f}" for each in found[level]),
@@ -54,10 +56,15 @@ if __name__ == "__main__":
     steps = [np.median(losses(20, [30], fraction)) for fraction in FRACTIONS]
     print("20 g, with 20, 40 and 80 steps in the shortest contact:", ", ".join(f"{each:.2f}" for each in steps))
     axes.set(xlabel="Softening", ylabel="Loss a cycle ($m V^2$)", xscale="log", yscale="log")
-    axes.legend(frameon=False)
+    axes.margins(x=0.03)
+    axes.legend()
     figure.savefig("softening_and_step.png", dpi=200)
     assert found[0.6][0] < 0.02 and found[0.6][-1] > 10 * found[0.6][0]  # medians and single packings scatter widely
     assert found[1.2][-1] > 3 * found[1.2][0]
     assert abs(found[20] - 0.25).max() < 0.02
     assert np.ptp(found[20]) < 0.1 * found[20].mean()
     assert np.ptp(steps) < 0.1 * found[20].mean()
+
+
+if __name__ == "__main__":
+    main()

@@ -47,7 +47,9 @@ def tip_after_hit(structure: rb.Beam | rb.Modal) -> float:
     return float(np.sqrt(np.mean(run_after_hit(structure).motion.displacement.sel(point="tip") ** 2)))
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     with TemporaryDirectory() as folder:
         file = Path(folder) / "bar.csv"
         file.write_text(table_of(BAR))
@@ -58,7 +60,11 @@ if __name__ == "__main__":
         tip = run_after_hit(structure).motion.displacement.sel(point="tip")
         axes.plot(1e3 * tip.time, 1e3 * tip, style, label=name)
     axes.set(xlabel="Time (ms)", ylabel="Displacement of the tip (mm)")
-    axes.legend(frameon=False)
+    axes.legend()
     figure.savefig("structure_from_modes.png", dpi=200)
     print(f"{BAR.frequencies[0]:.1f} Hz; tip {1e6 * beam:.2f} um and {1e6 * modal:.2f} um")
     assert abs(modal / beam - 1) < 1e-6 and abs(beam - 1.0218e-3) < 1e-7
+
+
+if __name__ == "__main__":
+    main()

@@ -37,7 +37,9 @@ def residual(step):
     return rb.simulate(case, progress=False).energy_residual
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     residuals = [residual(step) for step in STEPS]
     for step, each in zip(STEPS, residuals, strict=True):
         print(f"step {1e6 * step:.2f} us: energy residual {each:.2%}")
@@ -49,7 +51,8 @@ if __name__ == "__main__":
     axes.set(xlabel="Time step (µs)", ylabel="Energy residual")
     axes.set_xticks([0.5, 1, 2, 5], ["0.5", "1", "2", "5"], minor=False)
     axes.tick_params(axis="x", which="minor", labelbottom=False)
-    axes.legend(frameon=False, fontsize="small")
+    axes.margins(x=0.03)
+    axes.legend()
     figure.savefig("time_step.png", dpi=200)
     assert 0.2 < residuals[0] < 0.35 and 0.01 < residuals[1] < 0.04 and residuals[3] < 1.5e-3
     order = np.polyfit(np.log(STEPS[1:]), np.log(residuals[1:]), 1)[0]
@@ -57,3 +60,7 @@ if __name__ == "__main__":
     # A ball in a spherical cavity of four times its radius, computed as at a flat wall: stiffer by 15 %, shorter by 6 %.
     stiffer = np.sqrt(1 / (1 - 1 / 4))
     assert abs(stiffer - 1.15) < 0.01 and abs(stiffer ** (-2 / 5) - 0.94) < 0.005
+
+
+if __name__ == "__main__":
+    main()

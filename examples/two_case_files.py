@@ -41,7 +41,9 @@ def calming(run):
     ]
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     alone = {"no damper": without_dampers(BALL), "one ball": BALL}
     rows = {name: calming(rb.simulate(case, progress=False)) for name, case in alone.items()}
     boxes = [rb.simulate(BOX.replaced({"damper.packing.seed": seed}), progress=False) for seed in range(1, 9)]
@@ -78,5 +80,9 @@ if __name__ == "__main__":
     for name, x in middle.items():
         panels[1].plot(x.time, x, lw=0.6, label=name)
     panels[1].set(xlabel="Time (s)", ylabel="Middle of the beam (mm)", ylim=(-1.5, 2))
-    panels[1].legend(frameon=False, ncols=2)
+    panels[1].legend(ncols=2)
     figure.savefig("two_case_files.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

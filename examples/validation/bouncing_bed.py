@@ -64,10 +64,12 @@ def exponent(levels, values):
     return float(np.polyfit(np.log(levels), np.log(values), 1)[0])
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     moderate, high = np.geomspace(1.5, 4.0, 5), np.geomspace(8.0, 40.0, 5)
     figure, panels = plt.subplots(1, 2, figsize=(7, 3), layout="constrained")
-    for restitution, friction in ((0.7, 0.3), (0.5, 0.3), (0.7, 0.1)):
+    for (restitution, friction), mark in zip(((0.7, 0.3), (0.5, 0.3), (0.7, 0.1)), "o^s", strict=True):
         stored, lost = masses([*moderate, *high], restitution, friction)
         falls, decays = exponent(moderate, np.maximum(stored[:5], 1e-3)), exponent(high, lost[5:])
         print(
@@ -79,16 +81,24 @@ if __name__ == "__main__":
         assert (stored[7:] < 0).all()
         name = f"restitution {restitution}, friction {friction}"
         for panel, values in zip(panels, (stored, lost), strict=True):
-            panel.plot([*moderate, *high], values, "o-", ms=4, label=name)
+            panel.plot([*moderate, *high], values, f"{mark}-", ms=4, label=name)
     for width, count, cycles in (("3.1 mm", 5, (60, 200)), ("6.6 mm", 20, (30, 80))):  # a column, and four columns
         _, lost = masses(high, width=width, count=count, cycles=cycles)
         print(f"{count} beads in a width of {width}: exponent {exponent(high, lost):.2f} of the damping mass")
         assert -1.2 < exponent(high, lost) < -0.8
-    panels[0].set(ylabel="Effective mass (mass of beads)", xscale="log")
+    panels[0].set(ylabel="Effective mass over that of the beads", xscale="log")
     panels[0].axhline(0, color="0.8", lw=0.8, zorder=0)
     panels[1].plot(high, 6 / high, "k:", label="inverse of the acceleration")
-    panels[1].set(ylabel="Damping mass (mass of beads)", xscale="log", yscale="log")
+    panels[1].set(ylabel="Damping mass over that of the beads", xscale="log", yscale="log")
     for panel in panels:
-        panel.set_xlabel("Acceleration (gravity)")
-    panels[1].legend(frameon=False, fontsize="x-small", loc="lower left")
+        panel.set_xlabel("Acceleration (g)")
+        panel.set_xticks([2, 5, 10, 20, 40], ["2", "5", "10", "20", "40"])
+        panel.minorticks_off()
+        panel.margins(x=0.03)
+    panels[1].set_yticks([0.05, 0.1, 0.2, 0.5], ["0.05", "0.1", "0.2", "0.5"])
+    panels[1].legend(loc="lower left")
     figure.savefig("bouncing_bed.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

@@ -67,26 +67,34 @@ def one_mass(ratio):
     return (1 - np.cos(tau)) ** 2
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     best = clearance() / np.pi
     ratio = np.array([0.5, 0.75, 1.0, 1.15, 1.4, 2.0])
     expected = one_mass(ratio[2:])
     print("one mass:", expected.round(2))
     figure, axes = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
-    for restitution, friction in ((0.75, 0.1), (0.75, 0.3), (0.5, 0.1), (0.9, 0.1)):
+    pairs = ((0.75, 0.1), (0.75, 0.3), (0.5, 0.1), (0.9, 0.1))
+    for (restitution, friction), mark in zip(pairs, "o^sD", strict=True):
         loss = losses(best * ratio, restitution, friction)
         print(f"restitution {restitution}, friction {friction}:", loss.round(2))
         assert loss.argmax() == 2  # the best amplitude is the free clearance over pi
         assert loss[1] < 0.5 * loss[2]  # below, the bed is a gas
         assert np.allclose(loss[2:], expected, rtol=0.13 if restitution < 0.9 else 0.17)
-        axes.plot(ratio, loss, "o-", ms=4, label=f"restitution {restitution}, friction {friction}")
+        axes.plot(ratio, loss, f"{mark}-", ms=4, label=f"restitution {restitution}, friction {friction}")
     above = np.linspace(1, 2, 50)
     axes.plot(above, one_mass(above), "k", label="one inelastic mass")
     axes.set(xlabel="Amplitude (clearance/π)", ylabel="Loss a cycle ($m A^2 \\omega^2$)", ylim=0)
-    axes.legend(frameon=False, fontsize="small")
+    axes.margins(x=0.03)
+    axes.legend()
     for count, diameter in ((60, 10e-3), (200, 10e-3), (700, 4e-3)):
         amplitude = clearance(count, diameter) / np.pi
         low, high = losses(amplitude * np.array([0.75, 1.0]), count=count, diameter=diameter)
         print(f"{count} beads of {1e3 * diameter:g} mm: {high:.2f} at {1e3 * amplitude:.1f} mm, {low:.2f} at 3/4 of it")
         assert high > 3.4 and low < 0.5 * high
     figure.savefig("collect_and_collide.png", dpi=200)
+
+
+if __name__ == "__main__":
+    main()

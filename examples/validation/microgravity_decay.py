@@ -68,17 +68,20 @@ def linear_part(values):
     return -slope, float(np.abs(part - start - slope * number).max() / values[0])
 
 
-if __name__ == "__main__":
+@rb.plots.figure_style("page")
+def main():
+    """Compute the numbers, check them and draw the figure."""
     rows = []
     figure, axes = plt.subplots(figsize=(5.5, 3.2), layout="constrained")
-    for friction in (0.0, 0.1, 0.3):
+    for friction, colour, mark in zip((0.0, 0.1, 0.3), rb.plots.SERIES_COLOURS, "o^s", strict=False):
         for seed in (1, 2, 3):
             times, tops = peaks(rb.simulate(case(friction, seed)))
             rows.append((friction, *linear_part(tops)))
-            colour, name = rb.plots.SERIES_COLOURS[int(10 * friction)], f"friction {friction}" if seed == 1 else None
-            axes.plot(FREQUENCY * times, 1e3 * tops, "o-", ms=3, lw=0.8, color=colour, label=name)
+            name = f"friction {friction}" if seed == 1 else None
+            axes.plot(FREQUENCY * times, 1e3 * tops, f"{mark}-", ms=3, lw=0.8, color=colour, label=name)
     axes.set(xlabel="Time (cycles)", ylabel="Amplitude of the box (mm)", ylim=0)
-    axes.legend(frameon=False)
+    axes.margins(x=0.03)
+    axes.legend()
     figure.savefig("microgravity_decay.png", dpi=200)
     table = np.array(rows)
     print("friction, decrement per cycle (mm), deviation from a line")
@@ -88,3 +91,7 @@ if __name__ == "__main__":
     print(f"decrement {interval} diameters per cycle; off the line by {deviations.max():.1%}")
     assert deviations.max() < 0.03  # linear
     assert 0.7 < slopes.min() <= slopes.max() < 1.0
+
+
+if __name__ == "__main__":
+    main()

@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import nearest
+from .labels import log_ticks
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
         bare = (response.bare_amplitude / response.level)[:1] if per_level else response.bare_amplitude
         axes.plot(frequency, bare.T / divisor, color=FAINT, lw=pen(0.8), zorder=0)
         axes.set_yscale("log")
-        axes.yaxis.set_major_formatter("{x:g}")
+        log_ticks(axes.yaxis)
     for k, level in enumerate(response.level.values):
         colour = SERIES_COLOURS[k % len(SERIES_COLOURS)]
         lines = values.sel(level=level) / divisor

@@ -12,6 +12,7 @@ from typing import Any, Literal, NamedTuple, cast
 
 import matplotlib as mpl
 import numpy as np
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -91,6 +92,7 @@ def _settings(size: Size) -> dict[str, Any]:
         "axes.spines.top": False,
         "axes.spines.right": False,
         "axes.xmargin": 0.0,
+        "axes.prop_cycle": cycler(color=SERIES_COLOURS),
         "legend.frameon": False,
         "legend.handlelength": 1.8,
         "legend.borderaxespad": 0.2,
@@ -106,7 +108,7 @@ def _settings(size: Size) -> dict[str, Any]:
 
 @contextmanager
 def figure_style(size: Size = "column") -> Iterator[None]:
-    """Apply the style of all figures of Rattlebox inside a `with` block.
+    """Apply the style of all figures of Rattlebox inside a `with` block, or to a function as a decorator.
 
     Parameters
     ----------
@@ -117,6 +119,15 @@ def figure_style(size: Size = "column") -> Iterator[None]:
     ------
     ValueError
         If there is no such size.
+
+    Examples
+    --------
+    >>> import matplotlib.pyplot as plt
+    >>> from rattlebox.plots import figure_style
+    >>> with figure_style("page"):
+    ...     figure, axes = plt.subplots(figsize=(7, 3))
+    ...     lines = axes.plot([0, 1], [0, 1])
+    >>> plt.close(figure)
     """
     if size not in WIDTHS:
         raise ValueError(f"size = {size!r}: unknown size\n  try: {', '.join(map(repr, WIDTHS))}")
