@@ -202,7 +202,7 @@ template <class F> Doubles<2> in_order(const std::vector<int>& number, F&& f) {
 }
 
 inline void add_dem_problem(nb::module_& module) {
-    nb::enum_<dem::Partner>(module, "Partner", nb::is_arithmetic(), "What a particle touches.")
+    nb::enum_<dem::Partner>(module, "Partner", nb::is_arithmetic(), "Body that a particle touches.")
         .value("particle", dem::Partner::particle)
         .value("wall", dem::Partner::wall);
     nb::enum_<dem::Wall::Form>(module, "WallForm")
@@ -279,7 +279,7 @@ inline void add_dem_problem(nb::module_& module) {
               field("enduring_loss", &N::enduring_loss), field("seconds", &N::seconds));
     using A = StoppedAt;
     define<A>(module, "StoppedAt",
-              "Where a run stopped: particle and wall by their numbers in the case, or -1.",
+              "Place at which a run stopped: particle and wall by their numbers in the case, or -1.",
               field("cavity", &A::cavity), field("particle", &A::particle), field("wall", &A::wall),
               field("time", &A::time), field("speed", &A::speed));
 }

@@ -102,8 +102,8 @@ inline void add_stepper(nb::module_& module) {
         .def_prop_ro("time", &S::time)
         .def_prop_ro("inputs", &S::inputs)
         .def_prop_ro("components", &S::components)
-        .def_prop_ro("velocity", &S::velocity, "Of the attachment [m/s].")
-        .def_prop_ro("displacement", &S::displacement, "Of the attachment [m].")
+        .def_prop_ro("velocity", &S::velocity, "Velocity of the attachment [m/s].")
+        .def_prop_ro("displacement", &S::displacement, "Displacement of the attachment [m].")
         .def("set_gravity", &S::set_gravity, nb::arg("gravity"))
         .def(
             "outputs",

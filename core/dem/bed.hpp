@@ -40,7 +40,7 @@ struct Chunk {
     }
 };
 
-// What other workers read about a chunk in each step; one cache line.
+// Part of a chunk that other workers read in each step; one cache line.
 struct alignas(64) ChunkMotion {
     // Force on the cavity, and the largest displacement of a particle in the step relative to the reference
     // velocity; infinite if a particle stops the run.

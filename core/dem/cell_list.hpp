@@ -7,6 +7,9 @@
 // C 10 (1999) 823). Measured on one core as time with a single level over time with several: 5.7 with 10 000
 // particles and one 16 times as large, 22 with 100 000 and a dozen; 4.2 and 13 in mixtures of five sizes, 1
 // to 16, of equal volume. With one size there is one level.
+//
+// B. Quentrec, C. Brot, J. Comput. Phys. 13 (1973) 430, doi:10.1016/0021-9991(73)90046-6 (cell lists); V.
+// Ogarko, S. Luding, Comput. Phys. Commun. 183 (2012) 931, doi:10.1016/j.cpc.2011.12.019 (levels).
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The begin of a contact: the restitution of the impact, and the coefficients that hold until the contact
+// The beginning of a contact: the restitution of the impact, and the coefficients that hold until the contact
 // ends.
 #pragma once
 
@@ -74,7 +74,8 @@ inline real constant_damping(const PairLaw& e) {
 }
 
 // Returns the integral of t^p from 0 less its sum over steps of length 1, of which the first is at theta.
-// This is minus the Hurwitz zeta function of -p and theta, by the Euler-Maclaurin formula.
+// This is minus the Hurwitz zeta function of -p and theta, by the Euler-Maclaurin formula (NIST Digital
+// Library of Mathematical Functions, 2.10(i) and 25.11).
 inline real quadrature_deficit(real p, real theta) {
     const real end = theta + 2;
     return std::pow(end, p) * (end / (p + 1) - 0.5 + p / (12 * end)) - std::pow(theta, p) -

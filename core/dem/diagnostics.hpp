@@ -46,8 +46,9 @@ struct alignas(64) Diagnostics {
     // at a sample
     Row wall_moment{}, mass_moment{};
     real kinetic = 0, rotation = 0;
-    Lanes stored{}, sliding_correction[2]{}, rolling_correction[2]{};
+    Lanes stored{};
     // Energy lost by the time of the sample, less half of the loss of the step.
+    Lanes sliding_correction[2]{}, rolling_correction[2]{};
     long contacts[2]{};
 
     // Counts and extremes, and losses of enduring contacts, count from now on.

@@ -28,7 +28,7 @@ template <class T> RATTLEBOX_INLINE T overlap(const T& reach, const T& distance)
     return larger(reach - distance, all(reach, 0x1p-53) * reach);
 }
 
-// What the contacts of one list have in common: all have the same types of laws.
+// Properties that all contacts of one list have in common, among them the types of their laws.
 struct ContactLaws {
     NormalLaw normal;   // coefficients that do not depend on the contact
     int tangential = 0; // index in the table of laws

@@ -36,7 +36,7 @@ public:
     }
 };
 
-// Work on the structure and its loss up to a step: by load, by load, and by mode.
+// Work of each load by its force and by its base motion, and loss of each mode, up to a step.
 struct StructureWork {
     std::vector<real> load, base, viscous;
 };

@@ -1,6 +1,8 @@
 // Time integration of the structure in the 3-D engine: operator splitting into kicks by the forces and exact
 // propagation of the free modes between two kicks (second order).
 //
+// G. Strang, SIAM J. Numer. Anal. 5 (1968) 506, doi:10.1137/0705041.
+//
 // Holds pointers to arrays that the simulation owns.
 #pragma once
 

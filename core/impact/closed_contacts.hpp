@@ -1,5 +1,7 @@
 // Integration of closed contacts with DOP853 (math/dop853.hpp), events within its steps, and peaks of force
 // and overlap.
+//
+// Events: M. Dowell, P. Jarratt, BIT 11 (1971) 168, doi:10.1007/BF01934364 (the Illinois algorithm).
 #pragma once
 
 #include "impact/contact_begin.hpp"

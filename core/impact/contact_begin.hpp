@@ -1,4 +1,9 @@
 // First touch: an isolated contact solved as a whole, the begin of a soft contact, or a hard impact.
+//
+// A hard impact changes the approach rate v to -e v. Contacts that have come to rest are constraints; their
+// impulses follow from one linear system, from which constraints that would pull are removed one by one.
+//
+// B. Brogliato, Nonsmooth Mechanics, 3rd ed., Springer 2016, doi:10.1007/978-3-319-28664-8.
 #pragma once
 
 #include <iterator>

@@ -4,7 +4,9 @@
 // or with modes coupled by damping, the flight has a bounded length and uses Taylor series
 // (structure/taylor_series.hpp). In both cases g'' of each gap g has a lower bound L, so that no touch can
 // occur before the first root of g + g' s + L s^2 / 2. Stepping from one such root to the next converges to
-// the first touch and cannot miss one. A bound of g''' makes L close to g'' near the touch.
+// the first touch and cannot miss one. A bound of g''' makes L close to g'' near the touch. (Conservative
+// advancement: B. V. Mirtich, Impulse-based dynamic simulation of rigid body systems, PhD thesis, University
+// of California, Berkeley 1996.)
 #pragma once
 
 #include <vector>

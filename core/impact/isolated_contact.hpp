@@ -1,4 +1,5 @@
-// An isolated Hertz-Tsuji contact, solved as a whole by collocation in its phase angle.
+// An isolated Hertz-Tsuji contact (contact/normal/hertz_tsuji.hpp), solved as a whole by collocation in its
+// phase angle.
 //
 // With P = (2/sqrt5) b d^(5/4), b^2 = A/m, w = d' and Y = (w + zeta P)/s, s^2 = 1 - zeta^2, the contact
 // without other forces is a rotation: P = r sin(psi), Y = r cos(psi). All other forces (spring, load,
@@ -18,6 +19,9 @@
 //
 // The result is accepted only if the energy balance holds, which the sweeps do not use. Otherwise, or if the
 // contact is slow, strongly damped or not isolated, impact/closed_contacts.hpp integrates it step by step.
+//
+// The equations are derived here. Fixed-point sweeps over nodes: C. W. Clenshaw, H. J. Norton, Computer J. 6
+// (1963) 88, doi:10.1093/comjnl/6.1.88.
 #pragma once
 
 #include <array>

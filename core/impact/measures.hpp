@@ -1,4 +1,5 @@
-// Measures: numbers that characterise a run, computed from the samples and impacts of a window.
+// Measures: numbers that characterise a run, computed from the samples and impacts of a window. Their
+// equations are in rattlebox/studies/measures.py.
 #pragma once
 
 #include <complex>
@@ -10,7 +11,8 @@
 
 namespace rattlebox {
 
-// Sums and extremes over impacts. The sum of the approach speeds is compensated (D. E. Knuth's two-sum).
+// Sums and extremes over impacts. The sum of the approach speeds is compensated (two-sum: D. E. Knuth, The
+// Art of Computer Programming, vol. 2, section 4.2.2).
 struct ImpactSums {
     real impacts = 0, approach_speeds = 0, rounded_off = 0;
     real largest_approach_speed = 0, peak_force = 0, peak_overlap = 0, longest_contact = 0;
@@ -98,8 +100,8 @@ public:
         return mean_relative_acceleration(i) + window_.base * mean_base_acceleration(i);
     }
 
-    // Force of all balls on their cavities, mean over the interval before sample i: what their momentum
-    // lacks.
+    // Force of all balls on their cavities, mean over the interval before sample i, from the change of their
+    // momentum.
     real mean_damper_force(std::size_t i) const {
         const real *v0 = velocities(problem_, state(i - 1)), *v1 = velocities(problem_, state(i));
         const real base = mean_base_acceleration(i), step = time(i) - time(i - 1);

@@ -6,7 +6,7 @@
 // at begin and end for any number of simultaneous contacts. Without soft contacts it is time.
 //
 // Stuck contacts (hard impacts that have come to rest) are constraints, whose forces keep the approach rates
-// at zero.
+// at zero. The transformation is derived here.
 #pragma once
 
 #include <vector>

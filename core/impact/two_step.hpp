@@ -8,7 +8,8 @@
 // Hermite interpolants.
 //
 // J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, RK5(4)7M,
-// doi:10.1016/0771-050X(80)90013-3.
+// doi:10.1016/0771-050X(80)90013-3; L. F. Shampine, M. W. Reichelt, SIAM J. Sci. Comput. 18 (1997) 1,
+// doi:10.1137/S1064827594276424 (ode45).
 #pragma once
 
 #include <array>

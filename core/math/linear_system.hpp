@@ -1,4 +1,8 @@
-// Small dense linear systems with a definite symmetric matrix, by Gaussian elimination without pivoting.
+// Small dense linear systems with a definite symmetric matrix, by Gaussian elimination without pivoting,
+// which is stable for these.
+//
+// N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., SIAM 2002, chapters 9 and 10,
+// doi:10.1137/1.9780898718027.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Gauss-Legendre quadrature on [0, 1].
+// Gauss-Legendre quadrature on [0, 1] (NIST Digital Library of Mathematical Functions, 3.5(v)).
 #pragma once
 
 #include "math/real.hpp"

@@ -4,6 +4,9 @@
 // barriers no worker may read what another one writes; each worker takes a contiguous range of the items.
 //
 // With RATTLEBOX_THREADS=0, the default for WebAssembly, the calling thread is the only worker.
+//
+// Barriers: J. M. Mellor-Crummey, M. L. Scott, ACM Trans. Comput. Syst. 9 (1991) 21,
+// doi:10.1145/103727.103729.
 #pragma once
 
 #ifndef RATTLEBOX_THREADS

@@ -6,7 +6,7 @@
 #include "stepper/engines.hpp"
 #include "stepper/stepper.hpp"
 
-// What is behind the handle.
+// The object to which a handle points.
 struct rattlebox_stepper {
     std::vector<std::uint8_t> packed;
     rattlebox::Stepper stepper;

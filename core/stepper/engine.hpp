@@ -1,4 +1,4 @@
-// What a stepper needs of an engine: advance over a step with constant inputs, and the state at its end.
+// Interface of an engine for a stepper: advance over a step with constant inputs, and the state at its end.
 #pragma once
 
 #include <array>

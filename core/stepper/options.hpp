@@ -1,5 +1,5 @@
-// What can be chosen for a packed case before its first step: restitution and friction, where all its
-// contacts have the same constant, and the velocity of the attachment of a damper alone.
+// Choices for a packed case before its first step: restitution and friction, where all its contacts have the
+// same constant, and the velocity of the attachment of a damper alone.
 #pragma once
 
 #include "stepper/packed_case.hpp"

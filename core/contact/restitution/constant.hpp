@@ -1,4 +1,6 @@
 // Constant restitution, e = const (Newton).
+//
+// B. Brogliato, Nonsmooth Mechanics, 3rd ed., Springer 2016, doi:10.1007/978-3-319-28664-8.
 #pragma once
 
 #include "util/field.hpp"

@@ -8,7 +8,7 @@
 // above V* = 1000.
 //
 // R. L. Jackson, I. Green, D. B. Marghitu, Predicting the coefficient of restitution of impacting
-// elastic-perfectly plastic spheres, Nonlinear Dynamics 60 (2010) 217.
+// elastic-perfectly plastic spheres, Nonlinear Dynamics 60 (2010) 217, doi:10.1007/s11071-009-9591-z.
 #pragma once
 
 #include "util/field.hpp"

@@ -6,7 +6,7 @@
 // r = V_y / V, V_y = speed at which yield begins [m/s].
 //
 // C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres,
-// J. Appl. Mech. 64 (1997) 383-386, eq. 19.
+// J. Appl. Mech. 64 (1997) 383-386, eq. 19, doi:10.1115/1.2787319.
 #pragma once
 
 #include "util/field.hpp"

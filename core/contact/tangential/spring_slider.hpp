@@ -6,12 +6,13 @@
 // The history variable is the force of the spring, not its displacement. During unloading of the normal
 // contact k decreases, and the spring force decreases in proportion; during loading the force does not
 // change. The energy F^2 / (2 k) of the spring therefore never grows without work, and its decrease counts as
-// sliding loss (micro-speed_squared). The force of the dashpot is limited to the difference between the limit
-// and the spring force.
+// sliding loss (micro-slip). The force of the dashpot is limited to the difference between the limit and the
+// spring force.
 //
 // R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327, doi:10.1115/1.4010702; C. Thornton, S. J.
 // Cummins, P. W. Cleary, An investigation of the comparative behaviour of alternative contact force models
-// during inelastic collisions, Powder Technology 233 (2013) 30-46, section 3.
+// during inelastic collisions, Powder Technology 233 (2013) 30-46, section 3,
+// doi:10.1016/j.powtec.2012.08.012.
 #pragma once
 
 #include "math/rows.hpp"

@@ -165,7 +165,17 @@ def _by_decrement(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, Float
 
 
 def analytic_signal(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, np.ndarray, float]:
-    """Return times, analytic signal and samples per cycle."""
+    """Return times, analytic signal and samples per cycle.
+
+    Notes
+    -----
+    The imaginary part is the convolution of the signal with the Hilbert transformer h_n = 2 / (pi n), n odd, times a Kaiser
+    window.
+
+    References
+    ----------
+    A. V. Oppenheim, R. W. Schafer (2010), Discrete-Time Signal Processing, 3rd ed., chapter 12, ISBN 978-0-13-198842-2.
+    """
     from scipy.signal import oaconvolve
 
     t, x, cycle = oscillation(time, values)

@@ -817,7 +817,7 @@ def measures() -> dict[str, bool]:
     """
 
 class Partner(enum.IntEnum):
-    """What a particle touches."""
+    """Body that a particle touches."""
 
     particle = 0
 
@@ -1149,7 +1149,7 @@ class DemCounts(Node):
 
 class StoppedAt(Node):
     """
-    Where a run stopped: particle and wall by their numbers in the case, or -1.
+    Place at which a run stopped: particle and wall by their numbers in the case, or -1.
     """
 
     def __init__(self, *, cavity: int, particle: int, wall: int, time: float, speed: float) -> None: ...
@@ -1245,11 +1245,11 @@ class Stepper:
 
     @property
     def velocity(self) -> list[float]:
-        """Of the attachment [m/s]."""
+        """Velocity of the attachment [m/s]."""
 
     @property
     def displacement(self) -> list[float]:
-        """Of the attachment [m]."""
+        """Displacement of the attachment [m]."""
 
     def set_gravity(self, gravity: Sequence[float]) -> None: ...
 

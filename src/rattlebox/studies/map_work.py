@@ -79,6 +79,8 @@ class ImpactMapWork(ImpactWork):
     def reduced(self, values: dict[str, NDArray[Any]], start: int, stop: int) -> dict[str, NDArray[Any]]:
         """Return the outputs of variants with the harmonics of the force in place of the motions."""
         masses = np.array([ball.weight for damper in self.case.impact_dampers for ball in damper.balls])
+        # The motion of the cavity has the first harmonic only and is the same in each cycle, so that the momentum relative
+        # to it has the same higher harmonics and the same variation.
         momentum = values["relative_velocity"] @ masses
         cycles = self.cycles[1] if self.cycles else 1
         harmonics, variation = force_harmonics(np.linspace(0.0, cycles, momentum.shape[-1]), momentum, 1.0, HIGHEST)

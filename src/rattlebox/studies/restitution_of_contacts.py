@@ -149,9 +149,14 @@ def restitution_of(data: Sequence[Contacts]) -> xarray.Dataset:
 
     Notes
     -----
-    The estimate is the geometric mean. The interval is that of Student's t over the logarithms of all restitutions, or 1.96
-    times the error of the mean from the uncertainty of the readings if that is wider. Errors of times make consecutive
+    The estimate is the geometric mean. The interval is that of Student's t over the logarithms of all n restitutions,
+    ln e +- t s / sqrt(n) with their standard deviation s, or 1.96 times the error of the mean from the uncertainty of the
+    readings if that is wider. Errors of times make consecutive
     ratios vary against each other, which the interval counts as scatter of the restitution; it is then too wide.
+
+    References
+    ----------
+    JCGM 100:2008, Guide to the expression of uncertainty in measurement, 4.2 and G.3.
     """
     sets = [impacts_of(each) for each in data]
     speed = np.concatenate([each.speed for each in sets])

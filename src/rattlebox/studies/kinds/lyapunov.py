@@ -103,7 +103,7 @@ class Lyapunov(Study):
     G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn (1980), Lyapunov characteristic exponents for smooth dynamical
     systems and for Hamiltonian systems, Meccanica 15, 9-20 and 21-30, doi:10.1007/BF02128236 and doi:10.1007/BF02128237.
     P. C. Müller (1995), Calculation of Lyapunov exponents for dynamic systems with discontinuities, Chaos, Solitons &
-    Fractals 5, 1671-1681, doi:10.1016/0960-0779(94)00170-U (jump conditions of the variational equation).
+    Fractals 5, 1671-1681 (jump conditions of the variational equation).
     S. Das, Y. Saiki, E. Sander, J. A. Yorke (2017), Quantitative quasiperiodicity, Nonlinearity 30, 4111-4140,
     doi:10.1088/1361-6544/aa84c2 (weight).
     E. Sander, J. D. Meiss (2024), doi:10.48550/arXiv.2409.08496.

@@ -70,11 +70,11 @@ class Sweep(Study):
     -------
     xarray.Dataset
         Over the axes: `status` and each measure with its unit; NaN for runs that did not finish or have the status
-        "energy_error" (except `energy_residual`). Averages over a motion that is driven to the end have a companion such
-        as `rms_interval`, half of the width of their 95 % interval; if the window is too short it is NaN, and
-        `attrs["too_short"]` names the measures. With particle dampers also `warnings`, the exceeded validity limits of
-        each run (`flag_meanings`); variants that cannot run, because particles do not fit or settle or the time step is
-        too long, have the status "refused", and `attrs["refused"]` is the reason for the first of them.
+        "energy_error" (except `energy_residual`). Averages over a motion that is driven to the end have a companion such as
+        `rms_interval`, half of the width of their 95 % interval (see `rattlebox.analysis.mean_interval`); if the window is
+        too short it is NaN, and `attrs["too_short"]` names the measures. With particle dampers also `warnings`, the exceeded
+        validity limits of each run (`flag_meanings`); variants that cannot run, because particles do not fit or settle or
+        the time step is too long, have the status "refused", and `attrs["refused"]` is the reason for the first of them.
 
     Raises
     ------
