@@ -22,12 +22,13 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.results.run import Run
 
-_ENERGY_BOUNDS = {
+ENERGY_BOUNDS = {
     "event_driven": "1e-8 or 10 000 tolerances",
     "newton": "1e-8",
     "two_step": "1 %",
     "dem": "1 %",
 }
+"""Bound of the energy residual by the kind of the method."""
 
 
 def readable_case(run: Run) -> Case | None:
@@ -57,7 +58,7 @@ def run_limits(run: Run) -> Iterator[Limit]:
     yield Limit(
         "energy balance",
         f"{residual:.1e}" if residual else "0",
-        "" if case is None else _ENERGY_BOUNDS[case.method.kind],
+        "" if case is None else ENERGY_BOUNDS[case.method.kind],
         "Energy supplied minus energy stored and lost, over the energy supplied. A run beyond the bound has the status "
         "energy_error, and its results must not be used.",
     )
@@ -73,10 +74,9 @@ def run_limits(run: Run) -> Iterator[Limit]:
             "one run of a chaotic motion",
             "1 run",
             "",
-            "Motion with impacts depends on the smallest change of the start. The intervals of this report are those "
-            "of time "
-            "averages in this run; other starts or packings scatter more: repeat with other seeds, or use rb.damping_curve "
-            "or replicas in a sweep.",
+            "Motion with impacts depends on the smallest change of the start. The intervals of this report are those of "
+            "time averages in this run; other starts or packings scatter more: repeat with other seeds, or use "
+            "rb.damping_curve or replicas in a sweep.",
         )
 
 

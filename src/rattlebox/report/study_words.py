@@ -14,7 +14,8 @@ from rattlebox._util.exceptions import RattleboxError
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.plots.labels import REPLICA, name_of, unit_of
-from rattlebox.report.limits import mode_limits
+from rattlebox.prepare.softening import MAX_CHANGE
+from rattlebox.report.limits import ENERGY_BOUNDS, mode_limits
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Limit, Table
 from rattlebox.results.case_words import counted, joined
@@ -281,9 +282,12 @@ def study_limits(study: xr.Dataset) -> Iterator[Limit]:
     except RattleboxError:
         case = None
     if "energy_residual" in study:
-        worst = float(np.nanmax(study.energy_residual.values))
+        residuals = study.energy_residual.values[np.isfinite(study.energy_residual.values)]
         yield Limit(
-            "energy balance", f"{worst:.1e}, largest of all runs", "see the page", "Runs beyond it have no results."
+            "energy balance",
+            f"{residuals.max():.1e}, largest of all runs" if residuals.size else MISSING,
+            "" if case is None else ENERGY_BOUNDS[case.method.kind],
+            "Energy supplied minus energy stored and lost, over the energy supplied. Runs beyond the bound have no results.",
         )
     if case is not None:
         yield from mode_limits(case)
@@ -292,7 +296,7 @@ def study_limits(study: xr.Dataset) -> Iterator[Limit]:
             yield Limit(
                 "softening of contacts",
                 ", ".join(str(each) if isinstance(each, str) else f"{each:g}" for each in soft),
-                "0.2 m V²",
+                f"a change of the loss of {MAX_CHANGE:g} m V²",
                 "Moduli of contacts are divided by this factor, which changes the loss of beds that rest under their "
                 "weight; rb.check_softening compares.",
             )
@@ -302,9 +306,8 @@ def study_limits(study: xr.Dataset) -> Iterator[Limit]:
             "steady motion",
             f"{cycles[1]} cycles after {cycles[0]}",
             "",
-            "Cycles that are skipped are the transient. A motion that is not steady after them counts as steady: "
-            "compare with "
-            "more cycles.",
+            "Cycles that are skipped are the transient. A motion that is not steady after them counts as steady: compare "
+            "with more cycles.",
         )
     if repeated := replica_dims(study):
         count = math.prod(study.sizes[dim] for dim in repeated)

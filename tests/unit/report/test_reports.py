@@ -15,6 +15,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.report.page import typeset
+from rattlebox.results.quantities import amount
 
 HOSTILE = '<script>alert("1")</script> & <b>'
 """A name that would run or change the page if it were not escaped."""
@@ -147,18 +148,18 @@ KINDS = {
     "comparison": "How do the variants “bare” and “ball” of an oscillator of 1 kg",
     "runs": "How do the variants “a” and “b”",
     "sweep": "How do the RMS displacement and impacts of an oscillator",
-    "frequency_response": "Which steady motion has an oscillator",
-    "bifurcation": "Which steady motions has an oscillator",
+    "frequency_response": "Which steady motion does an oscillator",
+    "bifurcation": "Which steady motions does an oscillator",
     "basins": "To which steady motion of a shaker",
     "lyapunov": "Is the motion of an oscillator",
     "loss_map": "How much energy does a steel ball",
-    "damping_curve": "Which damping ratio has mode 1 (50 Hz)",
-    "damping curves": "of an oscillator of 3 kg at 50 Hz with a and b",
-    "design": "Which damper gap give the smallest RMS displacement",
+    "damping_curve": "Which damping ratio does mode 1 (50 Hz)",
+    "damping curves": "of an oscillator of 3 kg at 50 Hz with a and b have at amplitudes",
+    "design": "Which damper gap gives the smallest RMS displacement",
     "sensitivity": "Which of damper.gap and load.amplitude cause the variation of rms",
     "drops": "Which restitution do 5 measured impacts show?",
     "calibration": "Which contact restitution and structure damping ratio of a steel ball",
-    "several": "Which damping ratio has mode 1 (50 Hz)",
+    "several": "Which damping ratio does mode 1 (50 Hz)",
 }
 
 
@@ -224,6 +225,35 @@ def test_numbers_of_the_answer_are_those_of_the_result(tmp_path: Path) -> None:
     assert (
         f"The peak displacement of mass is {1e3 * peak:.3f} mm" in Page(rb.write_report(run, tmp_path / "b.html")).text
     )
+
+
+def test_sweeps_are_compared_only_where_both_are_computed(tmp_path: Path) -> None:
+    """A report of an unfinished frequency response does not state that a sweep agrees with one that is not computed."""
+    response = result_of("frequency_response")
+    assert "downward sweep" in Page(rb.write_report(response, tmp_path / "a.html")).text
+    only_up = response.assign(amplitude=response.amplitude.where(response.direction == "up"))
+    answer = Page(rb.write_report(only_up, tmp_path / "b.html")).text
+    assert "agree within" not in answer and "differ by more" not in answer
+    first = response.assign(
+        amplitude=response.amplitude.where((response.direction == "up") | (response.frequency == 28))
+    )
+    answer = Page(rb.write_report(first, tmp_path / "c.html")).text
+    assert "where both are computed (1 of 3 points)" in answer
+
+
+def test_the_only_known_exponent_is_reported(tmp_path: Path) -> None:
+    """The exponent is that of the run that has one, wherever it is."""
+    study = result_of("lyapunov")
+    known = {name: study[name].where(study["load.amplitude"] == 10) for name in ("exponent", "standard_error")}
+    text = Page(rb.write_report(study.assign(known), tmp_path / "a.html")).text
+    assert f"The largest Lyapunov exponent is {amount(float(study.exponent[1]), '1/s')}" in text
+
+
+def test_the_mean_of_a_measure_has_its_unit(tmp_path: Path) -> None:
+    """The report of a sensitivity states the unit of the mean."""
+    study = result_of("sensitivity")
+    text = Page(rb.write_report(study, tmp_path / "a.html")).text
+    assert f"its mean is {amount(study['mean'].item(), 'm')}." in text
 
 
 def test_warnings_are_complete(tmp_path: Path) -> None:

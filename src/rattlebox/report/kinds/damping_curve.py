@@ -51,7 +51,7 @@ def _question(curves: Curves) -> str:
         system = "the structure"
     if len(named) > 1:
         system += f" with {joined(list(named))}"
-    return f"Which damping ratio has {what} of {system} at amplitudes from {ends}?"
+    return f"Which damping ratio does {what} of {system} have at amplitudes from {ends}?"
 
 
 def _answer(curves: Curves) -> Iterator[str]:
@@ -76,9 +76,8 @@ def _at(curve: xr.Dataset, k: int) -> str:
 
 def _pictures(curves: Curves) -> Iterator[Picture]:
     caption = (
-        "Damping ratio over the amplitude of vibration. Bands are 95 % intervals of the mean over the random starts; "
-        "the grey "
-        "line is the structure alone."
+        "Damping ratio over the amplitude of vibration. Bands are 95 % intervals of the mean over the random starts; the "
+        "grey line is the structure alone."
     )
     named = _named(curves)
     yield Picture(
@@ -113,9 +112,8 @@ def _limits(curves: Curves) -> Iterator[Limit]:
         "method",
         _WAYS.get(way, way),
         "",
-        "The damping ratio of a linear oscillator with the same loss. Methods differ where the response is not "
-        "nearly harmonic, "
-        "or where the amplitude falls through the range in a few cycles: compare two values of way.",
+        "The damping ratio of a linear oscillator with the same loss. Methods differ where the response is not nearly "
+        "harmonic, or where the amplitude falls through the range in a few cycles: compare two values of way.",
     )
     yield Limit(
         "statistical error",

@@ -53,7 +53,8 @@ def _question(study: xr.Dataset) -> str:
         for name in _goals(study)
     ]
     paths = joined([name_of(study[path]) for path in _parameters(study)])
-    return f"Which {paths} give the {joined(goals)} of {system_words(study)}?"
+    give = "gives" if len(_parameters(study)) == 1 else "give"
+    return f"Which {paths} {give} the {joined(goals)} of {system_words(study)}?"
 
 
 def _answer(study: xr.Dataset) -> Iterator[str]:

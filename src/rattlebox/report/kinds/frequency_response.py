@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 def _question(response: xr.Dataset) -> str:
     low, high = (words.axis_value(response.frequency, end) for end in response.frequency.values[[0, -1]])
-    ends = f"{low} to {high}"
-    return f"Which steady motion has {system_words(response)} between {ends}, at {_levels(response)}?"
+    return f"Which steady motion does {system_words(response)} have from {low} to {high}, at {_levels(response)}?"
 
 
 def _levels(response: xr.Dataset) -> str:
@@ -60,32 +59,40 @@ def _answer(response: xr.Dataset) -> Iterator[str]:
         k = np.unravel_index(int(np.nanargmax(flat)), lines.shape)
         peak, bare = float(lines.values[k]), float(response.bare_amplitude.sel(level=level).max())
         at = response.frequency.values[k[lines.dims.index("frequency")]]
-        times = f"{peak / bare:.2g} times the {amount(bare, 'm')} without damper" if bare > 0 else ""
+        times = f", {peak / bare:.2g} times the {amount(bare, 'm')} without damper" if bare > 0 else ""
         yield (
             f"At a level of {words.axis_value(response.level, level)} the largest amplitude is {amount(peak, 'm')} at "
-            f"{amount(float(at), 'Hz')}, {times}."
+            f"{amount(float(at), 'Hz')}{times}."
         )
     if {"up", "down"} <= set(map(str, response.direction.values)):
-        low, high = response.amplitude.min("direction"), response.amplitude.max("direction")
-        share = float((high - low > 0.02 * high).mean())
-        yield (
-            "The upward and the downward sweep agree within 2 % at all frequencies."
-            if share == 0
-            else f"Upward and downward sweep differ by more than 2 % at {amount(share, '%', 2)} of the points, where "
-            "two steady "
-            "motions coexist or the motion is irregular."
-        )
+        yield from _agreement(response.amplitude)
     irregular = float((response.period == 0).mean())
     if irregular > 0:
         where = amount(irregular, "%", 2)
         yield f"At {where} of the points the motion is not periodic; amplitudes there are first harmonics."
 
 
+def _agreement(amplitude: xr.DataArray) -> Iterator[str]:
+    """Yield a sentence about the difference of upward and downward sweep, where both have an amplitude."""
+    low, high = amplitude.min("direction", skipna=False), amplitude.max("direction", skipna=False)
+    compared = int(high.count())
+    if not compared:
+        return
+    where = "" if compared == high.size else f", where both are computed ({compared} of {high.size} points)"
+    share = int((high - low > 0.02 * high).sum()) / compared
+    if share == 0:
+        yield f"The upward and the downward sweep agree within 2 %{where or ' at all frequencies'}."
+    else:
+        yield (
+            f"The upward and the downward sweep differ by more than 2 % at {amount(share, '%', 2)} of the points{where}: "
+            "two steady motions coexist there, or the motion is irregular."
+        )
+
+
 def _pictures(response: xr.Dataset) -> Iterator[Picture]:
     yield Picture(
-        "Amplitude of the first harmonic and impacts per cycle over frequency. Solid lines: upward; dashed: "
-        "downward; shaded: "
-        "two coexisting motions; crosses: motion that is not periodic; grey: structure without dampers.",
+        "Amplitude of the first harmonic and impacts per cycle over frequency. Solid lines: upward; dashed: downward; "
+        "shaded: two coexisting motions; crosses: motion that is not periodic; grey: structure without dampers.",
         partial(plot_frequency_response, response, size="page"),
     )
 

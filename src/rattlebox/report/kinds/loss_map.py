@@ -51,9 +51,9 @@ def _limits(study: xr.Dataset) -> Iterator[Limit]:
         "first harmonic",
         "",
         "",
-        "The map holds for harmonic motion of the cavity. On a structure it applies where the damper changes the "
-        "motion little, "
-        "and nearly all of the motion is in the first harmonic; outside of its amplitudes and frequencies nothing is known.",
+        "The map holds for harmonic motion of the cavity. On a structure it applies where the damper changes the motion "
+        "little, and nearly all of the motion is in the first harmonic; outside of its amplitudes and frequencies nothing "
+        "is known.",
     )
     yield from words.study_limits(study)
 

@@ -30,7 +30,7 @@ def _question(response: xr.Dataset) -> str:
     places = [str(name) for name in response["at"].values]
     numbers = joined([str(number) for number in response.number.values.tolist()])
     where = f"at {joined(places)}" if len(places) < 4 else f"at one of {len(places)} places"
-    return f"Which peak amplitude and damping ratios has the structure with {numbers} dampers {where}?"
+    return f"Which peak amplitude and damping ratios does the structure have with {numbers} dampers {where}?"
 
 
 def _answer(response: xr.Dataset) -> Iterator[str]:
@@ -134,7 +134,6 @@ def _limits(response: xr.Dataset) -> Iterator[Limit]:
         "",
         "Largest relative change of the peak with half of the map: compute more of it.",
     )
-
     if "softening" in response.attrs:
         change = response.peak_softening_error.values
         worst = amount(float(np.nanmax(change)), "%", 2) if np.isfinite(change).any() else "unknown"

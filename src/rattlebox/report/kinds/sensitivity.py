@@ -15,6 +15,7 @@ from rattlebox.report.kinds.sweep import system_words
 from rattlebox.report.parts import Kind, Limit, Picture, Table
 from rattlebox.results.case_words import joined
 from rattlebox.results.quantities import amount
+from rattlebox.studies.measures import MEASURES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,7 +25,7 @@ def _question(study: xr.Dataset) -> str:
     measures = joined([str(name).replace("_", " ") for name in study.measure.values])
     return (
         f"Which of {joined([str(path) for path in study.parameter.values])} cause the variation of {measures} of "
-        + (f"{system_words(study)}?")
+        f"{system_words(study)}?"
     )
 
 
@@ -38,10 +39,15 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
             for k in order[:3]
         ]
         yield (
-            f"Of the variance of {str(name).replace('_', ' ')}, the total shares are {joined(parts)} ({level} "
-            "intervals); its "
-            f"mean is {amount(float(row['mean']))}."
+            f"Of the variance of {str(name).replace('_', ' ')}, the total shares are {joined(parts)} ({level} intervals); "
+            f"its mean is {amount(float(row['mean']), _unit(str(name)))}."
         )
+
+
+def _unit(name: str) -> str:
+    """Return the unit of a measure, "" for pure numbers and for functions of the user."""
+    unit = MEASURES[name].units if name in MEASURES else ""
+    return "" if unit == "1" else unit
 
 
 def _tables(study: xr.Dataset) -> Iterator[Table]:

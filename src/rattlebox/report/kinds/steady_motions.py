@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def _bifurcation_question(study: xr.Dataset) -> str:
-    return f"Which steady motions has {system_words(study)} over {words.axes_words(study.drop_dims('cycle'))}?"
+    return f"Which steady motions does {system_words(study)} have over {words.axes_words(study.drop_dims('cycle'))}?"
 
 
 def _bifurcation_answer(study: xr.Dataset) -> Iterator[str]:
@@ -89,8 +89,8 @@ def _lyapunov_answer(study: xr.Dataset) -> Iterator[str]:
     known = np.isfinite(value) | np.isneginf(value)
     if known.sum() == 1:
         yield (
-            f"The largest Lyapunov exponent is {amount(float(value[0]), '1/s')}, with a standard error of "
-            f"{amount(float(error[0]), '1/s', 2)}."
+            f"The largest Lyapunov exponent is {amount(float(value[known][0]), '1/s')}, with a standard error of "
+            f"{amount(float(error[known][0]), '1/s', 2)}."
         )
         return
     chaotic = known & (value > 2 * np.nan_to_num(error))
