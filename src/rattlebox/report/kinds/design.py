@@ -72,7 +72,8 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
             f"of {_value(study, best, goals[0])}."
         )
     else:
-        yield f"{counted(study.front.size, 'design')} of {counted(usable, 'feasible trial')} are Pareto-optimal."
+        optimal = counted(study.front.size, "Pareto-optimal design")
+        yield f"There {'is' if study.front.size == 1 else 'are'} {optimal} among {counted(usable, 'feasible trial')}."
         for name in goals:
             values = study[name].sel(trial=study.front.values).values
             pick = values.argmax() if study[name].attrs["goal"] == "max" else values.argmin()

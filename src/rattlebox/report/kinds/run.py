@@ -105,10 +105,10 @@ def result_sentences(values: Mapping[str, Value], leave_out: Sequence[str] = ())
         half = numbers.get(f"steady_rms_displacement_error[{point}]", math.nan)
         yield f"The peak displacement of {point} is {amount(peaks[name], 'm')}."
         if steady is not None:
-            unknown = "" if math.isfinite(half) else "; the run is too short for an interval"
+            interval = "95 % interval" if math.isfinite(half) else "the run is too short for a 95 % interval"
             yield (
                 f"In the second half of the run its RMS displacement is {with_interval(steady, half, 'm')}"
-                f" (95 % interval{unknown})."
+                f" ({interval})."
             )
         else:
             yield f"Its RMS displacement over the run is {amount(numbers[f'rms_displacement[{point}]'], 'm')}."
@@ -116,15 +116,16 @@ def result_sentences(values: Mapping[str, Value], leave_out: Sequence[str] = ())
         ratio, at = numbers["equivalent_damping_ratio"], numbers["damping_amplitude"]
         yield f"The free decay has a damping ratio of {amount(ratio, '%', 3)} at an amplitude of {amount(at, 'm')}."
     supplied = numbers.get("supplied_energy", 0.0)
+    lost = [channel for channel in _LOSSES if numbers.get(f"share_{channel}", 0.0) > _NEGLIGIBLE]
+    verbs = ["is lost "] + [""] * len(lost)
     parts = [
-        f"{amount(numbers[f'share_{channel}'], '%', 3)} {words}"
-        for channel, words in _LOSSES.items()
-        if numbers.get(f"share_{channel}", 0.0) > _NEGLIGIBLE
+        f"{amount(numbers[f'share_{channel}'], '%', 3)} {verb}{_LOSSES[channel]}"
+        for channel, verb in zip(lost, verbs, strict=False)
     ]
     if supplied > 0 and parts:
         left = numbers.get("share_motion", 0.0)
         rest = f"; {amount(left, '%', 3)} is left in the motion" if left > _NEGLIGIBLE else ""
-        yield f"Of the {amount(supplied, 'J')} supplied, {joined(parts)} is lost{rest}."
+        yield f"Of the {amount(supplied, 'J')} supplied, {joined(parts)}{rest}."
     if "steady_loss_power" in numbers:
         half = numbers.get("steady_loss_power_error", math.nan)
         yield f"The mean power lost in the second half is {with_interval(numbers['steady_loss_power'], half, 'W')}."
