@@ -3,7 +3,7 @@
 
 For users who must know which tolerances matter: sensitivity of an impact damper to four parameters.
 
-Of clearance, restitution, load and initial position, the restitution has the largest influence on the share of the energy
+Among clearance, restitution, load and initial position, the restitution has the largest influence on the share of the energy
 that the impacts dissipate.
 
 :doc:`/how-to/sensitivity` explains it.

@@ -1,6 +1,6 @@
 """For those who want to compare another program: the computed cases of the validation page as netCDF files.
 
-`python write_data.py FOLDER` runs the scripts beside it and writes their numbers, with units and case files.
+`python write_data.py FOLDER` runs the scripts next to it and writes their numbers, with units and case files.
 """
 
 import sys

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
 
+from .labels import log_ticks
 from .response import level_handles
 from .selection import select
 from .style import (
@@ -96,7 +96,7 @@ def _draw_response(axes: Axes, response: xarray.Dataset, per_level: bool) -> Non
         rough = np.where(one.first_harmonic_share.values < 0.95, values, np.nan)
         axes.plot(frequency, rough, "x", ms=pen(2.5), mew=pen(0.5), color=colour)
     axes.set_yscale("log")
-    axes.yaxis.set_major_formatter("{x:g}")
+    log_ticks(axes.yaxis)
     axes.set_xlim(frequency[0], frequency[-1])
     label(axes, "x", "Frequency", hertz.unit)
     label(axes, "y", "Amplitude" + " over level" * per_level, prefixed)
@@ -125,9 +125,7 @@ def _draw_damping(axes: Axes, response: xarray.Dataset) -> None:
             half = response.damping_ratio_interval.sel(mode=mode)
             axes.fill_between(amplitude, 100 * (ratio - half), 100 * (ratio + half), color=FAINT, lw=0, zorder=0)
     axes.set_xscale("log")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1,)))
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    log_ticks(axes.xaxis)
     axes.set_ylim(bottom=0)
     label(axes, "x", "Amplitude of the damper", unit)
     label(axes, "y", "Damping ratio", "%")

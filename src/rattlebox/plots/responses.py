@@ -145,6 +145,9 @@ def _drifts(arrays: RunArrays, names: list[str]) -> _Panel:
     for name in names:
         pair = next((pair for pair in permutations(motion, 2) if name == " - ".join(pair)), None)
         if pair is None:
-            raise ValueError(f"of = {name!r} is not a drift between two of {', '.join(motion)}")
+            raise ValueError(
+                f"of = {name!r} is not a drift between two points of the run\n  try: two of {', '.join(motion)}, as in "
+                f"'{next(iter(motion))} - base'"
+            )
         columns.append(motion[pair[0]] - motion[pair[1]])
     return _Panel(np.stack(columns, axis=1), names, "Drift", "m")
