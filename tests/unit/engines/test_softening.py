@@ -11,7 +11,14 @@ import pytest
 import rattlebox as rb
 from rattlebox.core import _core
 from rattlebox.prepare.particles import pack_particles, prepare
-from rattlebox.prepare.softening import AUTO_CHANGE, MAX_CHANGE, CavityMotion, bed_resonance, loss_change
+from rattlebox.prepare.softening import (
+    AUTO_CHANGE,
+    MAX_CHANGE,
+    CavityMotion,
+    bed_resonance,
+    cavity_motion,
+    loss_change,
+)
 from rattlebox.studies.particle_work import WARNINGS
 
 
@@ -227,3 +234,11 @@ def test_the_estimate_covers_computed_changes() -> None:
     for damper, frequency, level, softening, change in computed:
         motion = CavityMotion(frequency, frequency, 9.81 * level, is_prescribed=True)
         assert change < 1.05 * loss_change(damper, motion, level, softening)
+
+
+@pytest.mark.parametrize("level", [1e-3, 0.5, 30.0])
+def test_motion_of_a_shaken_cavity_at_any_level(level: float) -> None:
+    """The estimate for a cavity on a shaker uses its frequency and acceleration, also far below 1 m/s^2."""
+    shaker = rb.Shaker(motion=rb.Harmonic(amplitude=f"{level} m/s^2", frequency=70.0, direction="z"))
+    motion = cavity_motion(rb.Case(structure=shaker, duration="1 s"), np.zeros((0, 3)), np.zeros((2, 0, 2)))
+    assert motion == CavityMotion(70.0, 70.0, pytest.approx(level), is_prescribed=True)

@@ -425,3 +425,12 @@ def test_decays_that_end_too_early_are_refused() -> None:
         rb.CaseError, match=r"26 of 26 samples have no simulated value.*0.4 mm.* 6 are needed\n  try: a longer duration"
     ):
         rb.calibrate(rb.RingDown(**RING), case(duration="0.1 s"), RANGES, runs=26, progress=False)
+
+
+def test_logarithmic_ranges() -> None:
+    """The middle of a logarithmic range is the geometric mean of its ends, and points follow from values again."""
+    paths, log = ["damper.contact.restitution", "damper.friction"], np.array([False, True])
+    space = Space(paths, ["1", "1"], np.array([0.2, 0.01]), np.array([0.8, 1.0]), log, {})
+    points = np.array([[0.0, 0.0], [0.5, 0.5], [1.0, 1.0]])
+    np.testing.assert_allclose(space.values(points), [[0.2, 0.01], [0.5, 0.1], [0.8, 1.0]], rtol=1e-14)
+    np.testing.assert_allclose(space.points(space.values(points)), points, atol=1e-14)

@@ -10,6 +10,7 @@ import pytest
 import xarray
 
 import rattlebox as rb
+from rattlebox.studies.response_work import steady_motion
 from rattlebox.studies.runner import Stopped
 
 STRUCTURE = rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping="20 N s/m")
@@ -220,3 +221,15 @@ def test_bad_input_is_refused(changes: dict[str, Any], options: dict[str, Any], 
     """Bad arguments are refused with advice, before anything runs."""
     with pytest.raises(rb.CaseError, match=message):
         rb.frequency_response(box(**changes), **{"frequencies": [30.0, 31.0], **QUICK, **options})
+
+
+def test_intervals_scale_with_the_motion() -> None:
+    """A motion of twice the size has intervals of amplitude of twice the size, and the same intervals of phase."""
+    samples, cycles = 16, 60
+    noise = np.random.default_rng(1).standard_normal(samples * cycles + 1)
+    motion = 1e-3 * (np.sin(2 * np.pi * np.arange(noise.size) / samples) + 0.1 * noise)
+    one, two = (steady_motion(size * motion, np.zeros((noise.size, 0)), 0.0, samples, 1e-3) for size in (1.0, 2.0))
+    assert one["amplitude"] == pytest.approx(1e-3, rel=0.05)
+    assert 0 < one["amplitude_interval"] < 0.05 * one["amplitude"]
+    assert two["amplitude_interval"] == pytest.approx(2 * one["amplitude_interval"], rel=1e-12)
+    assert two["phase_interval"] == pytest.approx(one["phase_interval"], rel=1e-12)

@@ -355,12 +355,15 @@ def test_runs_that_failed_or_exceeded_a_limit() -> None:
     names = found.flags.attrs["flag_meanings"].split()
     assert ((found.flags.values[:, 0] & 1 << names.index("not_found") > 0) == inside).all()
     limits = xarray.zeros_like(status).assign_attrs(flag_meanings="few_steps deep_overlap soft_bed enduring_contacts")
-    limits[3] = 4
-    with pytest.warns(UserWarning, match=r"a validity limit \(soft_bed\).* a smaller softening"):
-        warned = rb.response_from_map(OSCILLATOR, loss_map.assign(warnings=limits), level=levels, frequencies=[20.0])
-    bit = 1 << warned.flags.attrs["flag_meanings"].split().index("map_warning")
-    near = (size >= amplitudes[2]) & (size <= amplitudes[4])
-    assert ((warned.flags.values[0, 0, :, 0] & bit > 0) == near).all()
+    for value, name in ((4, "soft_bed"), (1, "few_steps")):
+        limits[3] = value
+        with pytest.warns(UserWarning, match=rf"a validity limit \({name}\)"):
+            warned = rb.response_from_map(
+                OSCILLATOR, loss_map.assign(warnings=limits), level=levels, frequencies=[20.0]
+            )
+        bit = 1 << warned.flags.attrs["flag_meanings"].split().index("map_warning")
+        near = (size >= amplitudes[2]) & (size <= amplitudes[4])
+        assert ((warned.flags.values[0, 0, :, 0] & bit > 0) == near).all()
 
 
 def with_intervals(mass: complex, half: tuple[float, float]) -> xarray.Dataset:

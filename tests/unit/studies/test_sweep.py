@@ -265,6 +265,9 @@ def test_dimensions_have_coordinates() -> None:
     assert all({"units", "long_name"} <= set(maps[dim].attrs) for dim in maps.dims)
     both = rb.sweep(case, {"duration": [1.0, 2.0]}, [], samples=3, motion=True)
     assert both.instant.values.tolist() == [0.0, 0.5, 1.0] and both.instant.units == "1"
+    driven = case.replaced({"loads": [rb.Harmonic(amplitude="10 N", frequency="10 Hz")]})
+    cycles = rb.sweep(driven, {"damper.gap": [1e-3]}, [], cycles=(3, 2), samples=5, motion=True)
+    assert cycles.instant.values.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0] and cycles.instant.units == "1"
 
 
 def test_motions_of_different_numbers_of_balls_are_refused() -> None:
