@@ -145,7 +145,7 @@ MESSAGES = {
     ),
     "material with a name of the library": (
         GOOD + "[materials.steel]\ndensity = 1\nyoung = 1\npoisson = 0\n",
-        "materials.steel\n  a material of this name is in the library\n  try: another name",
+        "materials.steel\n  the library already has a material of this name\n  try: another name",
     ),
     "restitution above one": (
         changed("0.9", "1.2"),

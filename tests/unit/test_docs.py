@@ -5,14 +5,25 @@ import inspect
 import io
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 import rattlebox as rb
 from rattlebox.model.base import Part
+from rattlebox.model.contacts import ContactKind
+from rattlebox.model.friction import FrictionKind
+from rattlebox.model.methods import AnyMethod
+from rattlebox.model.restitutions import RestitutionKind
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
+LAWS = [
+    law
+    for kinds in (ContactKind, RestitutionKind, FrictionKind, rb.Rolling | None, get_args(AnyMethod)[0])
+    for law in get_args(kinds)
+    if law not in (rb.Tabulated, type(None))  # a table of the user has no source
+]
 # Tests of the studies and of the engines hold for fewer cycles what these pages compute for 3 s and more.
 SLOW_PAGES = (
     "how-to/design",
@@ -132,6 +143,13 @@ def test_docstrings_of_public_functions_are_complete():
         if re.search(r"^ +raise \w", inspect.getsource(function), re.MULTILINE) and not section(text, "Raises"):
             lacks.append(f"{name}: Raises")
     assert len(functions) > 100 and not lacks
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
+def test_laws_and_methods_state_equation_and_source(law):
+    """Each law and method that a case can name has an equation in its notes, and names the DOI or ISBN of its source."""
+    assert re.search(r"\S [=+<] \S", section(law.__doc__, "Notes"))
+    assert re.search(r"doi:10\.\d{4,}/\S|ISBN \d", section(law.__doc__, "References"))
 
 
 def test_every_field_of_a_case_is_described():

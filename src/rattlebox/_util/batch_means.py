@@ -1,4 +1,4 @@
-"""Statistical error of means over steady or chaotic motion."""
+"""Statistical error of means over steady or chaotic motions."""
 
 from __future__ import annotations
 
@@ -65,7 +65,10 @@ def mean_interval(values: ArrayLike) -> Interval:
 
     References
     ----------
-    G. S. Fishman (1978), Grouping observations in digital simulation, Management Science 24, 510-521.
+    G. S. Fishman (1978), Grouping observations in digital simulation, Management Science 24(5), 510-521,
+    doi:10.1287/mnsc.24.5.510.
+
+    H. B. Mann (1945), Nonparametric tests against trend, Econometrica 13, 245-259, doi:10.2307/1907187.
 
     Examples
     --------

@@ -15,7 +15,7 @@ class RattleboxError(Exception):
     Parameters
     ----------
     complaint
-        Error, and what is allowed.
+        The error, and the values that are allowed.
     suggestion
         Advice; printed on a separate line.
     place
@@ -58,7 +58,7 @@ class MissingDependency(RattleboxError, ImportError):
 
 
 def named(place: Sequence[str | int]) -> str:
-    """Return the path of names of fields and numbers in lists, as "pairs[0].friction"."""
+    """Return names of fields and indices as a path, such as "pairs[0].friction"."""
     return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")
 
 

@@ -69,7 +69,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]], numbers: bool = 
     rows
         Texts of each row.
     numbers
-        Whether all columns but the first hold numbers, which are aligned to the right.
+        Whether all columns but the first contain numbers, which are aligned to the right.
     """
 
     def line(texts: Sequence[str], tag: str) -> str:

@@ -1,4 +1,4 @@
-"""Ctrl-C that is not lost, and deadlines."""
+"""Reliable handling of Ctrl-C, and deadlines."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _deadline = _Deadline()
 
 @contextmanager
 def deadline(end: float) -> Iterator[None]:
-    """Let `raise_if_pressed` raise in this block and this thread from a time on.
+    """Set a time after which `raise_if_pressed` raises in this block and this thread.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def deadline(end: float) -> Iterator[None]:
 
 @contextmanager
 def remember_ctrl_c() -> Iterator[None]:
-    """Remember in this block that Ctrl-C was pressed, for `raise_if_pressed`.
+    """Store in this block whether Ctrl-C was pressed, for `raise_if_pressed`.
 
     Python discards a KeyboardInterrupt that is raised inside a callback of the garbage collector, which happens in long runs
     with many short-lived threads. Does nothing in other threads, or where another program handles Ctrl-C.

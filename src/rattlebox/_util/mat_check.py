@@ -1,6 +1,6 @@
-"""Check of MAT files before SciPy reads them: its reader trusts sizes and indices in the file, and crashes on wrong ones.
+"""Check of MAT files before SciPy reads them: its reader does not check sizes and indices, and crashes on wrong ones.
 
-Layout: "MAT-File Format" of MathWorks, level 5 (versions 5 to 7) and level 4.
+The layout is that of "MAT-File Format" by MathWorks: level 5 (versions 5 to 7) and level 4.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def check_mat(content: bytes) -> None:
     Raises
     ------
     ValueError
-        If a size, a type or an index in it does not fit the rest.
+        If a size, a type or an index contradicts the rest of the file.
     NotImplementedError
         If it is of version 7.3, which is HDF5.
     """
@@ -71,10 +71,10 @@ def check_mat(content: bytes) -> None:
                 raise ValueError("a compressed variable is cut off")
             kind, inside = struct.unpack_from(f"{order}II", unpacked)
             if inside != len(unpacked) - 8:
-                raise ValueError("a compressed variable has another size than it says")
+                raise ValueError("a compressed variable has another size than it states")
             element = unpacked[8:]
         if kind != _MATRIX:
-            raise ValueError(f"it holds an element of the unknown type {kind}")
+            raise ValueError(f"it contains an element of the unknown type {kind}")
         _Variable(element, order).check(0)
         place += size
 
@@ -105,32 +105,32 @@ class _Variable:
     def _text(self) -> bytes:
         kind, text = self._element()
         if kind not in (_INT8, _UTF8):
-            raise ValueError("a name is no text")
+            raise ValueError("a name is not text")
         return text
 
     def _integers(self) -> np.ndarray[tuple[int], np.dtype[np.int32]]:
         kind, content = self._element()
         if kind not in (_INT32, _UINT32) or len(content) % 4:
-            raise ValueError("an index is no integer")
+            raise ValueError("an index is not an integer")
         return np.frombuffer(content, f"{self._order}i4")
 
     def _numbers(self, count: int, sizes: dict[int, int]) -> None:
         kind, content = self._element()
         if kind not in sizes or len(content) != count * sizes[kind]:
-            raise ValueError("an array has another size than it says")
+            raise ValueError("an array has another size than it states")
 
     def _nested(self, count: int, depth: int) -> None:
         for _ in range(count):
             kind, content = self._element()
             if kind != _MATRIX:
-                raise ValueError("a part of a variable is no variable")
+                raise ValueError("a part of a variable is not a variable")
             if content:
                 _Variable(content, self._order).check(depth + 1)
 
     def check(self, depth: int) -> None:
-        """Raise if the variable does not fit together."""
+        """Raise if the parts of the variable contradict each other."""
         if depth > _DEPTH:
-            raise ValueError("variables lie in each other too deeply")
+            raise ValueError("variables are nested too deeply")
         kind, flags = self._element()
         if kind != _UINT32 or len(flags) != 8:
             raise ValueError("a variable has no flags")
@@ -147,7 +147,7 @@ class _Variable:
             self._text()
             self._values(sort, shape.tolist(), is_complex, depth)
         if self._place < len(self._content):
-            raise ValueError("a variable is longer than it says")
+            raise ValueError("a variable is longer than it states")
 
     def _values(self, sort: int, shape: list[int], is_complex: bool, depth: int) -> None:
         count = math.prod(shape)
@@ -155,13 +155,13 @@ class _Variable:
             self._sparse(shape, is_complex)
         elif sort == _CHAR:
             if is_complex:
-                raise ValueError("a text is no complex number")
+                raise ValueError("a text is complex")
             kind, content = self._element()
             # In UTF-8 a character takes one to four bytes.
             most = 4 if kind == _UTF8 else 1
             size = _TEXT_SIZES.get(kind, 0)
             if not size or not count * size <= len(content) <= most * count * size:
-                raise ValueError("a text has another length than it says")
+                raise ValueError("a text has another length than it states")
         elif sort == _CELL:
             self._nested(count, depth)
         elif sort in (_STRUCT, _OBJECT):
@@ -184,7 +184,7 @@ class _Variable:
 
     def _sparse(self, shape: list[int], is_complex: bool) -> None:
         if len(shape) != 2:
-            raise ValueError("a sparse matrix has other than two dimensions")
+            raise ValueError("a sparse matrix does not have two dimensions")
         if 8 * math.prod(shape) > LARGEST:
             raise ValueError(f"a sparse matrix of {shape[0]} x {shape[1]} is too large")
         rows, columns = self._integers(), self._integers()
@@ -227,9 +227,9 @@ def _check_level_4(content: bytes) -> None:
 
 
 def _check_sparse_4(content: bytes, rows: int, columns: int, kind: str) -> None:
-    """Rows of row, column and value; the last one holds the shape."""
+    """Raise if a sparse matrix, rows of row, column and value, is damaged; its last row contains the shape."""
     if columns not in (3, 4) or rows < 1:
-        raise ValueError("a sparse matrix has other than three columns")
+        raise ValueError("a sparse matrix does not have three columns")
     table = np.frombuffer(content, kind).astype(float)[: rows * columns].reshape(columns, rows)
     shape, places = table[:2, -1], table[:2, :-1]
     if not (np.isfinite(table[:2]).all() and (shape >= 0).all() and (shape < 2**31).all()):

@@ -1,7 +1,7 @@
 """Output folders with a marker that lists the files of Rattlebox; other files are never changed or removed.
 
-The marker is a small JSON file in the folder. It holds the kind of the folder, the version that created it, an identifier,
-and the name and digest of each file of the fixed part. A file that is not in this list is foreign.
+The marker is a small JSON file in the folder. It contains the kind of the folder, the version that created it, an
+identifier, and the name and digest of each file of the fixed part. A file that is not in this list is foreign.
 """
 
 from __future__ import annotations
@@ -213,7 +213,7 @@ def remove(folder: Path, names: Iterable[str]) -> None:
                 break
             try:
                 parent.rmdir()
-            except OSError:  # it holds other files, or does not exist
+            except OSError:  # it contains other files, or does not exist
                 break
     sync(folder)
 

@@ -10,7 +10,8 @@ from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
 Progress = bool | Callable[[int, int], object]
-"""True for a bar, False for none, or a function of the numbers done and of all; the call stops if it returns False."""
+"""True for a bar, False for none, or a function of the number done and the total number; False as its result stops the
+call."""
 
 _DELAY = 2.0  # s
 _REDRAWN = 0.1  # s
@@ -18,7 +19,7 @@ _in_use = threading.Lock()
 
 
 class Report:
-    """Takes the progress of a call, and passes it on to a function or to a bar that appears after a delay.
+    """Progress of a call, passed on to a function or to a bar that appears after a delay.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ class Report:
             self._timer.start()
 
     def __call__(self, done: int, total: int) -> object:
-        """Report the number done, and of all. False asks to stop."""
+        """Report the number done and the total number; the result False is a request to stop."""
         if self._function is not None:
             return self._function(done, total)
         self._state = done, total
@@ -56,7 +57,7 @@ class Report:
         return None
 
     def advance(self, done: int, total: int) -> None:
-        """Report the number done, and of all; raise KeyboardInterrupt if the function that takes it returns False."""
+        """Report the number done and the total number; raise KeyboardInterrupt if the progress function returns False."""
         if self(done, total) is False:
             raise KeyboardInterrupt
 
@@ -77,7 +78,7 @@ class Report:
 
 @contextmanager
 def progress_bar(progress: Progress, what: str, *, delay: float = _DELAY) -> Iterator[Report]:
-    """Return a function that takes the number done and of all.
+    """Yield a function to which the number done and the total number are reported.
 
     A bar is drawn in notebooks, and on the standard error if that is a terminal; inside another bar none is drawn.
 

@@ -9,7 +9,7 @@ _NOT_IN_NAMES, _NOT_PRINTED = re.compile(f"[{_CONTROLS}\t\n]"), re.compile(f"[{_
 
 
 def has_controls(name: str) -> bool:
-    """Return whether a name holds line breaks or other control characters.
+    """Return whether a name contains line breaks or other control characters.
 
     Parameters
     ----------

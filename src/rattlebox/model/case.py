@@ -1,4 +1,4 @@
-"""The case: complete description of a run, as an object and as a file."""
+"""Cases: complete descriptions of a run, as objects and as files."""
 
 from __future__ import annotations
 
@@ -156,17 +156,19 @@ class Case(Part):
         modes = self.modes
         for numbers in (modes.decay, modes.stiffness, modes.q0, modes.p0, *modes.shapes.values()):
             if not np.isfinite(numbers).all():
-                raise Hint("its modes are not finite", "masses and stiffnesses of usual sizes", ["structure"])
+                raise Hint("the modes are not finite", "masses and stiffnesses of usual sizes", ["structure"])
         for field, signals in (("loads", self.loads), ("base", self.base), ("motion", self.shaker_motion)):
             for index, signal in enumerate(signals):
                 with at(*(("structure",) if field == "motion" else ()), field, index):
                     if isinstance(signal, Sampled):
                         self._check_record(signal)
                     if field != "loads" and signal.point is not None:
-                        raise Hint("the base moves as a whole and has no point", "leave point out", ["point"])
+                        raise Hint("a motion of the base acts on the whole base, not at a point", "no point", ["point"])
         if self.loads and not modes.decay.size:
             raise Hint(
-                f"a load cannot move a {self.structure.kind} structure", "motion of a shaker, or base", ["loads", 0]
+                f"a load cannot move a {self.structure.kind} structure",
+                "motion of a shaker, or base",
+                ["loads", 0],
             )
         for index, signal in enumerate(self.loads):
             with at("loads", index, "point"):
@@ -176,12 +178,14 @@ class Case(Part):
         if self.base and modes.participation is None:
             if isinstance(self.structure, Matrices):
                 raise Hint(
-                    "base motion needs the motion of each degree of freedom with the base along x, y and z",
+                    "a base motion needs the influence, the motion of each degree of freedom with the base along x, y and z",
                     "three rows of numbers, 1 for a degree of freedom that moves with the base",
                     ["structure", "influence"],
                 )
             raise Hint(
-                "base motion needs the participation of each mode", "one number each", ["structure", "participation"]
+                "a base motion needs the participation of each mode",
+                "one number for each mode, phi^T M r in kg^1/2",
+                ["structure", "participation"],
             )
         if self.base and isinstance(self.structure, Shaker):
             raise Hint("a shaker is its own base", "add the signal to its motion", ["base"])
@@ -193,7 +197,9 @@ class Case(Part):
             self._check_snapshots()
             return
         if self.output.snapshots is not None:
-            raise Hint("snapshots need a particle damper, and the case has none", "rate", ["output", "snapshots"])
+            raise Hint(
+                "snapshots need a particle damper, and the case has none", "rate or times", ["output", "snapshots"]
+            )
         if isinstance(self.method, Dem):
             raise Hint(
                 "dem computes particle dampers, and the case has none"
@@ -207,7 +213,7 @@ class Case(Part):
                 if signal.direction != signals[0].direction:
                     place = (*(("structure",) if field == "motion" else ()), field, index, "direction")
                     raise Hint(
-                        "without particle dampers all motion is along one line",
+                        "without particle dampers all motions are along one line",
                         "the same direction for all, or none",
                         place,
                     )
@@ -397,7 +403,7 @@ class Case(Part):
         except OSError as error:
             raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
         except UnicodeDecodeError:
-            raise CaseError(f"{file}: not text in UTF-8\n  try: a TOML file, saved as UTF-8") from None
+            raise CaseError(f"{file}: not text in UTF-8", "a TOML file, saved as UTF-8") from None
         return cls.from_toml(content, source=str(file), folder=file.parent)
 
     @classmethod
@@ -465,7 +471,7 @@ class Case(Part):
         Parameters
         ----------
         most
-            Largest number of characters; the rest is left out.
+            Largest number of characters; the rest is omitted.
 
         Returns
         -------
@@ -499,17 +505,17 @@ class Case(Part):
         return replaced(self, values)
 
     def to_toml(self) -> str:
-        """Return the text of a case file from which an equal case is read; it has the full paths of other files.
+        """Return the text of a case file of this case, with the full paths of other files.
 
         Returns
         -------
         str
-            Text in TOML.
+            Text in TOML; `Case.from_toml` reads an equal case from it.
         """
         return self._toml(str)
 
     def to_file(self, path: str | os.PathLike[str]) -> None:
-        """Write a case file from which an equal case is read; it has the paths of other files relative to its folder.
+        """Write a case file of this case, with the paths of other files relative to its folder.
 
         Parameters
         ----------
@@ -569,9 +575,9 @@ def case_and_materials(
         If a value is not allowed.
     """
     if not given:
-        raise CaseError(f"{source}: the file is empty\n  try: rattlebox demo, which writes two case files")
+        raise CaseError(f"{source}: the file is empty", "rattlebox demo, which writes two case files")
     if "case" in given and "structure" not in given:
-        raise CaseError(f"{source}: this is a study of a case, not a case\n  try: rattlebox sweep {source}")
+        raise CaseError(f"{source}: this is a study of a case, not a case", f"rattlebox sweep {source}")
     try:
         library = _Library.model_validate({"materials": given.get("materials", {})})
         values = {key: value for key, value in given.items() if key != "materials"}
@@ -632,7 +638,7 @@ class _Library(Part):
             return own
         for name in own:
             if name in materials():
-                raise Hint("a material of this name is in the library", "another name", [name])
+                raise Hint("the library already has a material of this name", "another name", [name])
         return {name: {"name": name, **item} if isinstance(item, dict) else item for name, item in own.items()}
 
 

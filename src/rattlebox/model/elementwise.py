@@ -1,7 +1,7 @@
 """Functions of numbers or arrays, with bitwise equal results.
 
-Parts of a case hold numbers. In a batch (see rattlebox.prepare.pack) some of them are arrays that broadcast against each
-other, so that the same formulas compute one case and a million; a `float` may then be an array. Vectors have their
+Parts of a case contain numbers. In a batch (see rattlebox.prepare.pack) some of them are arrays that broadcast against each
+other, so that the same formulas compute one case or a million; a `float` may then be an array. Vectors have their
 components along the first axis.
 """
 

@@ -1,4 +1,4 @@
-"""Messages about invalid input: place, value, what is allowed, what to try."""
+"""Messages about invalid input, with place, value, allowed values and advice."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def translate(
     vocabulary
         Known fields.
     given
-        Input as it was written; the message has its names and values.
+        Input as written by the user, whose names and values the message has.
 
     Returns
     -------

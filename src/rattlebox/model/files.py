@@ -35,7 +35,7 @@ def absolute(path: Any) -> str:
         If the value is not a path.
     """
     if not isinstance(path, (str, os.PathLike)):
-        raise Hint("the path of a file must be text", 'file = "push.csv"')
+        raise Hint("a path must be text", 'file = "push.csv"')
     return os.path.abspath(os.fspath(path))
 
 

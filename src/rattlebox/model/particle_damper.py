@@ -176,7 +176,7 @@ class ContactTable:
 
 
 def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:
-    """Raise if the words differ, which are given with their places: these laws cannot be combined in a damper."""
+    """Raise if the given words, each with its place, differ: such laws cannot be combined in a damper."""
     for word, place in given:
         if word != given[0][0]:
             raise Hint(
@@ -271,7 +271,7 @@ class ParticleDamper(Part):
         return self
 
     def _check_group(self) -> None:
-        """Raise if identical dampers have no place, or start alike."""
+        """Raise if point and points are both given, or if identical dampers have the same packing."""
         if self.point is not None and self.points:
             raise Hint("point and points exclude each other", "one of them", ["points"])
         each = Counter(self.points or (self.point,))
@@ -293,20 +293,26 @@ class ParticleDamper(Part):
         for index, species in enumerate(self.particles):
             place = self._place(index)
             if labels.index(species.label) != index or species.label == WALL:
-                raise Hint(f"the name {species.label!r} is taken", "another name", [*place, "name"])
+                raise Hint(
+                    f"the name {species.label!r} is that of another species, or of the walls",
+                    "another name",
+                    [*place, "name"],
+                )
             if not species.has_amount and (not isinstance(self.packing, Positions) or len(labels) > 1):
                 raise Hint("count, mass, fill_ratio or bed_fill is needed", "count = 200", place)
             if species.bed_fill is not None and len(labels) > 1:
                 raise Hint(
-                    "the volume of a bed of several species is not known", "fill_ratio = 0.3", [*place, "bed_fill"]
+                    "bed_fill needs the density of the bed, which is unknown for several species",
+                    "fill_ratio = 0.3",
+                    [*place, "bed_fill"],
                 )
             radii = isinstance(self.packing, Positions) and self.packing.radii is not None
             if species.has_size == radii:
                 raise Hint(
-                    "the size is given twice, here and by the radii of the packing"
+                    "the size is given here and by the radii of the packing; only one of them is allowed"
                     if radii
                     else "radius, diameter or distribution is needed",
-                    "" if radii else 'radius = "2 mm"',
+                    "positions without radii" if radii else 'radius = "2 mm"',
                     place,
                 )
 
@@ -321,10 +327,14 @@ class ParticleDamper(Part):
             with at("pairs", index):
                 for number, name in enumerate(pair.between):
                     if name not in known:
-                        raise Hint(f"there are no particles {name!r} here", " or ".join(known), ["between", number])
+                        raise Hint(f"the damper has no species {name!r}", " or ".join(known), ["between", number])
                 both = frozenset(pair.between)
                 if both in seen or both == {WALL}:
-                    raise Hint("each pair of species, or of a species and the wall, may occur once", place=["between"])
+                    raise Hint(
+                        "a pair is two species, or a species and the wall, and each pair may occur once",
+                        "one entry for each pair",
+                        ["between"],
+                    )
                 seen.add(both)
         for walls in (False, True):
             entries = [entry for entry in self._laws() if (WALL in entry.names) == walls]
@@ -362,7 +372,7 @@ class ParticleDamper(Part):
             )
 
     def _check_room(self) -> None:
-        """Raise if the particles exceed the volume of the cavity or the memory, before arrays are allocated."""
+        """Raise, before arrays are allocated, if the particles exceed the volume of the cavity or the memory."""
         if isinstance(self.packing, Positions):
             return
         crowds = [species.crowd(self.cavity.volume, self._density(species)) for species in self.particles]
@@ -382,7 +392,7 @@ class ParticleDamper(Part):
         if count * _BYTES > memory():
             raise ResourceError(
                 f"{count:.3g} particles take {1e-9 * count * _BYTES:.3g} GB, and this machine has {1e-9 * memory():.3g} GB",
-                f"at most {memory() / _BYTES:.2g} of them, or larger ones",
+                f"at most {memory() / _BYTES:.2g} of them, or larger particles",
                 ["particles"],
             )
 
@@ -479,7 +489,7 @@ class ParticleDamper(Part):
             return species.number(self.cavity.volume, self._density(species))
 
     def _density(self, species: Particles) -> float:
-        """Return the volume of the particles over that of their bed, as `bed_fill` states it."""
+        """Return the volume of the particles over that of their bed; 1 without `bed_fill`."""
         if species.bed_fill is None or not species.has_size:
             return 1.0
         bulk = self.packing.bulk_density(self.largest_friction)
@@ -538,7 +548,7 @@ class ParticleDamper(Part):
                 return mixed(one, other, self.mixing), ("mixing",)
             except TypeError:
                 raise Hint(
-                    f"the laws of {field} of {first} and of {second} differ in more than numbers, and cannot be mixed",
+                    f"the laws of {field} of {first} and {second} differ in more than numbers and cannot be mixed",
                     f'pairs = [{{ between = ["{first}", "{second}"], {field} = ... }}]',
                     ["mixing"],
                 ) from None
@@ -589,7 +599,7 @@ class ParticleDamper(Part):
     def softened(self, entry: Entry) -> tuple[str, dict[str, Any]]:
         """Return the name of a contact law in the core and its coefficients, with moduli divided by the softening.
 
-        Dashpots and limiting pressures are reduced so that the restitution is the same.
+        Dashpots and limiting pressures are reduced so that the restitution is the same; see `Contact.softened`.
         """
         return entry.contact.softened(entry.pair, self.softening_factor)
 

@@ -1,4 +1,4 @@
-"""Records: signals that were measured or written by other programs."""
+"""Records: signals that were measured or computed by other programs."""
 
 from __future__ import annotations
 

@@ -160,7 +160,7 @@ class Polyline(Signal):
         raise NotImplementedError
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
-        """Return the values at the given times [s]; at a jump, the value after it."""
+        """Return the values at the given times [s], by linear interpolation; at a jump, the value after it."""
         t = np.asarray(time, dtype=float)
         times, values = self.polyline()
         after = np.clip(np.searchsorted(times, t, side="right"), 1, times.size - 1)
@@ -176,7 +176,7 @@ class Polyline(Signal):
 
 
 class Sampled(Polyline):
-    """Piecewise linear signal of samples, which must cover the run."""
+    """Piecewise linear signal through samples, which must cover the run."""
 
     def covers(self, duration: float) -> bool:
         """Return whether the signal covers a run from 0 to its duration [s], to within rounding."""

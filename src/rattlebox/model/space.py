@@ -18,7 +18,7 @@ Triple = tuple[float, float, float]
 
 def _three(value: Any, what: str, example: str) -> list[Any]:
     if not isinstance(value, (list, tuple, np.ndarray)) or len(value) != 3:
-        raise Hint(f"three {what} are needed: along x, y and z", example)
+        raise Hint(f"three {what}, along x, y and z, are needed", example)
     return list(value)
 
 

@@ -37,7 +37,12 @@ def surface(cavity: Cavity) -> Surface:
     Parameters
     ----------
     cavity
-        A box has its six faces, a cylinder flat ends, a sphere a grid of latitude and longitude.
+        Cavity.
+
+    Returns
+    -------
+    Surface
+        Six faces of a box; the side and flat ends of a cylinder; a grid of latitude and longitude of a sphere.
     """
     if isinstance(cavity, Box):
         corners = np.array([(i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])

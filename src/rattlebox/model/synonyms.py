@@ -71,7 +71,7 @@ _OTHERS = {  # ours: others'
 }
 
 MEANT: dict[str, tuple[str, ...]] = {}
-"""What other programs and books call a field or a kind, with our names for it."""
+"""Names of fields and kinds by their names in other programs and books."""
 
 for _names, _others in _OTHERS.items():
     for _other in _others.split():

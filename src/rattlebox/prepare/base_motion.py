@@ -33,8 +33,10 @@ def base_motion(signal: Signal, time: NDArray[np.float64]) -> NDArray[np.float64
 
     Notes
     -----
-    Harmonics and half sines are integrated in closed form. A record is linear between its samples, so that its velocity is
-    piecewise quadratic and its displacement piecewise cubic.
+    v(t) is the integral of a from 0 to t, u(t) that of v. A sin(w t + phi) has u = -A sin(w t + phi) / w^2 and v = -A cos(w
+    t + phi) / w, less their values at the start, if it has one; a half sine likewise. A record is linear between its
+    samples, a + s t, so that over an interval v = v_0 + a t + s t^2 / 2 and u = u_0 + v_0 t + a t^2 / 2 + s t^3 / 6. There
+    is no correction of the baseline: the mean of a record is part of its motion.
     """
     if isinstance(signal, Harmonic):
         omega = 2 * math.pi * signal.frequency
@@ -73,7 +75,7 @@ def base_motion(signal: Signal, time: NDArray[np.float64]) -> NDArray[np.float64
         return v, u_knots[k] + s * (v_knots[k] + s * (a[k] / 2 + s * slope / 6))
 
     v, u = integrate(time)
-    if t[0] < 0:  # The base is at rest at time 0, whatever the record holds before it.
+    if t[0] < 0:  # The base is at rest at time 0, whatever the record contains before it.
         v0, u0 = integrate(0.0)
         v, u = v - v0, u - u0 - v0 * time
     return np.array([u, v, signal.evaluate(time)])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 MARGIN = 2.0
 """Distance of the bulk from the walls and from the surface of the bed, over the largest diameter."""
 TOLERANCE = 0.05
-"""Difference of the volume of a bed over that of the cavity from the stated one, above which a run notes it."""
+"""Difference between the measured and the stated bed fill above which a run has a note."""
 SLIPPERY = 0.2
 """Coefficient of friction below which a full cavity does not stay full: its bed sinks under gravity."""
 BULK_POINTS = 2**19
@@ -48,11 +48,11 @@ class BedMeasures:
     density
         Volume of the particles over that of the bed; NaN without gravity.
     bulk_density
-        The same at least two diameters from the walls and from the surface; NaN if there is no such place.
+        Density at least two diameters away from the walls and from the surface; NaN if there is no such place.
     bulk_error
         Standard error of the bulk density.
     full_count
-        Largest number of such particles that the cavity holds at random, as in a full cavity of a compacted bed.
+        Largest number of such particles that can be inserted into the cavity at random, as in a full compacted bed.
     """
 
     count: int
@@ -66,7 +66,7 @@ class BedMeasures:
 
 
 def bed_level(damper: ParticleDamper, positions: Array) -> tuple[float, float]:
-    """Return volume and height of a bed.
+    """Compute volume and height of a bed.
 
     Parameters
     ----------
@@ -82,8 +82,9 @@ def bed_level(damper: ParticleDamper, positions: Array) -> tuple[float, float]:
 
     Notes
     -----
-    The surface is where a liquid would have it whose centre of mass is that of the particles. For level layers of equal
-    spheres this is the top of the highest layer.
+    The surface is that of a liquid in the cavity with the same centre of mass: the level z at which the mean height of all
+    points of the cavity below z is sum(R^3 z_i) / sum(R^3) over the particles. For level layers of equal spheres this is the
+    top of the highest layer.
     """
     up, volume = np.asarray(damper.up), damper.contents.radius**3
     heights, centroids = _levels(damper.cavity, tuple(up.tolist()))
@@ -130,7 +131,7 @@ def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
 
 
 def measure_bed(damper: ParticleDamper) -> BedMeasures:
-    """Return by how much a damper is filled, by the volume of its particles and by the volume of their bed.
+    """Measure the fill of a damper, by the volume of its particles and by the volume of their bed.
 
     Parameters
     ----------
@@ -149,10 +150,11 @@ def measure_bed(damper: ParticleDamper) -> BedMeasures:
 
     Notes
     -----
-    The surface of the bed is where a liquid would have it whose centre of mass is that of the particles; for level layers of
-    equal spheres this is the top of the highest layer. The density of the bulk is that of a part of the bed; its standard
-    error is estimated from eight parts of equal volume. Volumes are counted on at least 65 000 evenly spread points, with a
-    relative error below 0.3 %.
+    The surface of the bed is that of a liquid in the cavity with the same centre of mass, sum(R^3 z) / sum(R^3) over the
+    particles; for level layers of equal spheres this is the top of the highest layer. The density is the fill ratio over the
+    bed fill. The density of the bulk is the share of points in spheres, of the points of the bed that are two diameters away
+    from walls and surface; its standard error is estimated from eight parts of equal volume. Volumes are counted on at least
+    65 000 evenly spread points, with a relative error below 0.3 %.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Restitution as a function of approach speed and of damping, from the formulas of the core."""
+"""Restitution as a function of approach speed and of damping, computed by the core."""
 
 from __future__ import annotations
 
@@ -32,6 +32,18 @@ def restitution_curve(law: Restitution, pair: Pair, speeds: ArrayLike) -> NDArra
     -------
     float, shape of speeds
         Restitution; NaN outside the range of speeds of the law.
+
+    See Also
+    --------
+    JacksonGreen, ThorntonRestitution, Johnson, Constant, Tabulated : Laws, with equations and sources.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> ball = rb.Body(rb.materials()["steel"], radius=0.01, mass=0.03)
+    >>> pair = rb.Pair(ball, rb.Body(rb.materials()["steel"]))
+    >>> [round(float(e), 3) for e in rb.restitution_curve(rb.JacksonGreen(), pair, [0.05, 1.0])]
+    [1.0, 0.881]
     """
     given = np.asarray(speeds, dtype=float)
     return pack_restitution(law, pair).at(given.ravel()).reshape(given.shape)
@@ -65,12 +77,16 @@ def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDA
 
     Notes
     -----
-    With zeta = alpha/sqrt(5), a contact that ends at zero overlap has e = exp(-pi zeta / sqrt(1 - zeta^2)); one that ends at
-    zero force has e = exp(-2 b cot b), where zeta = cos b. Both follow from the exact solution of Tsuji's equation.
+    With zeta = alpha/sqrt(5), a contact that ends at zero overlap has e = exp(-pi zeta / sqrt(1 - zeta^2)). One that ends at
+    zero force has e = exp(-2 b cot b), where zeta = cos b, and e = exp(-2 h coth h), where zeta = cosh h, above zeta = 1.
+    Both follow from the exact solution of Tsuji's equation, a linear oscillator in overlap^(5/4) at every speed, and are
+    therefore those of a linear contact with the damping ratio zeta.
 
     References
     ----------
     Y. Tsuji, T. Tanaka, T. Ishida, Powder Technology 71 (1992) 239, doi:10.1016/0032-5910(92)88030-L.
+
+    T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z (both ends, linear contact).
 
     Examples
     --------
@@ -98,9 +114,16 @@ def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray
     float, shape of e
         Damping coefficients.
 
+    Notes
+    -----
+    For a contact that ends at zero overlap, alpha = -sqrt(5) ln e / sqrt(pi^2 + ln^2 e). For one that ends at zero force,
+    the equation of `restitution_of_alpha` is solved by Newton's method.
+
     References
     ----------
     Y. Tsuji, T. Tanaka, T. Ishida, Powder Technology 71 (1992) 239, doi:10.1016/0032-5910(92)88030-L.
+
+    T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z (both ends, linear contact).
 
     Examples
     --------

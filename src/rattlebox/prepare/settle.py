@@ -45,9 +45,8 @@ RESTITUTION = 0.3  # With stronger damping, steps of this length generate energy
 STEPS = 20  # in a contact
 MAX_FALL_TIMES = 40  # longest simulation over the duration of a fall through the cavity; common beds need 3 to 13
 QUIET_BLOCKS = 5  # blocks of twenty contact times in a row below the energy limit, after which a bed is at rest
-STOPS = (
-    100  # Then motion that nothing slows, such as a ball rolling in a round cavity, is stopped at its largest speed.
-)
+STOPS = 100
+"""Largest number of times that a motion without damping, such as that of a ball in a round cavity, is stopped."""
 MAX_FRICTION = 1.0  # A larger coefficient of friction does not change the bed.
 CACHED_BEDS = 8
 ATTEMPTS = 4  # insertions with different random numbers into a cavity that is nearly full; more of a few particles
@@ -59,7 +58,7 @@ def settle(damper: ParticleDamper) -> Array: ...
 @overload
 def settle(damper: ParticleDamper, proceed: Callable[[], bool]) -> Array | None: ...
 def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -> Array | None:
-    """Return the positions of the particles of a damper in a bed.
+    """Compute the positions of the particles of a damper in a bed.
 
     The last few beds are cached: cases that differ only in motion or contacts start from the same one.
 
@@ -110,7 +109,7 @@ class _Stopped(Exception):
 
 
 def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -> Array:
-    """Return positions of a dense bed at random, under a lid that is as low as its density allows.
+    """Compute positions of a dense random bed under a lid, which is as low as the density of the bed permits.
 
     Parameters
     ----------
@@ -128,13 +127,18 @@ def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) 
     ------
     Hint
         If the cavity is too small for the particles.
+
+    Notes
+    -----
+    Below the lid, particles have the density of `rattlebox.model.packing.random_density`. If they cannot be inserted, the
+    volume below the lid grows by 3 % until they can. `push_apart` names the method and its source.
     """
     cavity, radii, seed = damper.cavity, damper.contents.radius, instance(damper.packing, Compacted).seed
     fill = 1.0 if damper.up is None else _compacted_fill(cavity, radii, damper.up)
     while fill < 1:
         try:
             return insert(cavity, radii, seed, proceed, _under_lid(cavity, present(damper.up), fill))
-        except Hint:  # Narrow cavities hold looser beds than the usual density.
+        except Hint:  # The density of beds in narrow cavities is lower than usual.
             fill *= 1.03
     for attempt in range(ATTEMPTS + 100 // radii.size):
         try:
@@ -158,7 +162,7 @@ def _compacted_fill(cavity: AnyCavity, radii: Array, up: Array) -> float:
 def _under_lid(cavity: AnyCavity, up: Array, fill: float) -> Walls:
     """Return the walls of a cavity with a lid perpendicular to gravity, above a share of the volume."""
     walls = cavity.walls()
-    level = np.quantile(cavity.spread(SPREAD) @ up, fill)
+    level = np.quantile(components_along(cavity.spread(SPREAD), up), fill)
     return Walls(
         (*walls.names, "lid"), np.vstack([walls.axis, up]), np.append(walls.offset, level), (*walls.form, "plane")
     )
@@ -171,7 +175,7 @@ def insert(
     proceed: Callable[[], bool] = lambda: True,
     walls: Walls | None = None,
 ) -> Array:
-    """Return random positions of spheres that do not overlap.
+    """Compute random positions of spheres that do not overlap.
 
     Parameters
     ----------
@@ -195,6 +199,11 @@ def insert(
     ------
     Hint
         If the cavity is too small for all of them.
+
+    Notes
+    -----
+    Spheres are placed in classes of size, the largest first, each at evenly distributed places outside the walls and the
+    larger spheres; `push_apart` then removes overlaps within the class.
     """
     generator = np.random.default_rng(seed)
     walls = cavity.walls() if walls is None else walls
@@ -202,7 +211,7 @@ def insert(
     places = np.zeros((radii.size, 3))
     there = np.zeros(0, int)
     octave = np.log2(radii.max() / radii).astype(int)
-    for k in np.unique(octave):  # The largest first, since many small ones would block their way.
+    for k in np.unique(octave):  # the largest first: many small ones would leave them no place
         left = new = np.flatnonzero(octave == k)
         for _ in range(1000):
             places[left] = to_global(generator.uniform(-half, half, (left.size, 3)), cavity.frame)
@@ -266,16 +275,20 @@ def push_apart(
 
     Notes
     -----
-    FIRE, steepest descent with inertia, on the sum of the squares of all overlaps.
+    The positions x minimise U = 1/2 sum(d^2) over all overlaps d of spheres with each other and with walls. FIRE is steepest
+    descent with inertia: x' = v, v' = F = -dU/dx, where v is mixed with F in every step, v = (1 - c) v + c F sqrt(v^2/F^2),
+    and set to zero if F v <= 0. Steps are 1.1 times as long after five steps with F v > 0, and halved after one without. The
+    force on a sphere that has more than 12 neighbours is reduced, so that the sum of their springs is no stiffer.
 
     References
     ----------
-    E. Bitzek et al., Physical Review Letters 97 (2006) 170201, doi:10.1103/PhysRevLett.97.170201.
+    E. Bitzek, P. Koskinen, F. Gähler, M. Moseler, P. Gumbsch, Physical Review Letters 97 (2006) 170201,
+    doi:10.1103/PhysRevLett.97.170201.
     """
     places, grown = places.copy(), radii * (1 + swell)
     walls = cavity.walls() if walls is None else walls
     margin = 0.3 * float(grown.min())
-    listed = np.full_like(places, np.inf)  # positions at which the candidate pairs were listed
+    listed = np.full_like(places, np.inf)  # positions at the last search for candidate pairs
     move, stride, mixing, downhill = np.zeros_like(places), 0.3, 0.1, 0
     for iteration in range(MAX_ITERATIONS):
         if iteration % 50 == 0 and not proceed():
@@ -298,9 +311,8 @@ def push_apart(
         np.add.at(force, first, push)
         np.add.at(force, second, -push)
         around = np.bincount(first, minlength=radii.size) + np.bincount(second, minlength=radii.size)
-        force /= np.maximum(around / KISSING_NUMBER, 1.0)[
-            :, None
-        ]  # The springs of many small ones add up on a large one.
+        # The stiffness of the springs of many small spheres on a large one adds up, and steps would be unstable.
+        force /= np.maximum(around / KISSING_NUMBER, 1.0)[:, None]
         if np.sum(force * move) > 0:
             move = (1 - mixing) * move + mixing * force * math.sqrt(np.sum(move**2) / np.sum(force**2))
             downhill += 1
@@ -344,7 +356,7 @@ class _SettlingBed:
         height = damper.cavity.extent(present(damper.up))
         self._fall = math.sqrt(2 * height / self._pull)
         small = float(self._contents.radius.min())
-        # A linear contact has a largest overlap of speed times duration over pi.
+        # The largest overlap of a linear contact is the speed times the duration over pi.
         self._contact_time = math.pi * SINK * small / (self._pull * self._fall)
         mass = float(self._contents.mass.min()) / 2
         stiffness = mass * (math.pi / self._contact_time) ** 2
@@ -358,7 +370,7 @@ class _SettlingBed:
         )
 
     def fall(self, places: Array, at_rest: float) -> Array:
-        """Return the positions of the particles after they have fallen and come to rest."""
+        """Compute the positions of the particles after they have fallen and come to rest."""
         still = at_rest * float(np.sum(self._contents.mass * self._contents.radius)) * self._pull
         blocks = max(1, math.ceil(MAX_FALL_TIMES * self._fall / (20 * self._contact_time)))
         for stopped in (False, *STOPS * (True,)):
@@ -375,7 +387,7 @@ class _SettlingBed:
         raise Hint(f"particles do not come to rest within {MAX_FALL_TIMES * self._fall:.3g} s", "a larger at_rest")
 
     def expand(self, places: Array, cavity: AnyCavity) -> Array:
-        """Reduce the weight step by step until particles of the true size do not overlap; return their positions."""
+        """Reduce the weight in steps until particles of the true size do not overlap; return their positions."""
         radii = self._contents.radius
         # The tolerance is for rows exactly as long as the cavity, which overlap by rounding under any weight.
         reduced = radii - 0.5 * TOUCHING * radii.min()
@@ -424,7 +436,10 @@ class _SettlingBed:
             if not self._proceed():
                 raise _Stopped
             if dem.status:
-                raise Hint(f"particles do not settle: the run ended with status {dem.status.name}")
+                raise Hint(
+                    f"particles do not settle: the run ended with status {dem.status.name}",
+                    'packing = { kind = "lattice" }, or another seed',
+                )
             yield dem.state().cavities[0].position, float(dem.records().kinetic[-1].sum())
 
 

@@ -1,4 +1,4 @@
-"""Softening of contacts: its effect on a bed under its own weight, the value of "auto", and validity warnings.
+"""Softening of contacts: effect on a bed under its own weight, value of "auto", validity warnings.
 
 A softened bed is more compliant: the resonance of its compression under its own weight falls towards the excitation. The
 loss in a cycle then changes by up to K ((f / f_s)^2 - (f / f_1)^2) m V^2, where f is the frequency of the motion, f_s the
@@ -84,7 +84,7 @@ class CavityMotion:
 
 
 def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.float64]) -> CavityMotion:
-    """Return the motion of a cavity with an empty damper.
+    """Estimate the motion of a cavity without particles.
 
     Parameters
     ----------
@@ -99,6 +99,12 @@ def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.floa
     -------
     CavityMotion
         Frequencies and acceleration.
+
+    Notes
+    -----
+    Each mode counts as a harmonic motion with the same standard deviations of displacement and velocity, s_q and s_v: its
+    angular frequency is s_v / s_q, and its acceleration sqrt(2) (s_v^2 / s_q) times the mode shape. Each signal counts as
+    one with the same standard deviations of velocity and acceleration.
     """
     parts = [_harmonic(signal, case.duration) for signal in case.base_acceleration()]
     for mode, row in zip(np.moveaxis(state, 1, 0), shape, strict=True):
@@ -141,10 +147,11 @@ def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> flo
 
     Notes
     -----
-    In a column of depth h under gravity, with contacts of stiffness k in series, waves have the speed
-    c = (k / (d rho))^(1/2) at the floor. Contacts with a force A x^n have k = n F/x at the force F = pi d^2 p / (phi Z) for
-    the pressure p there (phi: volume fraction, Z: contacts of a particle), and a wave takes 2n/(n + 1) h / c, which is
-    6/5 h / c with Hertz contacts. The resonance is a quarter wave, multiplied by `COLUMN`.
+    In a column of depth h under gravity, with contacts of stiffness k in series, waves have the speed c = (k / (d
+    rho))^(1/2) at the floor. Contacts with a force A x^n have k = n F/x at the force F = pi d^2 p / (phi Z) for the pressure
+    p there (phi: volume fraction 0.58, Z: contacts of a particle, 4.6), and a wave takes 2n/(n + 1) h / c, which is 6/5 h /
+    c with Hertz contacts. The resonance is a quarter wave, 1 / (4 times this time), multiplied by `COLUMN`, which is fitted
+    to computed beds (docs/theory/softening.md).
     """
     gravity = np.array(damper.gravity)
     size = float(np.linalg.norm(gravity))
@@ -185,7 +192,7 @@ def force_exponent(contact: Contact) -> float:
 
 
 def loss_change(damper: ParticleDamper, motion: CavityMotion, level: float, softening: float) -> float:
-    """Return the possible change of the loss in a cycle by softening, over m V^2.
+    """Estimate the largest change of the loss in a cycle by softening, over m V^2.
 
     Parameters
     ----------
@@ -201,7 +208,12 @@ def loss_change(damper: ParticleDamper, motion: CavityMotion, level: float, soft
     Returns
     -------
     float
-        K ((f / f_s)^2 - (f / f_1)^2), see the docstring of the module; 0 without gravity.
+        Change; 0 without gravity.
+
+    Notes
+    -----
+    K ((f / f_s)^2 - (f / f_1)^2), with the frequency f of the motion and the resonance f_s at softening s. K is 25 up to an
+    acceleration of 2 g and 7 above it, fitted to computed runs (docs/theory/softening.md).
     """
     soft, hard = bed_resonance(damper, softening), bed_resonance(damper, 1.0)
     if not soft:
@@ -230,7 +242,7 @@ class Choice:
 
 
 def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: float) -> Choice:
-    """Return the largest softening that changes the loss by at most `AUTO_CHANGE`.
+    """Choose the largest softening that changes the loss by at most `AUTO_CHANGE`.
 
     Parameters
     ----------
@@ -245,6 +257,11 @@ def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: floa
     -------
     Choice
         The softening and the reason for it.
+
+    Notes
+    -----
+    The resonance of a bed of contacts F = A x^n falls as s^(-1/(2n)), so that `loss_change` equals a change c for
+    s = (1 + c (f_1 / f)^2 / K)^n. The value is rounded down to two digits.
     """
     gravity = float(np.linalg.norm(damper.gravity))
     level = motion.acceleration / gravity if gravity and motion.is_prescribed else 0.0
@@ -335,7 +352,7 @@ def effects(
     lost: NDArray[np.float64],
     enduring: NDArray[np.float64],
 ) -> list[Effect]:
-    """Return the effect of softening on each damper of a run.
+    """Compute the effect of softening on each damper of a run.
 
     Parameters
     ----------

@@ -52,19 +52,21 @@ WARNINGS = {
 """Validity limits that a run can exceed: name and description."""
 
 HERTZ_TIME = 2.9432752
-"""Duration of a Hertz contact times the approach speed over the largest overlap."""
+"""Duration of a Hertz contact times the approach speed over the largest overlap, 4/5 pi^(1/2) Gamma(2/5) / Gamma(9/10).
+
+K. L. Johnson, Contact Mechanics, Cambridge University Press (1985), section 11.4, doi:10.1017/CBO9781139171731."""
 
 MAX_STEPS = 2**63 - 1
 """Most steps of a run: the core counts them in 64-bit integers."""
 
 INSTANTS, GOLDEN = 4096, (math.sqrt(5) - 1) / 2
-"""Number and spacing of the times, besides those of the samples, at which speeds are evaluated. Samples may be a period of
-the motion apart; multiples of the golden ratio are in step with no periodic motion."""
+"""Number and spacing of the times, besides those of the samples, at which speeds are evaluated. The interval between samples
+may be a period of the motion; multiples of the golden ratio are in step with no periodic motion."""
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A contact, wave or period that the step must resolve.
+    """A duration that the step must resolve: of a contact, a wave, or a period.
 
     Attributes
     ----------
@@ -183,6 +185,12 @@ def contact_limits(
     ------
     Limit
         The shortest contact of a kind of pair.
+
+    Notes
+    -----
+    The automatic step is `fraction` times the duration of the contact of the smallest and largest bodies of a pair, divided
+    by 2 zeta if the damping ratio zeta exceeds 1/2; the longest step is `BOUND` times the duration, divided by the larger of
+    that factor and that of friction and rolling resistance.
     """
     labels = [species.label for species in damper.particles]
     wall_mass = _wall_mass(case, damper)
@@ -276,7 +284,7 @@ def _damping_ratio(entry: Entry, law: _core.NormalForce, speed: float) -> float:
 
 
 def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> list[Limit]:
-    """Return the limits of the time step: contacts, Rayleigh waves, modes, loads.
+    """Return the limits of the time step by contacts, Rayleigh waves, modes and loads.
 
     Parameters
     ----------
@@ -294,12 +302,15 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
 
     Notes
     -----
-    A Rayleigh wave along a sphere of radius R takes pi R / ((0.1631 nu + 0.8766) (G / rho)^(1/2)).
+    A Rayleigh wave along half the circumference of a sphere of radius R takes pi R / ((0.1631 nu + 0.8766) (G / rho)^(1/2)),
+    with the softened shear modulus G = E / (2 (1 + nu)). The automatic step is at most `RAYLEIGH` times that, and at most
+    the fraction of the method times the period 2 pi / k^(1/2) of each mode, the duration of each pulse and the period of
+    each harmonic.
 
     References
     ----------
     C. Thornton, C. W. Randall, Applications of theoretical contact mechanics to solid particle system simulation, in:
-    Micromechanics of Granular Materials, Elsevier (1988) 133-142.
+    Micromechanics of Granular Materials, Elsevier (1988) 133-142, ISBN 978-0-444-70523-5.
     """
     fraction = instance(case.method, Dem).fraction
     result: list[Limit] = []
@@ -334,7 +345,7 @@ def _motion_limit(duration: float, fraction: float, what: str) -> Limit:
 
 
 def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> Step:
-    """Return the time step of a run: that of the case or the longest automatic one, shortened so that samples fall on steps.
+    """Choose the time step of a run: that of the case or the longest automatic one, shortened so that samples fall on steps.
 
     Parameters
     ----------
@@ -516,6 +527,12 @@ def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float
     -------
     float
         Softening; infinite without contacts.
+
+    Notes
+    -----
+    A Hertz contact of duration t has the overlap V t / 2.943. The duration, and with it the overlap, grows with the
+    softening s as s^(2/5) for Hertz contacts and s^(1/2) for linear ones; the result, (`MAX_OVERLAP` / overlap)^2, uses the
+    latter, which is smaller.
     """
     smallest, table = float(damper.contents.radius.min()), damper.contact_table
     longest = max((limit.duration for limit in contact_limits(case, damper, table, speed, 1.0)), default=0.0)

@@ -212,7 +212,7 @@ REFUSED = {
         "wall", friction=rb.LinearSpring(0.2, stiffness=1e5)
     ),
     "without gravity": lambda: damper(packing=rb.Settled(), gravity=(0, 0, 0)),
-    "there are no particles 'wood' here": lambda: damper(pairs=[rb.PairLaws(between=("wood", "wall"))]),
+    "the damper has no species 'wood'": lambda: damper(pairs=[rb.PairLaws(between=("wood", "wall"))]),
     "this is less than one particle": lambda: damper(particles=balls(count=None, mass="1 mg")),
     r"particles.mass = .*\n  this is 7.64e\+11 particles; at most 1e\+08": lambda: damper(
         particles=rb.Particles(material="glass", diameter="1 um", mass="1 g")

@@ -350,7 +350,9 @@ def test_a_bed_of_several_species_needs_other_amounts() -> None:
         rb.Particles(name=name, material="steel", diameter=name, **amount)
         for name, amount in (("4 mm", {"bed_fill": 0.5}), ("3 mm", {"count": 20}))
     ]
-    with pytest.raises(rb.CaseError, match=r"particles\[0\].bed_fill = 0.5\n  the volume of a bed of several species"):
+    with pytest.raises(
+        rb.CaseError, match=r"particles\[0\].bed_fill = 0.5\n  bed_fill needs the density of the bed, which is unknown"
+    ):
         damper(particles=kinds)
 
 

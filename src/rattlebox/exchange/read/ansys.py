@@ -47,7 +47,7 @@ def _read_arrays(path: Path, kind: str) -> dict[str, Any]:
 
 @lru_cache(maxsize=4)
 def _read_once(path: Path, kind: str, modified: int, size: int) -> dict[str, Any]:
-    """Return the arrays of a file; those of the last files are kept until the files change."""
+    """Return the arrays of a file; those of the last files are cached until the files change."""
     optional_import("ansys.mapdl", "fe", "a modal table in CSV")
     with TemporaryDirectory() as folder:
         output = Path(folder) / "arrays.npz"
@@ -87,12 +87,18 @@ def read_result(path: Path) -> ModesInFile:
     """
     result = _read_arrays(path, "rst")
     if result["analysis"] != 2:
-        raise DataError(f"{path} has an analysis of type {result['analysis']}; type 2 (modal) is needed")
+        raise DataError(
+            f"{path} has an analysis of type {result['analysis']}; type 2 (modal) is needed",
+            "the result of a modal analysis",
+        )
     if result["sectors"] > 1:
         raise DataError(f"{path} has a cyclic sector, which is not supported", "modes of the whole structure")
     modes = result["shapes"][:, :, :3]
     if modes.shape[2] != 3 or not np.isfinite(modes).all():
-        raise DataError(f"{path}: the modes have {modes.shape[2]} components at nodes; three finite ones are needed")
+        raise DataError(
+            f"{path}: the modes have {modes.shape[2]} components at nodes; three finite ones are needed",
+            "a model in 3-D, with translations along x, y and z",
+        )
     largest = np.abs(modes).max(axis=(1, 2))
     if len(largest) > 1 and np.allclose(largest, 1.0, rtol=1e-9):
         raise DataError(
@@ -129,6 +135,11 @@ def read_full(path: Path, count: int) -> ModesInFile:
     ------
     DataError
         If the file is damaged, or contains no mass matrix.
+
+    Notes
+    -----
+    The participation is phi^T M r, with r = 1 for the free degrees of freedom along an axis and 0 for all others; the total
+    mass is r^T M r. `lowest_modes` names the method and its source.
     """
     from scipy.sparse import coo_array, csr_array, triu
 
@@ -182,6 +193,15 @@ def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, Flo
     ------
     DataError
         If M is not positive definite, or K not positive semidefinite.
+
+    Notes
+    -----
+    K phi = omega^2 M phi with phi^T M phi = 1. Up to 400 degrees of freedom all eigenvalues are computed by LAPACK, above by
+    the Lanczos method of ARPACK for (K - s M)^(-1) M, with a shift s slightly below zero.
+
+    References
+    ----------
+    R. B. Lehoucq, D. C. Sorensen, C. Yang (1998), ARPACK Users' Guide, SIAM, doi:10.1137/1.9780898719628.
     """
     from scipy.linalg import LinAlgError, eigh
     from scipy.sparse.linalg import eigsh
@@ -192,7 +212,7 @@ def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, Flo
     try:
         if n <= _MOST_DENSE or count > n // 3:
             values, vectors = eigh(stiffness.toarray(), mass.toarray(), subset_by_index=(0, count - 1))
-        else:  # with a shift below zero the shifted matrix is regular in spite of rigid-body modes
+        else:  # With a shift below zero the shifted matrix is regular in spite of rigid-body modes.
             start = np.random.default_rng(0).standard_normal(n)
             values, vectors = eigsh(stiffness, count, mass, sigma=-1e-6 * scale, v0=start, tol=1e-12)
     except (LinAlgError, RuntimeError, ValueError) as error:
@@ -202,5 +222,8 @@ def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, Flo
     order = np.argsort(values)
     values, vectors = values[order], vectors[:, order]
     if values[0] < -1e-7 * scale:
-        raise DataError("K is not positive semidefinite: the structure would be unstable")
+        raise DataError(
+            "K is not positive semidefinite: the structure would be unstable",
+            "a model without prestress beyond buckling",
+        )
     return np.where(values < 1e-9 * scale, 0.0, values), np.asarray(vectors)

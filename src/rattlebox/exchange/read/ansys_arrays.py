@@ -1,6 +1,7 @@
 """Script that copies the arrays of an Ansys file to a NPZ file: python -P ansys_arrays.py rst|full FILE OUTPUT.
 
-It runs in a process of its own, because the reader's C code trusts the pointers in the file and crashes on wrong ones.
+It runs in a separate process, because the C code of the reader does not check the pointers in a file and crashes on wrong
+ones.
 """
 
 from __future__ import annotations

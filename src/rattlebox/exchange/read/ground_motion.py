@@ -1,4 +1,4 @@
-"""Ground motions of the PEER data base, files with the ending .AT2."""
+"""Ground motions of the PEER database, files with the ending .AT2."""
 
 from __future__ import annotations
 
@@ -56,6 +56,15 @@ def read_ground_motion(path: Path) -> GroundMotion:
     ------
     DataError
         If the file is not an AT2 file of an acceleration, or contains another number of samples than it states.
+
+    Notes
+    -----
+    The sample with index k = 0, 1, ... is the acceleration at the time k DT. The values are used as they are, without a
+    correction of the baseline; those of the database are filtered and corrected.
+
+    References
+    ----------
+    T. D. Ancheta et al., NGA-West2 database, Earthquake Spectra 30 (2014) 989-1005, doi:10.1193/070913EQS197M.
     """
     try:
         lines = path.read_text(encoding="latin-1").splitlines()

@@ -1,4 +1,4 @@
-"""Matrices in Matrix Market files, .mtx."""
+"""Matrices in files of the Matrix Market format, .mtx."""
 
 from __future__ import annotations
 
@@ -32,6 +32,10 @@ def read_matrix(path: Path) -> FloatArray:
     ------
     DataError
         If the file is damaged, or the matrix is complex, not square, not finite or too large.
+
+    References
+    ----------
+    R. F. Boisvert, R. Pozo, K. A. Remington (1996), The Matrix Market Exchange Formats: Initial Design, NISTIR 5935.
     """
     from scipy.io import mminfo, mmread
 
@@ -42,7 +46,10 @@ def read_matrix(path: Path) -> FloatArray:
         if kind == "complex":
             raise DataError(f"{path} contains complex numbers", "a real matrix")
         if rows != columns:
-            raise DataError(f"{path} contains a matrix of {rows} rows and {columns} columns; it must be square")
+            raise DataError(
+                f"{path} contains a matrix of {rows} rows and {columns} columns; it must be square",
+                "the files of M, C and K, each with a row and a column for each degree of freedom",
+            )
         if rows > MOST:
             raise DataError(
                 f"{path} has {rows} degrees of freedom; at most {MOST} are allowed",
@@ -55,5 +62,5 @@ def read_matrix(path: Path) -> FloatArray:
         raise DataError(f"{path} cannot be read: {error}", "the complete file") from None
     matrix = np.asarray(content.toarray() if hasattr(content, "toarray") else content, dtype=float)
     if not np.isfinite(matrix).all():
-        raise DataError(f"{path} contains numbers that are not finite")
+        raise DataError(f"{path} contains numbers that are not finite", "the file as the program wrote it")
     return matrix

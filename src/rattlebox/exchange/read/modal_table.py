@@ -56,7 +56,7 @@ def read_modal_table(path: Path) -> ModesInFile:
         (k, line) for k, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")
     ]
     if not numbered:
-        raise DataError(f"{path} contains no table")
+        raise DataError(f"{path} contains no table", "a first line such as frequency (Hz), damping (%), tip")
     mark = next((mark for mark in ";\t," if mark in numbered[0][1]), ",")
     rows = [(k, [cell.strip() for cell in row]) for k, line in numbered for row in csv.reader([line], delimiter=mark)]
     head, body = rows[0][1], rows[1:]
@@ -67,7 +67,7 @@ def read_modal_table(path: Path) -> ModesInFile:
             "frequency (Hz), damping (%), tip",
         )
     if not body:
-        raise DataError(f"{path} has a header, but no mode below it")
+        raise DataError(f"{path} has a header, but no mode below it", "a line of numbers for each mode")
     table = np.zeros((len(body), len(head)))
     for row, (number, cells) in enumerate(body):
         if len(cells) != len(head):

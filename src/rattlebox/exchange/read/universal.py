@@ -19,8 +19,9 @@ _UNIT_CODES = {
     1: (1.0, 1.0), 2: (3.28084, 0.224809), 3: (1.0, 0.101972), 4: (3.28084, 7.23301), 5: (1e3, 1e3), 6: (1e2, 1e2),
     7: (39.37008, 0.224809), 8: (1e3, 0.101972), 10: (1e3, 1.0),
 }  # fmt: skip
+# Analysis types of the sets 55 and 2414, type of result of the set 2414, types of sets.
 _NORMAL_MODES = 2
-_COMPLEX_MODES = (3, 7)  # analysis types
+_COMPLEX_MODES = (3, 7)
 _DISPLACEMENT = 8
 _GEOMETRY = (15, 2411, 2420)  # nodes, nodes, coordinate systems
 _TAIL = 4096  # bytes that contain the last line
@@ -112,6 +113,16 @@ def read_universal_modes(path: Path) -> ModesInFile:
     ------
     DataError
         If there are no normal modes, modes are complex or cover different nodes, or the units contradict their code.
+
+    Notes
+    -----
+    The unit of mass is that of force over that of acceleration, l / f kg, with the factors l and f of the set 164 from m and
+    N to the units of length and force of the file.
+
+    References
+    ----------
+    Structural Dynamics Research Corporation, I-DEAS universal file datasets 15, 55, 58, 164, 2411, 2414 and 2420; published
+    by the University of Cincinnati, Structural Dynamics Research Laboratory (UC-SDRL).
     """
     every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
     sets = [each for each in every if each["type"] not in _GEOMETRY]
@@ -125,7 +136,7 @@ def read_universal_modes(path: Path) -> ModesInFile:
             raise DataError(
                 f"{path} contains only complex modes, whose phases scatter by up to {max(scatter):.3g} degrees; "
                 "normal modes are needed",
-                "an export of real normal modes, which are similar below some 10 degrees",
+                "an export of real normal modes; they are similar if the phases scatter by less than about 10 degrees",
             )
         raise DataError(
             f"{path} contains no normal modes (analysis type 2); its types are {', '.join(map(str, kinds)) or 'none'}",
@@ -141,7 +152,7 @@ def read_universal_modes(path: Path) -> ModesInFile:
         if not np.isfinite(values).all() or np.abs(values).max(initial=0.0) > 1e30:
             raise DataError(f"{path}: a {what} is not finite", "the file as it was written: bytes may be swapped")
     if (frequencies < 0).any():
-        raise DataError(f"{path}: a frequency is negative")
+        raise DataError(f"{path}: a frequency is negative", "the file as the program wrote it")
     masses = np.array([mode[1] for mode in modes])
     damping = np.array([mode[2] for mode in modes])
     return ModesInFile(
@@ -196,7 +207,7 @@ def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str
 
 
 def _phase_scatter(each: dict[str, Any]) -> float:
-    """Return the RMS deviation of a complex mode's phases from a line through zero, weighted by amplitude [degrees].
+    """Return the RMS deviation of the phases of a complex mode from a line through zero, weighted by amplitude [degrees].
 
     The line is the principal axis of the components z in the complex plane, at half the phase of sum(z^2).
     """
@@ -239,7 +250,10 @@ def _mass_unit(path: Path, sets: list[dict[str, Any]]) -> float | None:
         return None
     length, force, code = float(sets[0]["length"]), float(sets[0]["force"]), int(sets[0]["units_code"])
     if not (1e-9 < length < 1e9 and 1e-9 < force < 1e9):
-        raise DataError(f"{path}: set 164 states factors of {length:g} for lengths and {force:g} for forces")
+        raise DataError(
+            f"{path}: set 164 states factors of {length:g} for lengths and {force:g} for forces, which no units have",
+            "the file as the program wrote it: bytes may be swapped",
+        )
     if code in _UNIT_CODES:
         for what, value, expected in zip(("lengths", "forces"), (length, force), _UNIT_CODES[code], strict=True):
             if abs(value / expected - 1) > 1e-2:
@@ -267,6 +281,10 @@ def read_functions(path: Path) -> list[Function]:
     ------
     DataError
         If there is none, or one has another number of points than it states, or values outside any measurement's range.
+
+    See Also
+    --------
+    read_universal_modes : Modes, with the source of the format.
     """
     functions = []
     for number, each in enumerate(_read_sets(path, (58,)), start=1):
