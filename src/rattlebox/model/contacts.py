@@ -251,7 +251,7 @@ class Thornton(Contact):
     References
     ----------
     C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres, J. Appl. Mech. 64
-    (1997) 383-386, eqs 8 to 18.
+    (1997) 383-386, eqs 8 to 18, doi:10.1115/1.2787319.
 
     C. Thornton, Z. Ning, Powder Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0 (the same contact, with
     adhesion).

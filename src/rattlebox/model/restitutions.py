@@ -140,7 +140,7 @@ class JacksonGreen(Restitution):
     References
     ----------
     R. L. Jackson, I. Green, D. B. Marghitu, Predicting the coefficient of restitution of impacting elastic-perfectly plastic
-    spheres, Nonlinear Dynamics 60 (2010) 217-229.
+    spheres, Nonlinear Dynamics 60 (2010) 217-229, doi:10.1007/s11071-009-9591-z.
 
     R. L. Jackson, I. Green, J. Tribol. 127 (2005) 343, doi:10.1115/1.1866166 (critical load and hardness).
     """
@@ -213,7 +213,7 @@ class ThorntonRestitution(Restitution):
     References
     ----------
     C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres, J. Appl. Mech. 64
-    (1997) 383-386, eq. 19.
+    (1997) 383-386, eq. 19, doi:10.1115/1.2787319.
 
     C. Thornton, Z. Ning, Powder Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0 (the same contact, with
     adhesion).
