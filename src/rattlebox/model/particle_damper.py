@@ -548,7 +548,7 @@ class ParticleDamper(Part):
                 return mixed(one, other, self.mixing), ("mixing",)
             except TypeError:
                 raise Hint(
-                    f"the laws of {field} of {first} and {second} differ in more than numbers and cannot be mixed",
+                    f"the laws of {field} of {first} and of {second} differ in more than numbers, and cannot be mixed",
                     f'pairs = [{{ between = ["{first}", "{second}"], {field} = ... }}]',
                     ["mixing"],
                 ) from None
