@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.app import worker
+from rattlebox.app.draft import template
 
 PlaywrightError = pytest.importorskip("playwright.sync_api").Error
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -100,7 +102,8 @@ def choose(page, template):
         page.get_by_label("template").click()
         with suppress(PlaywrightError):
             option.click(timeout=LONG / 8)
-            page.wait_for_function("(text) => document.querySelector('textarea').value !== text", arg=before)
+            other = "(text) => document.querySelector('textarea').value !== text"
+            page.wait_for_function(other, arg=before, timeout=LONG / 8)
             return
         page.keyboard.press("Escape")
     pytest.fail("the menu of templates does not open")
@@ -175,13 +178,36 @@ def test_slider_changes_the_curve(page):
         assert paint < 2000
 
 
+def answers(page):
+    """Return the times in which the page shows another tab and takes a step of a slider, medians of 5 [s]."""
+    shown = """(text) => [...document.querySelectorAll(".q-tab-panel button")].some(
+        (button) => button.offsetParent && button.textContent.includes(text))"""
+    tabs, steps = [], []
+    for _ in range(5):
+        page.locator(".q-slider .q-slider__track-container").first.focus()
+        before, start = toml(page), time.monotonic()
+        page.keyboard.press("ArrowRight")
+        page.wait_for_function("(text) => document.querySelector('textarea').value !== text", arg=before, polling=10)
+        steps.append(time.monotonic() - start)
+        for tab, button in (("Saved runs", "Compare"), ("Watch", "Pause")):
+            start = time.monotonic()
+            page.evaluate(
+                "(name) => [...document.querySelectorAll('.q-tab')].find((tab) => tab.textContent.includes(name)).click()",
+                tab,
+            )
+            page.wait_for_function(shown, arg=button, polling=10)
+            tabs.append(time.monotonic() - start)
+    return sorted(tabs)[len(tabs) // 2], sorted(steps)[2]
+
+
 def test_box_of_balls_moves_and_is_cancelled(page, server):
-    """Two hundred spheres move during the run; Cancel leaves no files."""
+    """Two hundred spheres move during the run, and the page answers; Cancel leaves no files."""
+    busy = is_busy()
     choose(page, "Shaken box of balls")
     longer = toml(page).replace('duration = "1 s"', 'duration = "5 s"').replace("snapshots = 200", "snapshots = 1000")
     page.locator("textarea").first.fill(longer)
     page.wait_for_timeout(1000)  # the page waits for the end of typing
-    page.get_by_role("button", name="Run and keep").click()
+    page.get_by_role("button", name="Run and save").click()
     page.wait_for_function("window.rbParticles && window.rbParticles.frames > 3")
     assert page.evaluate("window.rbParticles.particles") == 200
     before = picture(page, ".rb-scene canvas")
@@ -190,14 +216,15 @@ def test_box_of_balls_moves_and_is_cancelled(page, server):
     page.wait_for_timeout(200)
     assert picture(page, ".rb-scene canvas") != before
     page.get_by_text("computed up to t").wait_for()  # motion and energy grow
-    start = time.monotonic()
-    page.get_by_role("tab", name="Drawing").click()
-    page.locator(".rb-drawing svg").wait_for()
-    print(f"\nanother tab during a run: {time.monotonic() - start:.2f} s")
-    page.get_by_role("tab", name="Watch").click()
+    during = answers(page)
+    page.get_by_role("button", name="Cancel").wait_for()  # the run is still in progress
     page.get_by_role("button", name="Cancel").click()
     page.get_by_text("cancelled").wait_for()
     assert not list(server[1].glob("*.vtkhdf"))
+    without = answers(page)
+    for name, busy_time, idle_time in zip(("another tab", "step of a slider"), during, without, strict=True):
+        print(f"\n{name}: {1e3 * busy_time:.0f} ms during a run, {1e3 * idle_time:.0f} ms without")
+        assert busy_time < (max(1.0, 4 * idle_time) if busy else 1.0)
 
 
 def test_controls_of_particles(page, server, tmp_path):
@@ -206,16 +233,16 @@ def test_controls_of_particles(page, server, tmp_path):
     short = toml(page).replace("count = 200", "count = 100").replace('duration = "1 s"', 'duration = "6 s"')
     page.locator("textarea").first.fill(short.replace("snapshots = 200", "snapshots = 12"))
     page.wait_for_timeout(1000)  # the page waits for the end of typing
-    page.evaluate("navigator.clipboard.writeText = async (text) => { window.rbCopied = text; }")
+    page.evaluate("() => { navigator.clipboard.writeText = async (text) => { window.rbCopied = text; }; }")
     page.get_by_role("button", name="Copy").click()
-    page.wait_for_function("window.rbCopied !== undefined")
+    page.wait_for_function("typeof window.rbCopied === 'string'")
     assert rb.Case.from_toml(page.evaluate("window.rbCopied")) == rb.Case.from_toml(toml(page))
-    page.get_by_role("button", name="Run and keep").click()
+    page.get_by_role("button", name="Run and save").click()
     page.get_by_text("computed up to t").wait_for()  # there is a checkpoint
     page.get_by_role("button", name="Pause").first.click()
-    page.get_by_text("paused; Run resumes").wait_for()
-    page.get_by_role("button", name="Run and keep").click()
-    page.get_by_text("kept as run-").wait_for()
+    page.get_by_text("paused; Run and save resumes").wait_for()
+    page.get_by_role("button", name="Run and save").click()
+    page.get_by_text("saved as run-").wait_for()
     (name,) = server[1].glob("run-*.vtkhdf")
     assert rb.load(name.with_suffix(".nc")) == rb.simulate(
         rb.Case.from_toml(toml(page)), snapshots=tmp_path / "x.vtkhdf", progress=False
@@ -255,7 +282,7 @@ def test_map_is_clicked_and_the_case_downloaded(page, server, tmp_path):
     page.get_by_label("to", exact=True).first.fill("0.8 mm")
     page.get_by_label("values").first.fill("4")
     page.get_by_role("button", name="Compute map").click()
-    page.get_by_text("kept as map-").wait_for()
+    page.get_by_text("saved as map-").wait_for()
     page.wait_for_timeout(500)
     box = page.locator(".nicegui-echart")
     x, y = page.evaluate(
@@ -270,8 +297,8 @@ def test_map_is_clicked_and_the_case_downloaded(page, server, tmp_path):
     assert rb.Case.from_toml(toml(page)).dampers[0].gap == pytest.approx(0.8e-3)
     page.get_by_role("tab", name="Watch").click()  # a late answer to a click may have come after the look at the map
     page.get_by_text("finished at t = 5 s").wait_for()
-    page.get_by_role("button", name="Run and keep").click()
-    page.get_by_text("kept as run-").wait_for()
+    page.get_by_role("button", name="Run and save").click()
+    page.get_by_text("saved as run-").wait_for()
     page.get_by_text("Summary", exact=True).click()
     summary = page.locator(".font-mono.whitespace-pre").first
     summary.wait_for()
@@ -286,7 +313,7 @@ def test_map_is_clicked_and_the_case_downloaded(page, server, tmp_path):
     script = download(page, page.get_by_role("button", name="Python script"), tmp_path / "case.py")
     done = subprocess.run([sys.executable, script], cwd=tmp_path, check=True, capture_output=True, text=True)
     assert numbers(done.stdout) == shown
-    page.get_by_role("tab", name="Results").click()
+    page.get_by_role("tab", name="Saved runs").click()
     page.get_by_role("button", name="Download", exact=True).click()
     file = download(page, page.locator(".q-menu").get_by_text("MATLAB"), tmp_path / "run.mat")
     assert file.read_bytes().startswith(b"MATLAB")
@@ -295,7 +322,7 @@ def test_map_is_clicked_and_the_case_downloaded(page, server, tmp_path):
 def test_narrow_window_and_wrong_input(page):
     """At 1024 pixels nothing is cut; an unknown key and a case beyond the memory have their messages in the page."""
     page.set_viewport_size({"width": 1024, "height": 768})
-    for tab in ("Map", "Results", "Drawing", "Watch"):
+    for tab in ("Map", "Saved runs", "Drawing", "Watch"):
         page.get_by_role("tab", name=tab).click()
         assert page.evaluate("document.documentElement.scrollWidth") <= 1024
     text = toml(page)
@@ -327,23 +354,166 @@ def test_pictures_for_the_documentation(page, tmp_path):
         page.get_by_label("second parameter").click()
         page.get_by_role("option", name="load.amplitude").click()
         page.get_by_role("button", name="Compute map").click()
-        page.get_by_text("kept as map-").wait_for()
+        page.get_by_text("saved as map-").wait_for()
         page.wait_for_timeout(1000)
         page.screenshot(path=folder / "app_map.png")
         page.get_by_role("tab", name="Watch").click()
     choose(page, "Shaken box of balls")
-    page.get_by_role("button", name="Run and keep").click()
+    page.get_by_role("button", name="Run and save").click()
     page.wait_for_function("window.rbParticles && window.rbParticles.frames > 40")
     frames = []
     for _ in range(24 if os.environ.get("PICTURES") else 2):
         shot = Image.open(BytesIO(page.screenshot(clip={"x": 460, "y": 50, "width": 980, "height": 620})))
         frames.append(shot.resize((588, 372)).convert("P", palette=Image.Palette.ADAPTIVE, colors=64))
         page.wait_for_timeout(60)
-    page.get_by_text("kept as run-").wait_for()
+    page.get_by_text("saved as run-").wait_for()
     page.wait_for_function("window.rbParticles.frames === 200")  # each snapshot once
     page.screenshot(path=folder / "app_particles.png")
     frames[0].save(folder / "app_film.gif", save_all=True, append_images=frames[1:], duration=120, loop=0)
     assert (folder / "app_film.gif").stat().st_size < 1_500_000
+
+
+def stored(folder, name, text):
+    """Compute a case and store it in the folder of the page under a name, as its worker does."""
+    worker.run(lambda *_: None, text, str(folder), name, False)
+    return [folder / f"{name}{suffix}" for suffix in (".nc", ".vtkhdf")]
+
+
+def test_map_fills_block_by_block(page):
+    """The map in the browser has the points of finished blocks during the study, and all of them at its end."""
+    choose(page, "Shaken box of balls")
+    short = toml(page).replace("count = 200", "count = 60").replace('duration = "1 s"', 'duration = "0.3 s"')
+    page.locator("textarea").first.fill(short.replace(", snapshots = 200", ""))
+    page.get_by_role("tab", name="Map").click()
+    pick(page, "parameter", "structure.motion.amplitude")
+    page.get_by_label("values").first.fill("8")
+    page.wait_for_timeout(1000)
+    page.get_by_role("button", name="Compute map").click()
+    drawn = """() => {
+        const box = document.querySelector(".nicegui-echart"), chart = box && getElement(+box.id.slice(1)).chart;
+        const {series} = (chart && chart.getOption()) || {};
+        return series && series.length ? series[0].data.filter(([x, y]) => y !== null).length : 0;
+    }"""
+    page.wait_for_function(f"(({drawn})() % 8) > 0", polling=20)  # more than none, fewer than all
+    page.get_by_text(re.compile(r"\d of 8 variants")).wait_for()
+    page.get_by_text("saved as map-").wait_for()
+    page.wait_for_function(f"({drawn})() === 8")
+
+
+def test_saved_runs_are_compared(page, server, tmp_path):
+    """Two ticked runs are drawn in one figure, with the differences of their cases and their results."""
+    text = rb.Case.from_toml(toml(page)).to_toml().replace('duration = "5.0 s"', 'duration = "1.0 s"')
+    files = stored(server[1], "narrow", text) + stored(server[1], "wide", text.replace('"0.0004 m"', '"0.0008 m"'))
+    page.get_by_role("tab", name="Saved runs").click()
+    for name in ("narrow", "wide"):
+        page.get_by_role("checkbox", name=name).click()
+    page.get_by_role("button", name="Compare the ticked runs").click()
+    table = page.locator(".q-tab-panel .font-mono", has_text="Differences of the cases")
+    table.wait_for()
+    lines = [line.split() for line in table.inner_text().splitlines()]
+    assert ["dampers[0].gap", "0.0004", "m", "0.0008", "m"] in lines
+    assert lines[1] == ["narrow", "wide"]
+    page.wait_for_function(
+        "[...document.querySelectorAll('.rb-charts canvas')].filter((c) => c.offsetParent).length === 2"
+    )
+    colours = """() => {
+        const canvas = [...document.querySelectorAll(".rb-charts canvas")].find((c) => c.offsetParent);
+        const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height), found = {};
+        for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255) {
+            const name = [data[i], data[i + 1], data[i + 2]].join();
+            found[name] = (found[name] || 0) + 1;
+        }
+        return found;
+    }"""
+    first, second = (",".join(str(int(c[k : k + 2], 16)) for k in (1, 3, 5)) for c in rb.plots.SERIES_COLOURS[:2])
+    page.wait_for_function(f"(({colours})()['{first}'] || 0) > 50 && (({colours})()['{second}'] || 0) > 50")
+    if os.environ.get("PICTURES"):
+        page.mouse.move(5, 5)
+        page.screenshot(path=Path(os.environ["PICTURES"]) / "app_compare.png")
+    for file in files:
+        file.unlink(missing_ok=True)
+
+
+def test_case_files_are_opened(page, tmp_path):
+    """A case file from elsewhere is opened; one with an unknown key has its message in the page, and loses nothing."""
+    page.get_by_text("finished at t = 5 s").wait_for()
+    good, bad, binary = (tmp_path / name for name in ("good.toml", "bad.toml", "binary.toml"))
+    text = toml(page).replace('"0.4 mm"', '"0.6 mm"')
+    good.write_text(text)
+    bad.write_text(text.replace("gap =", "gapp ="))
+    binary.write_bytes(b"\x89PNG\xff")
+
+    def choose_file(file):
+        page.get_by_role("button", name="Open", exact=True).click()
+        page.locator("input[type=file]").set_input_files(file)
+        page.get_by_text("Open a case file").wait_for(state="hidden")
+
+    choose_file(good)
+    page.wait_for_function("document.querySelector('textarea').value.includes('0.6 mm')")
+    page.get_by_text("finished at t = 5 s").wait_for()
+    choose_file(bad)
+    page.get_by_text("gapp: there is no such field here").first.wait_for()
+    page.get_by_text("did you mean 'gap'?").first.wait_for()
+    assert not page.locator(".rb-charts").first.is_visible()  # no picture of another case
+    choose_file(binary)
+    page.get_by_text("binary.toml is not a text in UTF-8").wait_for()
+    assert "gapp" in toml(page)
+    choose_file(good)
+    page.get_by_text("finished at t = 5 s").wait_for()
+
+
+def test_paused_run_is_resumed_after_a_reload(page, server):
+    """After Pause and a reload, the page lists the paused run, and Resume completes it."""
+    choose(page, "Shaken box of balls")
+    short = toml(page).replace("count = 200", "count = 60").replace('duration = "1 s"', 'duration = "5 s"')
+    page.locator("textarea").first.fill(short.replace("snapshots = 200", "snapshots = 12"))
+    page.wait_for_timeout(1000)
+    page.get_by_role("button", name="Run and save").click()
+    page.get_by_text("computed up to t").wait_for()
+    page.get_by_role("button", name="Pause").first.click()
+    page.get_by_text("paused; Run and save resumes").wait_for()
+    page.reload()
+    page.get_by_role("tab", name="Saved runs (1 paused)").click()
+    page.get_by_role("button", name="Resume").click()
+    page.get_by_text(re.compile("saved as run-")).wait_for()
+    (name,) = server[1].glob("run-*.vtkhdf")
+    assert rb.load(name.with_suffix(".nc")).status == "finished"
+    page.wait_for_function("window.rbParticles.frames === 12")
+    for file in server[1].glob(f"{name.stem}.*"):
+        file.unlink()
+
+
+def test_frame_of_a_thousand_particles(page, server):
+    """Without drawing, a frame of 1000 particles takes the processor a small part of the 33 ms of 30 frames a second."""
+    text = template("box").replace("count = 200", "count = 1000").replace('"settled"', '"lattice"')
+    text = text.replace('["50 mm", "36 mm", "36 mm"]', '["90 mm", "72 mm", "72 mm"]')
+    files = stored(server[1], "thousand", text.replace('"1 s"', '"3 ms"').replace("snapshots = 200", "snapshots = 30"))
+    page.get_by_role("tab", name="Saved runs").click()
+    page.get_by_role("button", name="Open its case").first.click()
+    page.wait_for_function("window.rbParticles && window.rbParticles.frames === 30")
+    assert page.evaluate("window.rbParticles.particles") == 1000
+    decode, update = page.evaluate(
+        """async () => {
+            const {fetchBody} = await import("rattlebox-binary");
+            const box = document.querySelector(".rb-scene").parentElement, view = getElement(+box.id.slice(1));
+            view.playing = false;
+            const timed = async (count, action) => {
+                const times = [];
+                for (let k = 0; k < count; k++) {
+                    const start = performance.now();
+                    await action(k);
+                    times.push(performance.now() - start);
+                }
+                return times.sort((a, b) => a - b)[Math.floor(count / 2)];
+            };
+            const load = () => fetchBody(`${view.url}?first=0`);
+            return [await timed(5, load) / 30, await timed(120, (k) => { view.frame = k % 30; view.show(); })];
+        }"""
+    )
+    print(f"\na frame of 1000 particles: {decode:.2f} ms to load, {update:.2f} ms to update")
+    assert decode + update < 33 / 4
+    for file in files:
+        file.unlink(missing_ok=True)
 
 
 DEEP = '42["event",' + "[" * 200_000 + "]" * 200_000 + "]"
@@ -422,12 +592,12 @@ def test_closed_page_and_killed_server(browser, tmp_path):
         page.set_default_timeout(LONG)
         page.goto(address)
         page.get_by_text("finished at t = 5 s").wait_for()
-        page.get_by_role("button", name="Run and keep").click()
-        page.get_by_text("kept as run-").wait_for()
+        page.get_by_role("button", name="Run and save").click()
+        page.get_by_text("saved as run-").wait_for()
         choose(page, "Shaken box of balls")
         page.locator("textarea").first.fill(toml(page).replace('duration = "1 s"', 'duration = "100 s"'))
         page.wait_for_timeout(1000)
-        page.get_by_role("button", name="Run and keep").click()
+        page.get_by_role("button", name="Run and save").click()
         page.get_by_text(re.compile(r"\d % of \d+ steps")).wait_for()
         return page
 
@@ -471,7 +641,7 @@ def mapped(page, file, parameter, low, high, count, measure, *, log=False):
     page.get_by_role("button", name="Compute map").click()
     page.get_by_role("button", name="Stop").wait_for()
     page.get_by_role("button", name="Compute map").wait_for(timeout=20 * LONG)
-    page.get_by_text("kept as map-").wait_for()
+    page.get_by_text("saved as map-").wait_for()
     file = download(page, page.get_by_role("button", name="CSV table"), file)
     table = np.genfromtxt(file, delimiter=",", names=True, deletechars="")
     assert len(table) == count
@@ -508,9 +678,9 @@ def test_lecture_number_of_balls_and_amplitude(page, server, tmp_path):
         balls = f'diameter = "{diameter} mm", mass = "60 g"'
         page.locator("textarea").first.fill(text.replace('diameter = "6 mm", count = 200', balls))
         page.wait_for_timeout(1000)
-        page.get_by_role("button", name="Run and keep").click()
+        page.get_by_role("button", name="Run and save").click()
         page.get_by_role("button", name="Cancel").wait_for()
-        page.get_by_role("button", name="Run and keep").wait_for(timeout=20 * LONG)
+        page.get_by_role("button", name="Run and save").wait_for(timeout=20 * LONG)
         (file,) = set(server[1].glob("run-*.nc")) - before
         before.add(file)
         values = rb.load(file).summary().values

@@ -1,4 +1,4 @@
-"""The case that a page edits: its text, its tables, and what is wrong with it."""
+"""The case that a page edits: its text, its tables and its errors."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Path_ = tuple[str | int, ...]
 
 
 class Draft:
-    """A case in the making.
+    """Case that a page edits, also while it is not valid.
 
     Parameters
     ----------
@@ -183,6 +183,11 @@ def quantity(value: Any) -> tuple[float, str] | None:
     return (float(match[1]), (match[2] or "").strip()) if match else None
 
 
+def rounded(value: float) -> float:
+    """Return a value with four significant digits."""
+    return float(f"{value:.4g}")
+
+
 def numeric_paths(given: Any, above: Path_ = ()) -> list[Path_]:
     """Return the paths of all single numbers with or without a unit in the tables of a case."""
     if isinstance(given, (dict, list)):
@@ -191,6 +196,32 @@ def numeric_paths(given: Any, above: Path_ = ()) -> list[Path_]:
             return []
         return [path for key, item in items for path in numeric_paths(item, (*above, key))]
     return [above] if above and quantity(given) is not None else []
+
+
+def leaves(toml: str) -> dict[str, str]:
+    """Return all single values of a case file as text by path, but for the descriptions of materials."""
+    found: dict[str, str] = {}
+
+    def walk(node: Any, path: Path_) -> None:
+        if isinstance(node, dict):
+            for key, item in node.items():
+                walk(item, (*path, key))
+        elif isinstance(node, list) and any(isinstance(item, dict) for item in node):
+            for number, item in enumerate(node):
+                walk(item, (*path, number))
+        elif path[-1] not in ("title", "source"):
+            found[dotted(path)] = _short(node)
+
+    walk(tomllib.loads(toml), ())
+    return found
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(_short, value)) if len(value) < 4 else f"{len(value)} values"
+    number = quantity(value)
+    text = f"{number[0]:.6g} {number[1]}".strip() if number else str(value)
+    return text if len(text) <= 30 else f"{text[:27]}..."
 
 
 def dotted(path: Path_) -> str:

@@ -1,4 +1,4 @@
-"""What the server refuses: other hosts and origins, requests without the token, tricks with paths, and large bodies."""
+"""Refusal of requests from other hosts and origins, without the token, with relative paths, or with large bodies."""
 
 from __future__ import annotations
 

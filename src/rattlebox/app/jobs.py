@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import multiprocessing
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, ClassVar
 
 from .worker import main
@@ -17,7 +18,7 @@ class TaskFailed(Exception):
 
 
 class Worker:
-    """A process for one task at a time. It starts at once and is replaced after it was stopped."""
+    """A process for one task at a time. It starts at once, and again for the next task after it was stopped."""
 
     _spare: ClassVar[list[Worker]] = []
 
@@ -26,19 +27,25 @@ class Worker:
 
     @classmethod
     def ready(cls) -> Worker:
-        """Return a worker that has probably loaded its libraries already, and start the next one."""
-        worker = cls._spare.pop() if cls._spare else cls()
-        cls.start_spare()
-        return worker
+        """Return the spare worker, which has loaded its libraries; a new one if there is none."""
+        return cls._spare.pop() if cls._spare else cls()
 
     @classmethod
     def start_spare(cls) -> None:
-        """Start a worker in advance."""
-        cls._spare.append(cls())
+        """Start a worker for the next page, unless there is one."""
+        if not cls._spare:
+            cls._spare.append(cls())
+
+    @classmethod
+    async def load_spare(cls) -> None:
+        """Start the spare worker and return when it has loaded its libraries."""
+        cls.start_spare()
+        with suppress(TaskFailed):
+            await cls._spare[0].do("start")
 
     @classmethod
     def stop_spare(cls) -> None:
-        """End the worker that waits."""
+        """End the spare worker."""
         while cls._spare:
             cls._spare.pop().stop()
 
@@ -86,7 +93,7 @@ class Worker:
             raise TaskFailed(f"{ended}\n  try: a shorter or smaller case") from None
 
     def stop(self) -> None:
-        """End the process, whatever it computes."""
+        """End the process and its computation."""
         self._process.kill()
         self._process.join()
         self._connection.close()
@@ -125,6 +132,7 @@ class Live:
                         await self._worker.do("start")
                     self._started = True
                     self._show(await asyncio.wait_for(self._worker.do(*task_now), self._longest))
+                    Worker.start_spare()  # not earlier: its start takes as much processor time as the first picture
                 except TimeoutError:
                     self._worker.stop()
                     self._started = False

@@ -7,14 +7,16 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from nicegui import run as threads
 from nicegui import ui
 
 import rattlebox as rb
 
-from .draft import dotted, numeric_paths, quantity
+from .draft import dotted, numeric_paths, quantity, rounded
 from .jobs import TaskFailed, Worker
-from .kept import offer
 from .results import MAP_FORMATS, download_map, maps, new_name, stored_map
+from .runs import offer
+from .views import prefixed
 
 if TYPE_CHECKING:
     from .page import Page
@@ -48,14 +50,16 @@ class MapTab:
             self._stop = ui.button("Stop", icon="stop", on_click=self.stop).props("dense outline color=negative")
             self._open = ui.select([], label="open a map").props("dense options-dense").classes("w-36")
             self._open.on("focus", self._list_maps)
-            self._open.on_value_change(lambda event: self.open(event.value) if event.value else None)
+            self._open.on_value_change(self._open_map)
         self._stop.set_visibility(False)
-        self._status = ui.label("").classes("text-sm text-gray-700")
+        self._status = ui.label("A map shows a measure over one or two numbers; a click on a point shows its run.")
+        self._status.classes("text-sm text-gray-700")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._chart = ui.echart({}, on_point_click=self._watch_point).classes("w-full").style("height:460px")
-        with ui.row():
+        with ui.row() as self._downloads:
             for suffix, title in MAP_FORMATS.items():
                 ui.button(title, icon="download", on_click=partial(self._download, suffix)).props("flat dense")
+        self._chart.set_visibility(False), self._downloads.set_visibility(False)
 
     def case_changed(self) -> None:
         """Offer the numbers of the case."""
@@ -91,7 +95,7 @@ class MapTab:
         start, stop = (0.0, 1.0) if not unit and 0 <= value <= 1 else (value / 3, value * 3)
         if name.endswith("start"):
             start, stop = -1.0, 1.0
-        low.set_value(f"{start:.3g} {unit}".strip()), high.set_value(f"{stop:.3g} {unit}".strip())
+        low.set_value(f"{rounded(start):g} {unit}".strip()), high.set_value(f"{rounded(stop):g} {unit}".strip())
 
     # ---- computing
 
@@ -115,11 +119,13 @@ class MapTab:
         self._worker = worker = Worker()
         self._start.set_visibility(False), self._stop.set_visibility(True)
         self._failure.set_text("")
+        self._status.set_text("starting")
         watch = asyncio.get_running_loop().create_task(self._poll(worker))
         try:
             what = axes, self._measure.value, bool(self._compare.value)
             await worker.do("sweep", page.draft.text, str(page.folder), self._name, *what, progress=self._report)
-            self._status.set_text(f"kept as {self._name} in {page.folder.name}; click a point to watch it")
+            await self._draw()
+            self._status.set_text(f"saved as {self._name} in {page.folder.name}; click a point to watch it")
         except TaskFailed as error:
             if self._worker is worker:
                 self._failure.set_text(str(error))
@@ -129,16 +135,15 @@ class MapTab:
             if self._worker is worker:
                 self._worker = None
                 self._start.set_visibility(True), self._stop.set_visibility(False)
-        self._draw()
 
-    def _report(self, _: str, done: int, total: int) -> None:
+    def _report(self, what: str, done: int, total: int) -> None:
         if self._worker is not None:  # else a report that a stopped process had sent
-            self._status.set_text(f"{done} of {total} variants")
+            self._status.set_text(f"{done} of {total} {what}")
 
     async def _poll(self, worker: Worker) -> None:
         while self._worker is worker:
             await asyncio.sleep(POLL)
-            self._draw()
+            await self._draw()
 
     def stop(self) -> None:
         """Stop the computation; finished blocks remain."""
@@ -152,10 +157,11 @@ class MapTab:
         if worker is not None:
             worker.stop()
 
-    def open(self, name: str) -> None:
+    async def _open_map(self, event: Any) -> None:
         """Show a map of the folder."""
-        self._name, self._typed = name, {}
-        self._draw()
+        if event.value:
+            self._name, self._typed = event.value, {}
+            await self._draw()
 
     def _list_maps(self) -> None:
         try:
@@ -165,17 +171,20 @@ class MapTab:
 
     # ---- drawing
 
-    def _draw(self) -> None:
-        if not self._name or not (self._page.folder / f"{self._name}.zarr").exists():
+    async def _draw(self) -> None:
+        name = self._name
+        if not name or not (self._page.folder / f"{name}.zarr").exists():
             return
         try:
-            study, drawn = stored_map(self._page.folder, self._name)
+            study, drawn = await threads.io_bound(stored_map, self._page.folder, name) or (None, "")
         except rb.RattleboxError as error:
             if self._worker is None:
                 self._failure.set_text(str(error))
             return
+        if study is None or name != self._name:  # the server ends, or another map was opened
+            return
         values = study[drawn]
-        unit = values.attrs.get("units", "")
+        unit, scale = prefixed(values.attrs.get("units", ""), [values])
         label = values.attrs.get("long_name", drawn) + (f" ({unit})" if unit not in ("", "1") else "")
         axes = [str(dim) for dim in values.dims]
         points = [study[axis].values for axis in axes]
@@ -185,8 +194,9 @@ class MapTab:
         self._grid = axes, points, units
         titles = [f"{axis} ({unit})" if unit not in ("", "1") else axis for axis, unit in zip(axes, units, strict=True)]
         draw = _lines if len(axes) == 1 else _heat
+        self._chart.set_visibility(True), self._downloads.set_visibility(True)
         self._chart.options.clear()
-        self._chart.options.update(draw(values.values, points, titles, label))
+        self._chart.options.update(draw(scale * values.values, points, titles, label))
         self._chart.update()
 
     def _as_typed(self, axis: str, values: Any, unit: str) -> tuple[Any, str]:

@@ -1,4 +1,4 @@
-"""The page: the case on the left, and on the right what it does, maps of it, and the results that were kept."""
+"""The page: the case on the left; its motion, maps of it and the saved runs on the right."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import secrets
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from nicegui import run as threads
 from nicegui import ui
@@ -16,13 +16,13 @@ from nicegui import ui
 import rattlebox as rb
 
 from .binary import decode
-from .draft import TEMPLATES, Draft, dotted, numeric_paths, python_script, quantity, template
+from .draft import TEMPLATES, Draft, dotted, numeric_paths, python_script, quantity, rounded, template
 from .elements import Balls, Charts, Particles
 from .form import Form, written
 from .jobs import Live, TaskFailed, Worker
-from .kept import KeptTab
 from .maps import MapTab
-from .results import new_name
+from .results import new_name, paused_case, paused_runs
+from .runs import RunsTab
 from .views import view_of_run, view_of_snapshots
 
 Bodies = dict[str, Callable[..., bytes]]
@@ -32,16 +32,21 @@ IMPACT_COLUMNS = {
     "time": "time (s)",
     "speed": "approach speed (m/s)",
     "force": "peak force (N)",
-    "loss": "energy lost (mJ)",
+    "loss": "energy lost",
 }
 STYLE = """
 .nicegui-content { padding: 0 }
-.rb-left { width: 33%; min-width: 320px; max-width: 460px; height: calc(100vh - 50px); position: sticky; top: 50px }
+.rb-left { flex: 0 0 clamp(320px, 33%, 460px); height: calc(100vh - 50px); position: sticky; top: 50px }
+.q-btn--dense.q-btn--rectangle { padding: 2px 10px }
+.q-uploader__list, .q-uploader__subtitle { display: none }
 .rb-left .q-field__label { text-transform: none }
 .rb-left textarea { height: 26vh; resize: none; white-space: pre }
 .rb-drawing svg { width: 100%; height: auto }
 """
 MOST_SLIDERS = 4
+MOST_FILE = 1_000_000
+"""Largest case file that is uploaded [B]."""
+RESUMES = "Run and save resumes from the last checkpoint"
 OUTDATED = "the pictures show an earlier case"
 PINNED = {
     "steel_ball": ("damper.gap", "load.amplitude", "damper.start", "damper.ball.radius"),
@@ -60,7 +65,14 @@ class Page:
         Folder for files.
     bodies
         Functions that return the binary bodies which the browser may fetch, by key; the page adds and removes its own.
+
+    Attributes
+    ----------
+    runs_in_progress
+        Names of the runs that the pages of this server compute; their checkpoints are not those of paused runs.
     """
+
+    runs_in_progress: ClassVar[set[str]] = set()
 
     def __init__(self, folder: Path, bodies: Bodies) -> None:
         self.folder, self._bodies = folder, bodies
@@ -127,7 +139,7 @@ class Page:
 
     def _build_results(self) -> None:
         with ui.tabs().props("dense align=left") as tabs:
-            watch, maps, kept = ui.tab("watch", "Watch"), ui.tab("map", "Map"), ui.tab("kept", "Results")
+            watch, maps, saved = ui.tab("watch", "Watch"), ui.tab("map", "Map"), ui.tab("runs", "Saved runs")
             drawing = ui.tab("drawing", "Drawing")
         self._right = tabs
         with ui.tab_panels(tabs, value="watch", animated=False).classes("w-full").props("keep-alive"):
@@ -135,16 +147,16 @@ class Page:
                 self._build_watch()
             with ui.tab_panel(maps).classes("p-0"):
                 self.map_tab = MapTab(self)
-            with ui.tab_panel(kept).classes("p-0"):
-                self.kept_tab = KeptTab(self)
+            with ui.tab_panel(saved).classes("p-0"):
+                self.runs_tab = RunsTab(self, saved)
             with ui.tab_panel(drawing).classes("p-0"):
                 self._drawing = ui.html("", sanitize=False).classes("w-full rb-drawing")
-        tabs.on_value_change(lambda event: self.kept_tab.refresh() if event.value == "kept" else None)
+        tabs.on_value_change(lambda event: self.runs_tab.refresh() if event.value == "runs" else None)
         tabs.on_value_change(lambda event: self._draw_case() if event.value == "drawing" else None)
 
     def _build_watch(self) -> None:
         with ui.row().classes("w-full items-center gap-2"):
-            self._run_button = ui.button("Run and keep", icon="play_arrow", on_click=self.run).props("dense")
+            self._run_button = ui.button("Run and save", icon="play_arrow", on_click=self.run).props("dense")
             self._pause_button = ui.button("Pause", icon="pause", on_click=self._pause).props("dense outline")
             self._cancel_button = ui.button("Cancel", icon="stop", on_click=self._cancel)
             self._cancel_button.props("dense outline color=negative")
@@ -157,9 +169,10 @@ class Page:
         self._show_running(False)
         self._slider_row = ui.row().classes("w-full items-center gap-4")
         self._show_sliders()
-        self._not_kept = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
+        self._not_saved = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._warnings = ui.label("").classes("text-amber-800 text-sm whitespace-pre-wrap")
+        self._notes = ui.label("").classes("text-gray-600 text-xs whitespace-pre-wrap")
         self._balls = Balls().classes("w-full")
         self._particles = Particles().classes("w-full")
         self._particles.set_visibility(False)
@@ -195,8 +208,8 @@ class Page:
         low = (-1.0 if name.endswith("start") else 0.0) if share else -1.0
 
         def text(place: float) -> Any:
-            value = place if share else number * 4**place
-            return float(f"{value:.4g}") if not unit else f"{value:.4g} {unit}"
+            value = rounded(place if share else number * 4**place)
+            return f"{value:g} {unit}" if unit else value
 
         with ui.column().classes("gap-0").style("width:150px"):
             label = ui.label(f"{name.removeprefix('damper.')}: {written(self.draft.value(path))}").classes("text-xs")
@@ -228,8 +241,8 @@ class Page:
 
     def use_text(self, text: str, pinned: tuple[str, ...] = ()) -> None:
         """Replace the case by the text of a case file."""
-        if not self._unsaved:
-            self.stop_run()
+        if self._worker is not None and not self._unsaved:
+            self._stop_for_another_case()
         self._pinned = list(pinned) or self._pinned
         self.draft.set_text(text)
         self._clear_view()
@@ -238,21 +251,29 @@ class Page:
         self.map_tab.case_changed()
         self._edited()
 
+    def _stop_for_another_case(self) -> None:
+        self.stop_run()
+        if self._paused in self.runs_tab.show_paused():
+            ui.notify(f"{self._paused} is paused; resume it in the tab Saved runs")
+
     def _clear_view(self) -> None:
         """Remove the pictures of an earlier case."""
         self._particles.show("", growing=False)
-        for element in (self._charts, self._impacts):
+        for element in (self._balls, self._charts, self._impacts):
             element.set_visibility(False)
-        for label in (self._summary, self._warnings, self._about):
+        for label in (self._summary, self._warnings, self._notes, self._about):
             label.set_text("")
 
     def _use_template(self, event: Any) -> None:
-        self.use_text(template(event.value), PINNED.get(event.value, ("damper.friction",)))
+        if event.value is not None:
+            self.use_text(template(event.value), PINNED.get(event.value, ("damper.friction",)))
 
     def _changed(self) -> None:
         """Show errors, or compute a case of balls on a line again."""
         self.form.show_errors()
         draft = self.draft
+        if self._templates.value and draft.text != template(self._templates.value):
+            self._templates.set_value(None)  # so that the same template can be chosen again
         self._text_error.set_text("\n".join(f"{name}: {text}" if name else text for name, text in draft.errors.items()))
         if self._right.value == "drawing":
             asyncio.get_running_loop().create_task(self._draw_case())
@@ -268,7 +289,7 @@ class Page:
         self._compare.set_visibility(not particles)
         self._pause_button.set_visibility(particles and self._worker is not None)
         if self._worker is None:
-            self._status.set_text("press Run and keep: particles are computed in the background" if particles else "")
+            self._status.set_text("press Run and save: particles are computed in the background" if particles else "")
         if particles:
             return
         request = ("live", draft.text, str(self.folder), bool(self._compare.value))
@@ -294,9 +315,11 @@ class Page:
             more = f", of which the first {listed} are listed" if listed < about["impact_count"] else ""
             self._impacts.set_text(f"Impacts: {about['impact_count']}{more}")
             self._impact_rows = about["impacts"]
+            self._impact_list.columns[-1]["label"] = f"energy lost ({about['energy_unit']})"
             self._list_impacts()
         self._summary.set_text(about["summary"])
         self._warnings.set_text("\n".join(about["warnings"]))
+        self._notes.set_text("\n".join(about["notes"]))
         self._failure.set_text("" if about["status"] in ("finished", "interrupted") else about["status"])
         shown = f"; drawn from {about['shown']}" if about["shown"] else ""
         status = "computed up to" if about["status"] == "interrupted" else f"{about['status']} at"
@@ -310,8 +333,9 @@ class Page:
         """Send the list of impacts if it is open; it is larger than everything else that a slider changes."""
         if self._impacts.value:
             self._impact_list.rows = self._impact_rows
+            self._impact_list.update()
 
-    async def show_kept(self, name: str, run: rb.Run) -> None:
+    async def show_saved(self, name: str, run: rb.Run) -> None:
         """Show the case of a run in the folder; of particles, also the stored result."""
         self.use_text(run.case.to_toml())
         self.show_watch()
@@ -334,19 +358,23 @@ class Page:
         self._pause_button.set_visibility(running and case is not None and bool(case.particle_dampers))
 
     async def run(self) -> None:
-        """Run the case in the background and keep the result in the folder."""
+        """Run the case in the background and save the result in the folder."""
         draft = self.draft
         if draft.case is None or self._worker is not None:
             return
         try:
-            name = self._paused if self._paused and self._paused_text == draft.text else new_name(self.folder, "run")
+            resumed = self._paused_text == draft.text and self._paused in paused_runs(self.folder)
+            name = self._paused if resumed else new_name(self.folder, "run")
         except OSError as error:
             self._failure.set_text(f"the folder {self.folder} cannot be used: {error.strerror}")
             return
-        self._paused = ""
         self._running, self._running_text = name, draft.text
+        self.runs_in_progress.add(name)
+        self.runs_tab.show_paused()
         self._worker = worker = Worker()
         self._show_running(True)
+        self._progress.set_value(0)
+        self._status.set_text("starting")
         self._failure.set_text("")
         particles = bool(draft.case.particle_dampers)
         if particles:
@@ -360,26 +388,44 @@ class Page:
         except TaskFailed as error:
             if self._worker is worker:
                 self._failure.set_text(str(error))
+                self._paused, self._paused_text = name, self._running_text
                 if (self.folder / f"{name}.checkpoint").exists():
-                    self._paused, self._paused_text = name, draft.text
-                    self._status.set_text("stopped; Run resumes from the last checkpoint")
+                    self._status.set_text(f"stopped; {RESUMES}")
             self._end(worker)
+        finally:
+            self.runs_in_progress.discard(name)
+            self.runs_tab.show_paused()
         if particles:
             self._particles.show(self._particles._props.get("url", ""), growing=False)
+
+    async def resume(self, name: str) -> None:
+        """Resume a paused run of the folder from its checkpoint.
+
+        Raises
+        ------
+        DataError
+            If its files are not in the folder, or a run of this page is in progress.
+        """
+        if self._worker is not None:
+            raise rb.DataError("a run of this page is in progress", "Pause or Cancel in the tab Watch first")
+        self.use_text(paused_case(self.folder, name))
+        self._paused, self._paused_text = name, self.draft.text
+        self.show_watch()
+        await self.run()
 
     _paused = _paused_text = _running = _running_text = _unsaved = ""
 
     def _ended(self, worker: Worker, name: str, problem: str) -> None:
-        """Report that a run was kept; if it could not be written, its process holds it until Save again or Cancel."""
+        """Report that a run was saved; if it could not be written, its process holds it until Save again or Cancel."""
         self._unsaved = name if problem else ""
         self._save_button.set_visibility(bool(problem))
         self._progress.set_visibility(False), self._pause_button.set_visibility(False)
         if problem:
-            self._status.set_text("computed, but not kept")
-            self._not_kept.set_text(f"{problem}\nThe result is not lost: press Save again when it can be written.")
+            self._status.set_text("computed, but not saved")
+            self._not_saved.set_text(f"{problem}\nThe result is not lost: press Save again when it can be written.")
         else:
-            self._not_kept.set_text("")
-            self._status.set_text(f"kept as {name} in {self.folder.name}")
+            self._not_saved.set_text("")
+            self._status.set_text(f"saved as {name} in {self.folder.name}")
             self._end(worker)
 
     def _end(self, worker: Worker) -> None:
@@ -411,16 +457,17 @@ class Page:
     def stop_run(self) -> None:
         """Stop the run in progress, if any."""
         worker, self._worker, self._unsaved = self._worker, None, ""
-        self._save_button.set_visibility(False), self._not_kept.set_text("")
+        self._save_button.set_visibility(False), self._not_saved.set_text("")
         if worker is not None:
             worker.stop()
+            self.runs_in_progress.discard(self._running)
+            self._paused, self._paused_text = self._running, self._running_text
 
     def _pause(self) -> None:
-        """Stop a particle run; its last checkpoint remains, from which Run resumes."""
-        self._paused, self._paused_text = self._running, self._running_text
+        """Stop a particle run; its last checkpoint remains, from which Run and save resumes."""
         self.stop_run()
         self._show_running(False)
-        self._status.set_text("paused; Run resumes from the last checkpoint")
+        self._status.set_text(f"paused; {RESUMES}" if self._paused in self.runs_tab.show_paused() else "stopped")
 
     def _cancel(self) -> None:
         """Stop a run and remove its unfinished files."""
@@ -429,6 +476,8 @@ class Page:
         if not (self.folder / f"{self._running}.nc").exists():
             for suffix in (".checkpoint", ".vtkhdf"):
                 (self.folder / f"{self._running}{suffix}").unlink(missing_ok=True)
+        self._paused = ""
+        self.runs_tab.show_paused()
         self._particles.show("")
         self._status.set_text("cancelled")
 
@@ -442,23 +491,32 @@ class Page:
         names = sorted(path.name for path in self.folder.glob("*.toml"))
         with ui.dialog() as dialog, ui.card():
             ui.label("Open a case file").classes("font-semibold")
+            ui.label(f"in the folder {self.folder.name}:" if names else f"The folder {self.folder.name} has none yet.")
             for name in names[:30]:
                 button = ui.button(name, on_click=lambda name=name: self._open(name)).on_click(dialog.close)
                 button.props("flat dense no-caps")
 
             async def read(event: Any) -> None:
                 dialog.close()
-                self.use_text((await event.file.read()).decode("utf-8", errors="replace"))
+                self._use_file(event.file.name, await event.file.read())
 
-            upload = ui.upload(label="from this computer", on_upload=read, auto_upload=True, max_file_size=1_000_000)
+            refused = ui.label("").classes("text-red-700 text-sm")
+            upload = ui.upload(label="Choose another file", on_upload=read, auto_upload=True, max_file_size=MOST_FILE)
             upload.props("accept=.toml")
+            upload.on_rejected(lambda: refused.set_text("A case file ends in .toml and has at most 1 MB."))
         dialog.open()
 
     def _open(self, name: str) -> None:
         try:
-            self.use_text((self.folder / name).read_text(encoding="utf-8-sig"))
-        except (OSError, UnicodeDecodeError) as error:
-            self._failure.set_text(f"{name} cannot be read: {error}")
+            self._use_file(name, (self.folder / name).read_bytes())
+        except OSError as error:
+            self._failure.set_text(f"{name} cannot be read: {error.strerror}")
+
+    def _use_file(self, name: str, content: bytes) -> None:
+        try:
+            self.use_text(content.decode("utf-8-sig"))
+        except UnicodeDecodeError:
+            self._failure.set_text(f"{name} is not a text in UTF-8; save it as UTF-8 and open it again")
 
 
 def _svg(case: rb.Case) -> str:

@@ -6,9 +6,13 @@ import io
 import json
 import re
 import tempfile
+import tomllib
 import zipfile
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+import xarray as xr
 
 import rattlebox as rb
 
@@ -39,6 +43,31 @@ def new_name(folder: Path, kind: str) -> str:
 def runs(folder: Path) -> list[str]:
     """Return the names of the runs in the folder, the newest first."""
     return _names(folder, ".nc")
+
+
+def name_of_case(folder: Path, name: str) -> str:
+    """Return the name that the case of a run has; "" if it has none or the file cannot be read."""
+    path = folder / f"{name}.nc"
+    return _name_in(path, path.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=500)
+def _name_in(path: Path, _changed: int) -> str:
+    try:
+        with xr.open_dataset(path) as stored:
+            return str(tomllib.loads(str(stored["case"].item())).get("name", ""))
+    except (OSError, ValueError, KeyError):
+        return ""
+
+
+def paused_runs(folder: Path) -> list[str]:
+    """Return the names of the particle runs with a checkpoint in the folder, the newest first."""
+    return [name for name in _names(folder, ".checkpoint") if (folder / f"{name}.vtkhdf").exists()]
+
+
+def paused_case(folder: Path, name: str) -> str:
+    """Return the case file of a particle run that has a checkpoint."""
+    return str(rb.Snapshots(inside(folder, name, ".vtkhdf")).case_toml)
 
 
 def maps(folder: Path) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 import socket
+import webbrowser
 from pathlib import Path
 from typing import Any
 
@@ -54,8 +55,7 @@ def build(folder: Path, port: int, token: str) -> None:
 
     app.add_middleware(Guard, token=token, hosts=(f"{HOST}:{port}", f"localhost:{port}"))
     core.sio.eio.max_http_buffer_size = MOST_BYTES
-    app.on_startup(Worker.start_spare)
-    app.on_startup(lambda: (schema(), Draft(folder), rb.materials(), rb.MEASURES))  # what the first page would load
+    app.on_startup(lambda: (schema(), Draft(folder), rb.materials(), rb.MEASURES))  # else the first page loads them
     app.on_shutdown(Worker.stop_spare)
 
 
@@ -92,8 +92,11 @@ def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
             else:
                 writer.close()
                 break
+        await Worker.load_spare()  # while it loads, a page would wait for the processor
         url = f"http://{HOST}:{port}/?token={token}"
         print(f"Rattlebox runs at {url}\nFiles are in {place}. Ctrl-C ends it.", flush=True)
+        if show:
+            await asyncio.to_thread(webbrowser.open, url)
 
     app.on_startup(announce)
     options: dict[str, Any] = {
@@ -104,7 +107,7 @@ def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
         "favicon": "\N{HAMMER}",
         "gzip_middleware_factory": None,  # compression takes longer than the loopback
     }
-    ui.run(show=f"/?token={token}" if show else False, show_welcome_message=False, reconnect_timeout=3.0, **options)
+    ui.run(show=False, show_welcome_message=False, reconnect_timeout=3.0, **options)
 
 
 def _folder(folder: Path) -> Path:

@@ -1,8 +1,8 @@
-"""What the page draws of a run: curves, impacts, frames and the summary, as one binary body."""
+"""Binary bodies of a run for the page: curves, impacts, frames and the summary."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +25,9 @@ MOST_BYTES = 200_000_000
 
 
 def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
-    """Return the curves, the animation and the summary of a run, and the motion of a bare one beside it.
+    """Return the curves, the animation and the summary of a run, and the motion of the bare structure if it is given.
 
-    The body has the format of `rattlebox.app.binary`; lengths are in mm, energies in mJ.
+    The body has the format of `rattlebox.app.binary`; lengths are in mm, energies in `energy_unit`.
     """
     motion, energy = run.motion, run.energy
     time = motion.time.values
@@ -42,7 +42,9 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     if not points:
         arrays["displacement base"] = 1e3 * _component(motion.base_displacement.values, along)[rows]
         points = ["base"]
-    arrays |= {name: 1e3 * _total(energy[name])[rows] for name in _ENERGIES if name in energy}
+    energies = {name: _total(energy[name])[rows] for name in _ENERGIES if name in energy}
+    unit, scale = prefixed("J", energies.values())
+    arrays |= {name: scale * values for name, values in energies.items()}
     if bare is not None:
         chosen = _rows(bare.motion.time.size)
         arrays["bare time"] = bare.motion.time.values[chosen]
@@ -51,14 +53,21 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
         "points": points,
         "summary": str(run.summary()),
         "status": run.status,
-        "warnings": list(run.notes),
+        "warnings": [note for note in run.notes if note.startswith("warning: ")],
+        "notes": [note for note in run.notes if not note.startswith("warning: ")],
         "shown": f"every {rows.step} of {time.size} samples" if rows.step > 1 else "",
         "end": float(time[-1]),
+        "energy_unit": unit,
     }
     if "impacts" in run.groups:
         arrays |= _balls(run, rows)
         log = run.impacts
-        first = {"time": log.time, "speed": log.approach_speed, "force": log.peak_force, "loss": 1e3 * log.energy_lost}
+        first = {
+            "time": log.time,
+            "speed": log.approach_speed,
+            "force": log.peak_force,
+            "loss": scale * log.energy_lost,
+        }
         columns = {name: values.values[:MOST_LISTED].astype(float) for name, values in first.items()}
         about["impacts"] = [
             {"number": k + 1, **{name: f"{values[k]:.5g}" for name, values in columns.items()}}
@@ -67,11 +76,37 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
         about["impact_count"] = int(log.sizes["impact"])
         about["gaps"] = (1e3 * motion.clearance.values / 2).tolist() if "clearance" in motion else []
         about["damper_of_ball"] = motion.ball_damper.values.tolist() if "ball_damper" in motion else []
-    about["charts"] = _charts(arrays, points, run)
+    about["charts"] = _charts(arrays, points, run, unit)
     return encode(arrays, **about)
 
 
-def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run) -> list[dict[str, Any]]:
+def comparison(runs: Mapping[str, rb.Run]) -> bytes:
+    """Return charts of several runs: motion of the first point, or of the base, and losses in the dampers."""
+    arrays: dict[str, Any] = {}
+    losses = {
+        name: sum((_total(run.energy[each]) for each in _LOSSES if each in run.energy), np.zeros(run.motion.time.size))
+        for name, run in runs.items()
+    }
+    unit, scale = prefixed("J", losses.values())
+    charts: list[dict[str, Any]] = [
+        {"title": "Motion of the first point", "x": "Time (s)", "y": "Displacement (mm)", "series": []},
+        {"title": "Energy lost in the dampers", "x": "Time (s)", "y": f"Energy ({unit})", "series": []},
+    ]
+    for number, (name, run) in enumerate(runs.items()):
+        motion, rows = run.motion, _rows(run.motion.time.size)
+        moves = "displacement" in motion and run.case.modes.decay.size
+        x = motion.displacement.values[:, 0] if moves else motion.base_displacement.values
+        arrays[f"time {name}"] = motion.time.values[rows]
+        arrays[f"motion {name}"] = 1e3 * _component(x, _along(run))[rows]
+        arrays[f"loss {name}"] = scale * losses[name][rows]
+        colour = rb.plots.SERIES_COLOURS[number % len(rb.plots.SERIES_COLOURS)]
+        for chart, kind in zip(charts, ("motion", "loss"), strict=True):
+            line = {"name": name, "x": f"time {name}", "y": f"{kind} {name}", "colour": colour, "dash": number > 5}
+            chart["series"].append(line)
+    return encode(arrays, charts=charts)
+
+
+def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run, unit: str) -> list[dict[str, Any]]:
     """Return the charts of a run: title, labels of the axes, and series that name arrays."""
     colours = rb.plots.SERIES_COLOURS
 
@@ -89,7 +124,7 @@ def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run) -> list[
     ledger = [series(k, label, name, dash=name.endswith("loss")) for k, (name, label) in enumerate(present)]
     charts = [
         chart("Motion", "Time (s)", "Displacement (mm)", motion),
-        chart("Energy", "Time (s)", "Energy (mJ)", ledger),
+        chart("Energy", "Time (s)", f"Energy ({unit})", ledger),
     ]
     if "place" in arrays:
         balls = enumerate(run.motion.ball.values)
@@ -116,6 +151,19 @@ _ENERGIES = {
     "rolling_loss": "lost in rolling",
 }
 """Labels of the energies and losses."""
+_LOSSES = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
+"""Losses in dampers."""
+
+
+def prefixed(unit: str, values: Iterable[Any]) -> tuple[str, float]:
+    """Return the unit with a prefix, and the factor to it, for numbers in an SI unit; the largest is then at least 2."""
+    finite = [np.abs(each[np.isfinite(each)]) for each in map(np.asarray, values)]
+    largest = max((float(each.max(initial=0.0)) for each in finite), default=0.0)
+    if unit in ("m", "m/s", "N", "J", "W", "s") and largest > 0:
+        for prefix, scale in (("M", 1e-6), ("k", 1e-3), ("", 1.0), ("m", 1e3), ("µ", 1e6)):
+            if largest * scale >= 2 and (prefix in "mµ" or unit in "NJW"):
+                return prefix + unit, scale
+    return unit, 1.0
 
 
 def _rows(count: int) -> slice:
@@ -162,7 +210,7 @@ def _balls(run: rb.Run, rows: slice) -> dict[str, Any]:
         arrays["frame place"] = np.array([np.interp(frames, time, column) for column in place.T])
         at = log.time.values
         arrays["impact time"], arrays["impact speed"] = at, log.approach_speed.values
-        arrays["impact force"], arrays["impact loss"] = log.peak_force.values, 1e3 * log.energy_lost.values
+        arrays["impact force"] = log.peak_force.values
         arrays["impact contact"], arrays["impact damper"] = log.contact.values, log.damper.values
         after = frames - at[np.searchsorted(at, frames, side="right") - 1] if at.size else np.full(frames.size, np.inf)
         flash = FLASH * (time[-1] - time[0])

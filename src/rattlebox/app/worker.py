@@ -38,6 +38,8 @@ def main(connection: Connection) -> None:
             name, *arguments = connection.recv()
         except EOFError:
             return
+        if name in BACKGROUND and hasattr(os, "nice"):
+            os.nice(10)  # so that page and browser get the processor first
         try:
             result = TASKS[name](lambda *what: connection.send(("progress", *what)), *arguments)
             answer: tuple[Any, ...] = ("done", result)
@@ -122,17 +124,24 @@ def sweep(report: Report, toml: str, folder: str, name: str, axes: dict[str, Any
     case = rb.Case.from_toml(toml, folder=Path(folder))
     spaced = {path: _spaced(*values) for path, values in axes.items()}
     store = Path(folder) / f"{name}.zarr"
-    rb.sweep(case, spaced, measure, store=store, progress=lambda done, total: report("variants", done, total))
-    if compare:
+
+    def compute(case: rb.Case, axes: dict[str, Any], store: Path, what: str) -> None:
+        rb.sweep(case, axes, measure, store=store, progress=lambda done, total: report(what, done, total))
+
+    if compare:  # first, so that the map shows the ratio while it fills
         varied = {path: values for path, values in spaced.items() if not path.startswith("damper")}
         without = case.model_copy(update={"dampers": ()})
         varied = varied or {"duration": [case.duration]}
-        rb.sweep(without, varied, measure, store=store.with_suffix(".bare.zarr"), progress=False)
+        compute(without, varied, store.with_suffix(".bare.zarr"), "variants without damper")
+    compute(case, spaced, store, "variants")
 
 
 def _spaced(start: str, stop: str, count: int, logarithmic: bool) -> Any:
     return (rb.geomspace if logarithmic else rb.linspace)(start, stop, count)
 
+
+BACKGROUND = {"run", "sweep"}
+"""Tasks with a lower priority; they are the first task of their process."""
 
 TASKS: dict[str, Callable[..., Any]] = {
     "start": lambda report: None,

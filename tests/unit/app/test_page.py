@@ -11,7 +11,7 @@ from nicegui.testing import user_simulation
 from support import full_disk as full_disk_worker
 
 import rattlebox as rb
-from rattlebox.app import jobs, worker
+from rattlebox.app import jobs, maps, worker
 from rattlebox.app.binary import decode
 from rattlebox.app.draft import template
 from rattlebox.app.jobs import Worker
@@ -149,23 +149,39 @@ def test_particle_run_is_cancelled_and_its_files_are_removed(tmp_path):
     asyncio.run(visit())
 
 
-def test_closed_page_stops_its_run(tmp_path):
-    """Closing the page ends its processes; the checkpoint of the run remains."""
+def test_closed_page_stops_its_run_and_another_resumes_it(tmp_path):
+    """Closing the page ends its processes; the next page lists the run as paused and resumes it."""
 
     async def visit():
         async with opened(tmp_path) as (page, user, bodies):
             with user.client:
-                page._templates.set_value("box")
+                page.use_text(LONG_BOX)
                 running = asyncio.ensure_future(page.run())
             await until(lambda: (tmp_path / "run-001.checkpoint").exists())
+            assert page.runs_tab.show_paused() == []  # it is in progress
             worker = page._worker
             page.close()
             await running
             assert not worker._process.is_alive()
             assert not bodies
 
+    async def return_later():
+        async with opened(tmp_path) as (page, user, _):
+            await user.should_see("Saved runs (1 paused)")
+            with user.client:
+                page.runs_tab.refresh()
+            await user.should_see("run-001, paused")
+            user.find("Resume").click()
+            await until(lambda: "saved as run-001" in page._status.text)
+            await user.should_see("Saved runs")
+            await user.should_not_see("paused)")
+
     asyncio.run(visit())
     assert (tmp_path / "run-001.checkpoint").exists()
+    asyncio.run(return_later())
+    run = rb.load(tmp_path / "run-001.nc")
+    assert (run.status, run.case) == ("finished", rb.Case.from_toml(LONG_BOX))
+    assert not (tmp_path / "run-001.checkpoint").exists()
 
 
 def test_removed_folder_is_reported(tmp_path):
@@ -180,8 +196,8 @@ def test_removed_folder_is_reported(tmp_path):
                 await page.run()
             await user.should_see("cannot be used")
             with user.client:
-                page.kept_tab.refresh()
-                assert "cannot be read" in page.kept_tab._failure.text
+                page.runs_tab.refresh()
+                assert "cannot be read" in page.runs_tab._failure.text
 
     asyncio.run(visit())
 
@@ -206,7 +222,7 @@ def test_full_disk_loses_no_result(tmp_path, monkeypatch):
                 page.use_text(page.draft.text.replace('"5 s"', '"0.3 s"'))
                 await page.run()
             await user.should_see("no space is left on the disk")
-            await user.should_see("computed, but not kept")
+            await user.should_see("computed, but not saved")
             assert not list(folder.iterdir())
             with user.client:
                 page.use_text(page.draft.text.replace('"0.4 mm"', '"0.5 mm"'))  # does not end the process
@@ -214,9 +230,9 @@ def test_full_disk_loses_no_result(tmp_path, monkeypatch):
             await user.should_see("no space is left on the disk")
             flag.unlink()
             user.find("Save again").click()
-            await until(lambda: "kept as" in page._status.text)
-            await user.should_see("kept as run-001")
-            assert not page._not_kept.text
+            await until(lambda: "saved as" in page._status.text)
+            await user.should_see("saved as run-001")
+            assert not page._not_saved.text
             assert rb.load(folder / "run-001.nc").case.dampers[0].gap == pytest.approx(0.4e-3)
 
     asyncio.run(visit())
@@ -237,11 +253,11 @@ def test_full_disk_loses_no_checkpoint(tmp_path, monkeypatch):
             flag.touch()
             await running
             await user.should_see("no space is left on the disk")
-            await user.should_see("Run resumes from the last checkpoint")
+            await user.should_see("Run and save resumes from the last checkpoint")
             flag.unlink()
             with user.client:
                 await page.run()
-            await user.should_see("kept as run-001")
+            await user.should_see("saved as run-001")
 
     asyncio.run(visit())
     expected = rb.simulate(rb.Case.from_toml(LONG_BOX), snapshots=tmp_path / "x.vtkhdf", progress=False)
@@ -267,12 +283,12 @@ def test_folder_is_removed_during_a_run(tmp_path, monkeypatch):
                 page.map_tab._list_maps()
                 await page.map_tab._download("csv")
                 page._cancel()
-                assert "cannot be read" in page.kept_tab._failure.text or page.map_tab._failure.text
+                assert "cannot be read" in page.runs_tab._failure.text or page.map_tab._failure.text
             folder.mkdir()
             with user.client:
                 page.use_text(template("steel_ball").replace('"5 s"', '"0.3 s"'))
                 await page.run()
-            await user.should_see("kept as run-001")
+            await user.should_see("saved as run-001")
 
     asyncio.run(visit())
 
@@ -295,7 +311,7 @@ def test_run_that_exceeds_the_memory_is_refused(tmp_path):
             os.kill(page._worker._process.pid, signal.SIGKILL)
             await running
             assert "memory" in page._failure.text
-            await user.should_see("Run resumes from the last checkpoint")
+            await user.should_see("Run and save resumes from the last checkpoint")
 
     asyncio.run(visit())
 
@@ -308,7 +324,7 @@ def test_stored_particle_run_is_shown_again(tmp_path):
     async def visit():
         async with opened(tmp_path) as (page, user, bodies):
             with user.client:
-                await page.kept_tab._open("run-001")
+                await page.runs_tab._open("run-001")
                 arrays, about = decode(bodies[page._keys["particles"]](0))
             assert about["next"] == about["planned"] == arrays["position"].shape[0]
             assert page._summary.text == str(rb.load(tmp_path / "run-001.nc").summary())
@@ -316,6 +332,114 @@ def test_stored_particle_run_is_shown_again(tmp_path):
             with user.client:
                 next(field for name, field in page.form._inputs.items() if name.endswith("softening")).set_value("30")
             assert page._about.text == "the pictures show an earlier case"
+
+    asyncio.run(visit())
+
+
+def test_map_fills_while_it_is_computed(tmp_path, monkeypatch):
+    """The picture has the values of finished blocks during the study, and all of them at its end."""
+    monkeypatch.setattr(maps, "POLL", 0.05)
+    filled = []
+
+    async def visit():
+        async with opened(tmp_path) as (page, user, _):
+            tab = page.map_tab
+            with user.client:
+                page.use_text(SHORT_BOX.replace('"60 ms"', '"0.3 s"'))
+                (name, low, high, count, _), _ = tab._rows
+                name.set_value("structure.motion.amplitude")
+                low.set_value("2 mm"), high.set_value("8 mm"), count.set_value(8)
+                tab._measure.set_value("impact_loss")
+                computing = asyncio.ensure_future(tab.compute())
+            while not computing.done():
+                await asyncio.sleep(0.02)
+                if "series" in tab._chart.options:
+                    filled.append(sum(y is not None for _, y in tab._chart.options["series"][0]["data"]))
+            await computing
+            assert tab._failure.text == ""
+            await user.should_see("saved as map-001")
+
+    asyncio.run(visit())
+    assert filled == sorted(filled)
+    assert filled[-1] == 8
+    assert any(0 < number < 8 for number in filled), filled
+
+
+def test_runs_are_compared(tmp_path):
+    """The ticked runs are in one figure, with a table of their results and of the differences of their cases."""
+    for number, gap in enumerate(("0.4 mm", "0.7 mm", "1 mm")):
+        text = template("steel_ball").replace('"5 s"', '"0.3 s"').replace('"0.4 mm"', f'"{gap}"')
+        worker.run(lambda *_: None, text, str(tmp_path), f"run-00{number + 1}", False)
+    names = ["run-001", "run-002", "run-003"]
+
+    async def visit():
+        async with opened(tmp_path) as (page, user, bodies):
+            tab = page.runs_tab
+            with user.client:
+                tab.refresh()
+                await tab._compare()
+            await user.should_see("Tick two or more runs")
+            for name in names:
+                user.find(name).click()
+            user.find("Compare the ticked runs").click()
+            await until(lambda: tab._table.text)
+            arrays, about = decode(bodies[page._keys["comparison"]](0))
+            motion, loss = about["charts"]
+            assert [line["name"] for line in motion["series"]] == names
+            assert [line["name"] for line in loss["series"]] == names
+            assert len({line["colour"] for line in motion["series"]}) == 3
+            for name in names:
+                run = rb.load(tmp_path / f"{name}.nc")
+                expected = 1e3 * run.motion.displacement.values[:, 0]
+                assert arrays[f"motion {name}"] == pytest.approx(expected, abs=1e-6)
+            rows = [line.split() for line in tab._table.text.splitlines()]
+            assert ["dampers[0].gap", "0.0004", "m", "0.0007", "m", "0.001", "m"] in rows
+            assert any(row[:1] == ["impacts"] and len(row) == 4 for row in rows)
+
+    asyncio.run(visit())
+
+
+def test_opened_files(tmp_path):
+    """A file that is opened replaces the case; one with an unknown key, or that is no text, has a message in the page."""
+
+    async def visit():
+        async with opened(tmp_path) as (page, user, _):
+            good = template("row").encode()
+            (tmp_path / "mine.toml").write_bytes(good)
+            user.find("Open").click()
+            user.find("mine.toml").click()
+            assert page.draft.case.name == "row of three balls"
+            with user.client:
+                page._use_file("bad.toml", good.replace(b"gap =", b"gapp ="))
+                assert page.draft.case is None
+            await user.should_see("gapp: there is no such field here")
+            with user.client:
+                page._use_file("picture.toml", b"\x89PNG\xff")
+            await user.should_see("picture.toml is not a text in UTF-8")
+            assert b"gapp" in page.draft.text.encode()  # the case is as it was
+
+    asyncio.run(visit())
+
+
+def test_notes_are_not_warnings(tmp_path):
+    """Information about a run is in another place of the page than warnings, which have the words of the library."""
+    folder = tmp_path
+    worker.run(lambda *_: None, SHORT_BOX.replace('"60 ms"', '"10 ms"'), str(folder), "run-001", False)
+    far = template("steel_ball").replace('"5 s"', '"0.2 s"').replace('"0.4 mm"', '"100 mm"')
+
+    async def visit():
+        async with opened(folder) as (page, user, _):
+            with user.client:
+                await page.runs_tab._open("run-001")
+                stored = rb.load(folder / "run-001.nc").notes
+                assert page._notes.text == "\n".join(stored)
+                assert page._notes.text.startswith("step ")
+                assert page._warnings.text == ""
+                page.use_text(far)
+            await until(lambda: page._warnings.text)
+            assert "warning: " in page._warnings.text
+            assert page._warnings.text == "\n".join(rb.simulate(rb.Case.from_toml(far), progress=False).notes)
+            assert page._notes.text == ""
 
     asyncio.run(visit())
 

@@ -60,7 +60,7 @@ export default {
       }
       specs.forEach((spec, index) => {
         const chart = this.charts[index], dom = chart.getDom();
-        const text = spec.series.reduce((sum, { name }) => sum + 40 + 6 * name.length, 0);
+        const text = spec.series.reduce((sum, { name }) => sum + 48 + 6.3 * name.length, 0);
         const rows = spec.series.length > 1 ? Math.ceil(text / (dom.clientWidth - 30)) : 0;
         if (dom.style.height !== `${245 + 18 * rows}px`) { dom.style.height = `${245 + 18 * rows}px`; chart.resize(); }
         chart.setOption({

@@ -19,7 +19,7 @@ export default {
       <span style="min-width:150px">t = {{ now.toPrecision(3) }} s, {{ count }} frames</span>
       <label>speed <select v-model.number="rate"><option v-for="r in [5, 10, 30, 60]" :value="r">{{ r }} frames/s</option></select></label>
       <label>colour <select v-model="colour" @change="show()"><option value="speed">speed</option><option value="spin">spin</option><option value="species">species</option></select></label>
-      <label>cut <input type="range" min="-1" max="1" step="0.02" v-model.number="cut" @input="show()" style="width:90px" aria-label="cut plane"></label>
+      <label style="display:inline-flex;align-items:center;gap:4px">cut <input type="range" min="-1" max="1" step="0.02" v-model.number="cut" @input="show()" style="width:90px" aria-label="cut plane"></label>
       <span v-if="count && colour !== 'species'">0 to {{ top[colour].toPrecision(3) }} {{ colour === "speed" ? "m/s" : "rad/s" }} (dark to bright)</span>
     </div></div>`,
   props: { url: String, growing: Boolean },
@@ -110,7 +110,7 @@ export default {
       scene.add(this.view.mesh);
       this.view.fixed = { radius: arrays.radius, species: arrays.species, cavity: arrays.cavity };
       this.view.walls = about.cavities.map(({ kind, size, frame, place }) => {
-        const shape = kind === "box" ? new THREE.BoxGeometry(...size) : kind === "cylinder" ? new THREE.CylinderGeometry(size[0] / 2, size[0] / 2, size[2], 32, 1) : new THREE.SphereGeometry(size[0] / 2, 24, 12);
+        const shape = kind === "box" ? new THREE.BoxGeometry(...size) : kind === "cylinder" ? new THREE.CylinderGeometry(size[0] / 2, size[0] / 2, size[2], 16, 1) : new THREE.SphereGeometry(size[0] / 2, 24, 12);
         if (kind === "cylinder") shape.rotateX(Math.PI / 2);
         const lines = new THREE.LineSegments(kind === "sphere" ? new THREE.WireframeGeometry(shape) : new THREE.EdgesGeometry(shape, 20), new THREE.LineBasicMaterial({ color: "#555", transparent: true, opacity: kind === "sphere" ? 0.25 : 1 }));
         lines.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(...frame.map((axis) => new THREE.Vector3(...axis))));

@@ -1,0 +1,170 @@
+"""The tab with the runs in the folder: resume, compare, open, download."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nicegui import run as threads
+from nicegui import ui
+
+import rattlebox as rb
+
+from .draft import leaves
+from .elements import Charts
+from .results import FORMATS, download, inside, name_of_case, paused_runs, runs
+from .views import comparison
+
+if TYPE_CHECKING:
+    from .page import Page
+
+MOST_RUNS = 50
+MOST_DIFFERENCES = 12
+
+
+class RunsTab:
+    """List of the runs in the folder.
+
+    Parameters
+    ----------
+    page
+        Page of the tab.
+    tab
+        Its handle, whose label has the number of paused runs.
+    """
+
+    def __init__(self, page: Page, tab: ui.tab) -> None:
+        self._page, self._tab = page, tab
+        self._chosen: set[str] = set()
+        with ui.row().classes("items-center"):
+            ui.button("Refresh", icon="refresh", on_click=self.refresh).props("flat dense")
+            ui.button("Compare the ticked runs", icon="stacked_line_chart", on_click=self._compare).props("dense")
+        self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
+        self._download = partial(offer, self._failure, download, page.folder)
+        self._box = ui.column().classes("w-full gap-0")
+        self._charts = Charts().classes("w-full")
+        self._charts._props["columns"] = 1
+        self._table = ui.label("").classes("font-mono text-xs whitespace-pre overflow-x-auto w-full")
+        self.show_paused()
+
+    def show_paused(self) -> list[str]:
+        """Show the number of paused runs in the label of the tab, and return their names."""
+        try:
+            paused = [name for name in paused_runs(self._page.folder) if name not in self._page.runs_in_progress]
+        except OSError:  # reported when the tab is opened
+            paused = []
+        self._tab.props["label"] = f"Saved runs ({len(paused)} paused)" if paused else "Saved runs"
+        return paused
+
+    def refresh(self) -> None:
+        """Read the folder again."""
+        self._box.clear()
+        self._failure.set_text("")
+        with self._box:
+            self._list()
+
+    def _list(self) -> None:
+        folder = self._page.folder
+        try:
+            names = runs(folder)[:MOST_RUNS]
+            entries = [(name, name_of_case(folder, name), _written(folder / f"{name}.nc")) for name in names]
+        except OSError as error:
+            self._failure.set_text(f"the folder {folder} cannot be read: {error.strerror}")
+            return
+        paused = self.show_paused()
+        if not names and not paused:
+            ui.label("No runs in the folder yet; Run and save stores one.").classes("text-sm text-gray-600")
+        for name in paused:
+            with ui.row().classes("w-full items-center gap-2 no-wrap"):
+                ui.icon("pause").classes("text-xl px-2")
+                ui.label(f"{name}, paused").classes("whitespace-nowrap")
+                ui.button("Resume", icon="play_arrow", on_click=partial(self._resume, name)).props("dense no-caps")
+        for name, title, written in entries:
+            with ui.row().classes("w-full items-center gap-2 no-wrap"):
+                box = ui.checkbox(name, value=name in self._chosen)
+                box.on_value_change(lambda event, name=name: self._choose(name, event.value))
+                ui.label(title).classes("text-sm truncate")
+                ui.label(written).classes("text-xs text-gray-600 whitespace-nowrap")
+                ui.space()
+                ui.button("Open its case", on_click=partial(self._open, name)).props("flat dense no-caps")
+                with ui.button("Download", icon="download").props("flat dense no-caps"), ui.menu():
+                    for suffix, text in FORMATS.items():
+                        if suffix != "vtkhdf" or (folder / f"{name}.vtkhdf").exists():
+                            ui.menu_item(text, on_click=partial(self._download, name, suffix))
+
+    def _choose(self, name: str, chosen: bool) -> None:
+        (self._chosen.add if chosen else self._chosen.discard)(name)
+
+    async def _resume(self, name: str) -> None:
+        try:
+            await self._page.resume(name)
+        except rb.RattleboxError as error:
+            self._failure.set_text(str(error))
+
+    async def _open(self, name: str) -> None:
+        run = (await self._load([name])).get(name)
+        if run is not None:
+            await self._page.show_saved(name, run)
+
+    async def _load(self, names: list[str]) -> dict[str, rb.Run]:
+        """Return runs of the folder by name; show why if one cannot be read, and return none."""
+        folder = self._page.folder
+
+        def load() -> dict[str, rb.Run]:
+            return {name: rb.load(inside(folder, name, ".nc")) for name in names}
+
+        try:
+            loaded = await threads.io_bound(load) or {}
+        except (rb.RattleboxError, OSError, MemoryError) as error:
+            self._failure.set_text(str(error) or "the memory is exhausted")
+            return {}
+        self._failure.set_text("")
+        return loaded
+
+    async def _compare(self) -> None:
+        """Draw the motion of the chosen runs in one chart, and list their results and the differences of their cases."""
+        if len(self._chosen) < 2:
+            self._failure.set_text("Tick two or more runs.")
+            return
+        loaded = await self._load(sorted(self._chosen))
+        if loaded:
+            body = comparison(loaded)
+            self._charts.show(self._page.publish("comparison", lambda _: body))
+            self._table.set_text(f"{differences(loaded)}\n\n{rb.compare(loaded)}")
+
+
+def _written(path: Path) -> str:
+    return time.strftime("%Y-%m-%d %H:%M", time.localtime(path.stat().st_mtime))
+
+
+async def offer(failure: ui.label, content_of: Callable[..., bytes], folder: Path, name: str, suffix: str) -> None:
+    """Let the browser download a result, or show why there is none."""
+    try:
+        content = await threads.io_bound(content_of, folder, name, suffix) or b""
+    except (rb.RattleboxError, OSError, MemoryError) as error:
+        failure.set_text(str(error) or "the memory is exhausted")
+    else:
+        failure.set_text("")
+        ui.download.content(content, f"{name}.{'zip' if content[:2] == b'PK' else suffix}")
+
+
+def differences(loaded: dict[str, rb.Run]) -> str:
+    """Return a table of the values in which the cases of runs differ."""
+    cases = {name: leaves(run.case_toml) for name, run in loaded.items()}
+    paths = list(dict.fromkeys(path for case in cases.values() for path in case))
+    differing = [path for path in paths if len({case.get(path) for case in cases.values()}) > 1]
+    if not differing:
+        return "The cases are equal."
+    rows = [["", *cases]] + [[path, *(case.get(path, "-") for case in cases.values())] for path in differing]
+    widths = [max(map(len, column)) for column in zip(*rows[: MOST_DIFFERENCES + 1], strict=True)]
+    lines = [
+        "  ".join(
+            [row[0].ljust(widths[0]), *(each.rjust(width) for each, width in zip(row[1:], widths[1:], strict=True))]
+        )
+        for row in rows[: MOST_DIFFERENCES + 1]
+    ]
+    more = len(differing) - MOST_DIFFERENCES
+    return "\n".join(["Differences of the cases", *lines, *([f"and {more} more"] if more > 0 else [])])
