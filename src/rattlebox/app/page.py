@@ -21,7 +21,7 @@ from .elements import Balls, Charts, Particles
 from .form import Form, written
 from .jobs import Live, TaskFailed, Worker
 from .maps import MapTab
-from .results import new_name, paused_case, paused_runs
+from .results import DATA_FILES, new_name, paused_case, paused_runs, store_file
 from .runs import RunsTab
 from .views import view_of_run, view_of_snapshots
 
@@ -65,14 +65,10 @@ class Page:
         Folder for files.
     bodies
         Functions that return the binary bodies which the browser may fetch, by key; the page adds and removes its own.
-
-    Attributes
-    ----------
-    runs_in_progress
-        Names of the runs that the pages of this server compute; their checkpoints are not those of paused runs.
     """
 
     runs_in_progress: ClassVar[set[str]] = set()
+    """Names of the runs that the pages of this server compute; their checkpoints are not those of paused runs."""
 
     def __init__(self, folder: Path, bodies: Bodies) -> None:
         self.folder, self._bodies = folder, bodies
@@ -490,8 +486,12 @@ class Page:
     def _open_dialog(self) -> None:
         names = sorted(path.name for path in self.folder.glob("*.toml"))
         with ui.dialog() as dialog, ui.card():
-            ui.label("Open a case file").classes("font-semibold")
-            ui.label(f"in the folder {self.folder.name}:" if names else f"The folder {self.folder.name} has none yet.")
+            ui.label("Open a case file, or add a file of data that a case names").classes("font-semibold")
+            ui.label(
+                f"in the folder {self.folder.name}:"
+                if names
+                else f"The folder {self.folder.name} has no case files yet."
+            )
             for name in names[:30]:
                 button = ui.button(name, on_click=lambda name=name: self._open(name)).on_click(dialog.close)
                 button.props("flat dense no-caps")
@@ -502,8 +502,10 @@ class Page:
 
             refused = ui.label("").classes("text-red-700 text-sm")
             upload = ui.upload(label="Choose another file", on_upload=read, auto_upload=True, max_file_size=MOST_FILE)
-            upload.props("accept=.toml")
-            upload.on_rejected(lambda: refused.set_text("A case file ends in .toml and has at most 1 MB."))
+            upload.props(f"accept={','.join(['.toml', *DATA_FILES])}")
+            upload.on_rejected(
+                lambda: refused.set_text(f"A file has at most 1 MB and ends in .toml, {', '.join(DATA_FILES)}.")
+            )
         dialog.open()
 
     def _open(self, name: str) -> None:
@@ -513,10 +515,19 @@ class Page:
             self._failure.set_text(f"{name} cannot be read: {error.strerror}")
 
     def _use_file(self, name: str, content: bytes) -> None:
+        """Open a case file; write another file, such as a record that a case names, to the folder."""
         try:
-            self.use_text(content.decode("utf-8-sig"))
+            if name.lower().endswith(".toml"):
+                self.use_text(content.decode("utf-8-sig"))
+                return
+            store_file(self.folder, name, content)
         except UnicodeDecodeError:
             self._failure.set_text(f"{name} is not a text in UTF-8; save it as UTF-8 and open it again")
+        except (rb.RattleboxError, OSError) as error:
+            self._failure.set_text(str(error))
+        else:
+            self.use_text(self.draft.text)
+            ui.notify(f"{name} is in the folder {self.folder.name}")
 
 
 def _svg(case: rb.Case) -> str:

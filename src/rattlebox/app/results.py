@@ -30,6 +30,9 @@ FORMATS = {
 }
 """Titles of the downloads of a run by suffix."""
 
+DATA_FILES = (".csv", ".txt", ".dat", ".at2", ".mat", ".npz")
+"""Suffixes of the files of data that can be added to the folder."""
+
 MAP_FORMATS = {"csv": "CSV table", "nc": "netCDF", "png": "figure", "html": "report", "py": "Python script"}
 """Titles of the downloads of a map by suffix."""
 
@@ -45,14 +48,9 @@ def runs(folder: Path) -> list[str]:
     return _names(folder, ".nc")
 
 
-def name_of_case(folder: Path, name: str) -> str:
-    """Return the name that the case of a run has; "" if it has none or the file cannot be read."""
-    path = folder / f"{name}.nc"
-    return _name_in(path, path.stat().st_mtime_ns)
-
-
 @lru_cache(maxsize=500)
-def _name_in(path: Path, _changed: int) -> str:
+def name_of_case(path: Path, changed: float) -> str:
+    """Return the name that the case of a run has; "" if it has none, or the file, changed at a time, cannot be read."""
     try:
         with xr.open_dataset(path) as stored:
             return str(tomllib.loads(str(stored["case"].item())).get("name", ""))
@@ -94,6 +92,25 @@ def inside(folder: Path, name: str, suffix: str) -> Path:
     if not path.exists():
         raise rb.DataError(f"{path} does not exist; it may have been removed")
     return path
+
+
+def store_file(folder: Path, name: str, content: bytes) -> None:
+    """Write a file of data to the folder.
+
+    Raises
+    ------
+    DataError
+        If the name is not a plain one with a suffix of `DATA_FILES`, or is taken.
+    """
+    if not re.fullmatch(r"[\w-][\w .-]{0,80}", name) or not name.lower().endswith(DATA_FILES):
+        raise rb.DataError(
+            f"{name!r} is not the name of a file of data", f"a name that ends in {', '.join(DATA_FILES)}"
+        )
+    try:
+        with (folder / name).open("xb") as file:
+            file.write(content)
+    except FileExistsError:
+        raise rb.DataError(f"{name} is in the folder already", "another name, or remove the old file") from None
 
 
 def download(folder: Path, name: str, suffix: str) -> bytes:

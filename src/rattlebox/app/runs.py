@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -70,7 +70,7 @@ class RunsTab:
         folder = self._page.folder
         try:
             names = runs(folder)[:MOST_RUNS]
-            entries = [(name, name_of_case(folder, name), _written(folder / f"{name}.nc")) for name in names]
+            times = [(folder / f"{name}.nc").stat().st_mtime for name in names]
         except OSError as error:
             self._failure.set_text(f"the folder {folder} cannot be read: {error.strerror}")
             return
@@ -82,12 +82,12 @@ class RunsTab:
                 ui.icon("pause").classes("text-xl px-2")
                 ui.label(f"{name}, paused").classes("whitespace-nowrap")
                 ui.button("Resume", icon="play_arrow", on_click=partial(self._resume, name)).props("dense no-caps")
-        for name, title, written in entries:
+        for name, changed in zip(names, times, strict=True):
             with ui.row().classes("w-full items-center gap-2 no-wrap"):
                 box = ui.checkbox(name, value=name in self._chosen)
                 box.on_value_change(lambda event, name=name: self._choose(name, event.value))
-                ui.label(title).classes("text-sm truncate")
-                ui.label(written).classes("text-xs text-gray-600 whitespace-nowrap")
+                ui.label(name_of_case(folder / f"{name}.nc", changed)).classes("text-sm truncate")
+                ui.label(f"{datetime.fromtimestamp(changed):%Y-%m-%d %H:%M}").classes("text-xs whitespace-nowrap")
                 ui.space()
                 ui.button("Open its case", on_click=partial(self._open, name)).props("flat dense no-caps")
                 with ui.button("Download", icon="download").props("flat dense no-caps"), ui.menu():
@@ -136,10 +136,6 @@ class RunsTab:
             self._table.set_text(f"{differences(loaded)}\n\n{rb.compare(loaded)}")
 
 
-def _written(path: Path) -> str:
-    return time.strftime("%Y-%m-%d %H:%M", time.localtime(path.stat().st_mtime))
-
-
 async def offer(failure: ui.label, content_of: Callable[..., bytes], folder: Path, name: str, suffix: str) -> None:
     """Let the browser download a result, or show why there is none."""
     try:
@@ -158,13 +154,8 @@ def differences(loaded: dict[str, rb.Run]) -> str:
     differing = [path for path in paths if len({case.get(path) for case in cases.values()}) > 1]
     if not differing:
         return "The cases are equal."
-    rows = [["", *cases]] + [[path, *(case.get(path, "-") for case in cases.values())] for path in differing]
-    widths = [max(map(len, column)) for column in zip(*rows[: MOST_DIFFERENCES + 1], strict=True)]
-    lines = [
-        "  ".join(
-            [row[0].ljust(widths[0]), *(each.rjust(width) for each, width in zip(row[1:], widths[1:], strict=True))]
-        )
-        for row in rows[: MOST_DIFFERENCES + 1]
-    ]
-    more = len(differing) - MOST_DIFFERENCES
-    return "\n".join(["Differences of the cases", *lines, *([f"and {more} more"] if more > 0 else [])])
+    shown = differing[:MOST_DIFFERENCES]
+    columns = [["", *shown], *([name, *(case.get(path, "-") for path in shown)] for name, case in cases.items())]
+    padded = [[text.rjust(max(map(len, column))) for text in column] for column in columns]
+    more = [f"and {len(differing) - len(shown)} more"] if len(differing) > len(shown) else []
+    return "\n".join(["Differences of the cases", *map("  ".join, zip(*padded, strict=True)), *more])

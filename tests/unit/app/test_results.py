@@ -17,7 +17,18 @@ import rattlebox as rb
 from rattlebox.app import worker
 from rattlebox.app.binary import decode, encode
 from rattlebox.app.draft import template
-from rattlebox.app.results import FORMATS, MAP_FORMATS, download, download_map, inside, maps, new_name, runs, stored_map
+from rattlebox.app.results import (
+    FORMATS,
+    MAP_FORMATS,
+    download,
+    download_map,
+    inside,
+    maps,
+    new_name,
+    runs,
+    store_file,
+    stored_map,
+)
 from rattlebox.app.views import view_of_snapshots
 
 SHORT_BOX = (
@@ -181,3 +192,15 @@ def test_other_names_are_refused(folder, name):
 def test_results_survive_the_page(folder):
     """The map of a page and its companion without damper are on disk when the task is done."""
     assert {path.name for path in Path(folder).glob("*.zarr")} == {"map-001.zarr", "map-001.bare.zarr"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../x.csv", "/tmp/x.csv", "a/b.csv", ".x.csv", "x.toml", "x.nc", "x.csv.py", "x" * 99 + ".csv", "\x00.csv", ""],
+)
+def test_files_are_added_to_the_folder_only(folder, name):
+    """A file of data needs a plain name, so that it is in the folder and replaces no result."""
+    before = sorted(folder.iterdir())
+    with pytest.raises(rb.DataError, match="not the name"):
+        store_file(folder, name, b"1")
+    assert sorted(folder.iterdir()) == before
