@@ -84,6 +84,12 @@ def test_a_speed_dependence_without_noise_is_found() -> None:
     assert "depends on the approach speed" in " ".join(result.warnings)
     constant = rb.calibrate(rb.Drops(heights, 0.49 * heights))
     assert "depends" not in " ".join(constant.warnings)
+    steady = rb.calibrate(rb.Drops(heights, heights * (0.7 * speeds**-0.001) ** 2))
+    assert steady.exponent.item() == pytest.approx(-0.001, abs=1e-9)
+    assert "depends" not in " ".join(steady.warnings)
+    rng = np.random.default_rng(2)
+    rough = rb.calibrate(rb.Drops(heights, heights * (0.7 * rng.uniform(0.7, 1.3, 5)) ** 2))
+    assert abs(rough.exponent.item()) > 0.02 and "depends" not in " ".join(rough.warnings)
 
 
 def test_drag_of_air_is_that_of_an_integrated_fall() -> None:

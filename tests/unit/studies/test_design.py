@@ -71,6 +71,7 @@ def test_objective_is_the_worst_of_all_runs() -> None:
         trials=2,
         progress=False,
     )
+    assert result[GAP].units == "m"
     for trial in range(2):
         gap = float(result[GAP][trial])
         axes = {"load.amplitude": ["2 kN", "5 kN"], "damper.start": [-1, 0.5], GAP: [gap]}
