@@ -71,13 +71,15 @@ def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
         script = _comparison_script(names)
         commands = tuple(f"rattlebox run {file} -o {file.removesuffix('.toml')}" for file in names.values())
         return Recipe((*commands, "python script.py"), (*files, File("script.py", script, script)))
-    script = _script(call, bool(cases))
+    # Several cases of one call are the best designs, each of which can begin the search.
+    first = next(iter(names.values()), "")
+    script = _script(call, first)
     files.append(File("script.py", script, script))
     if call.function == "simulate":
-        return Recipe(("rattlebox run case.toml -o out", "python script.py"), tuple(files))
+        return Recipe((f"rattlebox run {first} -o out", "python script.py"), tuple(files))
     more: list[str] = []
     if call.kind and not call.remarks:
-        study = _study_file(call)
+        study = _study_file(call, first)
         files.append(File("study.toml", study, study))
         more.append("rattlebox sweep study.toml -o study")
     return Recipe((*more, "python script.py"), tuple(files), call.remarks)
@@ -87,11 +89,11 @@ def _file_name(number: int, count: int) -> str:
     return "case.toml" if count == 1 else f"case_{number + 1}.toml"
 
 
-def _script(call: Call, has_case: bool) -> str:
+def _script(call: Call, case: str) -> str:
     lines = ["import rattlebox as rb", ""]
     positional = [call.first] if call.first else []
-    if has_case:
-        lines.append('case = rb.Case.from_file("case.toml")')
+    if case:
+        lines.append(f'case = rb.Case.from_file("{case}")')
         positional.append("case")
     named = "".join(f"\n    {name}={_literal(value)}," for name, value in call.arguments.items())
     arguments = ", ".join(positional)
@@ -113,9 +115,9 @@ def _comparison_script(names: Mapping[str, str]) -> str:
     )
 
 
-def _study_file(call: Call) -> str:
+def _study_file(call: Call, case: str) -> str:
     import tomli_w
 
-    text = tomli_w.dumps({"kind": call.kind, **call.arguments, "case": {"file": "case.toml"}})
+    text = tomli_w.dumps({"kind": call.kind, **call.arguments, "case": {"file": case}})
     # Lists of plain values on one line each.
     return _LIST.sub(lambda found: "[" + ", ".join(part.strip() for part in found[1].split(",\n") if part) + "]", text)

@@ -227,6 +227,17 @@ def test_numbers_of_the_answer_are_those_of_the_result(tmp_path: Path) -> None:
     )
 
 
+def test_files_of_a_front_are_those_that_its_script_reads(tmp_path: Path) -> None:
+    """The report of a design with several best cases names one of its case files in the script and in the study file."""
+    parameters = {"damper.gap": ["0.5 mm", "1 mm"], "damper.ball.radius": ["8 mm", "14 mm"]}
+    result = rb.design(case(), parameters, {"rms": "min", "added_mass": "max"}, progress=False)
+    assert result.front.size > 1
+    downloads = Page(rb.write_report(result, tmp_path / "a.html")).downloads
+    for file in ("script.py", "study.toml"):
+        (name,) = re.findall(r'"(case.*\.toml)"', downloads[file])
+        assert name in downloads
+
+
 def test_sweeps_are_compared_only_where_both_are_computed(tmp_path: Path) -> None:
     """A report of an unfinished frequency response does not state that a sweep agrees with one that is not computed."""
     response = result_of("frequency_response")
