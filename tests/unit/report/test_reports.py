@@ -112,6 +112,18 @@ def result_of(name: str) -> Any:
         "bifurcation": lambda: rb.bifurcation(case(), "load.amplitude", [5, 10], cycles=(20, 8), **quiet),
         "basins": lambda: rb.basins(on_shaker(), {"damper.start": rb.linspace(-1, 1, 3)}, cycles=(20, 8), **quiet),
         "lyapunov": lambda: rb.lyapunov(case(), {"load.amplitude": [5, 10]}, cycles=(20, 20), **quiet),
+        "bifurcation of impacts": lambda: rb.bifurcation(
+            case(), "load.amplitude", [5, 10], cycles=(20, 8), show="impacts", measure="peak", tolerance=1e-3, **quiet
+        ),
+        "response with a measure": lambda: rb.frequency_response(
+            case(), [28, 30], cycles=(20, 10), measure="loss_per_cycle", tolerance=1e-2, samples=32, **quiet
+        ),
+        "basins apart": lambda: rb.basins(
+            on_shaker(), {"damper.start": rb.linspace(-1, 1, 3)}, cycles=(20, 8), apart=0.9, **quiet
+        ),
+        "lyapunov of pairs": lambda: rb.lyapunov(
+            case(), {"load.amplitude": [5, 10]}, cycles=(20, 20), pairs=3, seed=1, **quiet
+        ),
         "loss_map": lambda: rb.loss_map(on_shaker(), [1e-3, 2e-3], [10.0, 20.0], **quiet),
         "damping_curve": lambda: rb.damping_curve(free(), ["0.2 mm", "0.4 mm"], packings=4, **quiet),
         "damping curves": lambda: dict.fromkeys(("a", "b"), result_of("damping_curve")),
@@ -184,7 +196,19 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
 
 @pytest.mark.parametrize(
     "name",
-    ["run", "comparison", "sweep", "frequency_response", "loss_map", "damping_curve", "drops", "calibration"],
+    [
+        "run",
+        "comparison",
+        "sweep",
+        "response with a measure",
+        "bifurcation of impacts",
+        "basins apart",
+        "lyapunov of pairs",
+        "loss_map",
+        "damping_curve",
+        "drops",
+        "calibration",
+    ],
 )
 def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The case file and the script of a report, in an empty folder, compute an equal result."""

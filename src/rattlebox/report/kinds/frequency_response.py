@@ -11,7 +11,7 @@ import numpy as np
 from rattlebox.plots.response import plot_frequency_response
 from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
-from rattlebox.report.kinds.sweep import options_of, system_words
+from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Picture, Table
 from rattlebox.results.quantities import MISSING, amount
 
@@ -115,15 +115,18 @@ def _tables(response: xr.Dataset) -> Iterator[Table]:
 
 def _call(response: xr.Dataset) -> Call:
     directions = [str(each) for each in response.direction.values]
+    measures, remarks = measures_argument(response, ("peak", "rms", "impacts_per_cycle"))
     return Call(
         "frequency_response",
         {
             "frequencies": response.frequency.values.tolist(),
             "levels": [f"{float(level)!r} {response.level.attrs['units']}" for level in response.level.values],
             "direction": "both" if len(directions) > 1 else directions[0],
+            **({"measure": measures} if measures else {}),
             **options_of(response, "cycles", "samples", "point", "tolerance"),
         },
-        "frequency_response",
+        "" if remarks else "frequency_response",
+        remarks,
     )
 
 

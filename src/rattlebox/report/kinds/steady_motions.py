@@ -13,7 +13,7 @@ from rattlebox.plots.bifurcation import plot_bifurcation
 from rattlebox.plots.lyapunov import plot_lyapunov
 from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
-from rattlebox.report.kinds.sweep import axes_argument, options_of, system_words
+from rattlebox.report.kinds.sweep import axes_argument, measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Picture
 from rattlebox.results.case_words import counted
 from rattlebox.results.quantities import amount
@@ -46,9 +46,19 @@ def _bifurcation_call(study: xr.Dataset) -> Call | None:
     (path, values), directions = next(iter(axes.items())), [str(each) for each in study.direction.values]
     if not isinstance(values, list):
         return None
-    options = options_of(study, "cycles", "point")
-    given = {"path": path, "values": values, "direction": "both" if len(directions) > 1 else directions[0], **options}
-    return Call("bifurcation", given, "bifurcation")
+    given = {"path": path, "values": values, "direction": "both" if len(directions) > 1 else directions[0]}
+    given |= options_of(study, "cycles", "point", "tolerance")
+    if "approach_speed" in study:
+        given["show"] = "impacts"
+    return _with_measures("bifurcation", study, given)
+
+
+def _with_measures(function: str, study: xr.Dataset, given: dict[str, Any]) -> Call:
+    """Return a call with the measures that were asked for, besides those that the study always has."""
+    measures, remarks = measures_argument(study, ("impacts", "impacts_per_cycle"))
+    if measures:
+        given["measure"] = measures
+    return Call(function, given, "" if remarks else function, remarks)
 
 
 def _basins_question(study: xr.Dataset) -> str:
@@ -135,7 +145,7 @@ BASINS = _kind(
     _basins_question,
     _basins_answer,
     lambda study: (
-        Call("basins", {"starts": axes, **options_of(study, "cycles")}, "basins")
+        _with_measures("basins", study, {"starts": axes, **options_of(study, "cycles", "point", "tolerance", "apart")})
         if (axes := axes_argument(study))
         else None
     ),
@@ -147,7 +157,12 @@ LYAPUNOV = _kind(
     _lyapunov_question,
     _lyapunov_answer,
     lambda study: Call(
-        "lyapunov", {"axes": axes_argument(study) or {}, **options_of(study, "cycles", "skip")}, "lyapunov"
+        "lyapunov",
+        {
+            "axes": axes_argument(study) or {},
+            **options_of(study, "cycles", "skip", "steps", "pairs", "distance", "reach", "seed"),
+        },
+        "lyapunov",
     ),
     plot_lyapunov,
     "Largest Lyapunov exponent: above zero, neighbouring motions separate.",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -138,17 +138,29 @@ def options_of(study: xr.Dataset, *names: str) -> dict[str, Any]:
     return options
 
 
+def measures_argument(study: xr.Dataset, usual: Sequence[str] = ()) -> tuple[list[str], tuple[str, ...]]:
+    """Return the measures of a study as its function takes them, and a remark for each function of the user.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    usual
+        Names of measures that the study has without being asked.
+    """
+    given = [each for each in options_of(study, "measures").get("measures", []) if each not in usual]
+    functions = [each.partition(" ")[0] for each in given if " " in each]
+    remarks = tuple(f"{name} is a function of yours: add it to measure" for name in functions)
+    return [each for each in given if " " not in each], remarks
+
+
 def _call(study: xr.Dataset) -> Call | None:
     axes = axes_argument(study)
     if axes is None or study.attrs.get("study", "sweep") != "sweep":
         return None
-    given = options_of(study, "measures").get("measures", [])
-    measures = [each for each in given if " " not in each]
-    functions = [each.partition(" ")[0] for each in given if " " in each]
-    remarks = tuple(f"{name} is a function of yours: add it to measure" for name in functions)
+    measures, remarks = measures_argument(study)
     options = options_of(study, "skip", "cycles", "samples", "point", "motion", "last")
-    kind = "" if functions else "sweep"
-    return Call("sweep", {"axes": axes, "measure": measures, **options}, kind, remarks)
+    return Call("sweep", {"axes": axes, "measure": measures, **options}, "" if remarks else "sweep", remarks)
 
 
 KIND = Kind(

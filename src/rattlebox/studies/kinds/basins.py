@@ -154,6 +154,7 @@ class Basins(Study):
             "case": self.case.to_toml(),
             "cycles": list(self.cycles),
             "tolerance": self.tolerance,
+            "apart": self.apart,
         }
         found = _with_orbits(runs, label.reshape(grid.shape), period, best).assign_attrs(about, **_plane(self.case))
         return save_result(found, self.kind, self.store)

@@ -201,7 +201,14 @@ class FrequencyResponse(Study):
         found.frequency.attrs["long_name"] = "frequency"
         load = "load" if place.startswith("load") else "base"
         found.level.attrs["long_name"] = f"amplitude of the {load}"
-        about = {"title": "Frequency response", "case": self.case.to_toml(), "cycles": list(self.cycles)}
+        about = {
+            "title": "Frequency response",
+            "case": self.case.to_toml(),
+            "cycles": list(self.cycles),
+            "samples": self.samples,
+            "tolerance": self.tolerance,
+        }
+        about |= {name: runs.attrs[name] for name in ("measures", "point") if name in runs.attrs}
         found.attrs = about | notes | interval_warning(found)
         return save_result(found, self.kind, self.store)
 
