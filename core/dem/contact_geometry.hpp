@@ -1,5 +1,12 @@
 // Kinematics of contacts between two spheres, or a sphere and a wall, and the contact laws of core/contact
 // applied to them, for a number type T: one number, or one SIMD register of contacts.
+//
+//     approach rate   d' = v . n                    v = v_1 - v_2
+//     slip            v - d' n + (l_1 w_1 + l_2 w_2) x n
+//
+// n = normal from the first to the second, w = spin, l = lever arm, the distance from a centre to the
+// contact. The lever arms of two spheres have the ratio of their radii; that at a wall is the distance from
+// the wall.
 #pragma once
 
 #include "contact/tangential/spring_slider.hpp"

@@ -3,6 +3,9 @@
 // Between knots all loads are constants, slopes and sines, so the series of the load is known to any order
 // and that of the mode follows from q'' = f - 2 a q' - k q, also in resonance. With (rate x length) <= 1 the
 // first omitted term is below 1/19! = 8e-18 of the leading one, so the result is exact to rounding.
+//
+// E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993,
+// section I.8, doi:10.1007/978-3-540-78862-1.
 #pragma once
 
 #include "math/real.hpp"
