@@ -100,7 +100,7 @@ def written(value: Any) -> str:
 
 
 class Form:
-    """Inputs for all fields of a case, with the errors beside them; `changed` is called after each change."""
+    """Inputs for all fields of a case, each with its error; `changed` is called after each change."""
 
     def __init__(self, draft: Draft, changed: Callable[[], object]) -> None:
         self._draft, self._changed = draft, changed

@@ -13,7 +13,7 @@ MOST_BYTES = 2_000_000
 
 
 class Guard:
-    """ASGI middleware that lets only the user's own browser pass.
+    """ASGI middleware that accepts requests of the user's browser only.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Guard:
         self._cookie = "rattlebox_" + "".join(c for c in min(self._hosts) if c.isalnum())
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        """Pass a request on or refuse it."""
+        """Forward a request or refuse it."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -57,7 +57,7 @@ class Guard:
         if origin is not None and origin not in {f"http://{host}" for host in self._hosts}:
             return 403, "another origin"
         if not (self._has_token_in_url(scope) or self._has_cookie(headers)):
-            return 403, "open the address that the command printed, which has a token"
+            return 403, "the token is missing; open the address that the command printed"
         path = unquote(unquote(scope.get("raw_path", scope["path"].encode()).decode("latin-1")))
         if "\\" in path or "\0" in path or any(part in (".", "..") for part in path.split("/")):
             return 400, "no such path"

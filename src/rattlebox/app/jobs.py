@@ -14,7 +14,7 @@ _CONTEXT = multiprocessing.get_context("spawn")
 
 
 class TaskFailed(Exception):
-    """A task ended with an error, whose text is for the user."""
+    """A task failed; the text of the error is for the user."""
 
 
 class Worker:
@@ -100,7 +100,7 @@ class Worker:
 
 
 class Live:
-    """Results of the latest request only: requests that arrive while one is computed replace each other.
+    """Computation of the latest request; a request replaces an earlier one that has not started.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class Live:
     fail
         Function called with the text of an error.
     longest
-        Time after which a computation is given up [s].
+        Time after which a computation is stopped [s].
     """
 
     def __init__(self, show: Callable[[Any], object], fail: Callable[[str], object], longest: float = 8.0) -> None:
@@ -137,7 +137,7 @@ class Live:
                     self._worker.stop()
                     self._started = False
                     self._fail(
-                        f"this case takes longer than {self._longest:g} s\n  try: Run, which has no limit, or a shorter case"
+                        f"this case takes longer than {self._longest:g} s\n  try: Run and save, or a shorter case"
                     )
                 except TaskFailed as error:
                     self._fail(str(error))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 NONE = "(none)"
 VIRIDIS = ["#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#fde725"]
 POLL = 0.7
-"""Time between looks at the blocks of a running map [s]."""
+"""Time between readings of the blocks of a running map [s]."""
 MOST_VALUES = 400
 
 

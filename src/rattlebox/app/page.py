@@ -84,14 +84,14 @@ class Page:
     # ---- bodies
 
     def publish(self, slot: str, body: Callable[..., bytes]) -> str:
-        """Offer a body under a new URL; earlier URLs of the slot, which the browser may still read, have it too."""
+        """Serve a body at a new URL; earlier URLs of the slot, which the browser may still read, return it, too."""
         key = self._keys.setdefault(slot, secrets.token_urlsafe(12))
         self._bodies[key] = body
         self._version += 1
         return f"/data/{key}/{self._version}"
 
     def close(self) -> None:
-        """Stop all computations of the page, and forget its data."""
+        """Stop all computations of the page, and remove its data."""
         self._live.stop()
         self.stop_run()
         self.map_tab.close()
@@ -146,7 +146,7 @@ class Page:
             with ui.tab_panel(saved).classes("p-0"):
                 self.runs_tab = RunsTab(self, saved)
             with ui.tab_panel(drawing).classes("p-0"):
-                self._drawing = ui.html("", sanitize=False).classes("w-full rb-drawing")
+                self._drawing = ui.html("The case is being drawn.", sanitize=False).classes("w-full rb-drawing")
         tabs.on_value_change(lambda event: self.runs_tab.refresh() if event.value == "runs" else None)
         tabs.on_value_change(lambda event: self._draw_case() if event.value == "drawing" else None)
 
@@ -198,7 +198,7 @@ class Page:
         self._show_sliders()
 
     def _slider(self, name: str, path: Any) -> None:
-        """Show a slider over a factor of four each way; over -1 to 1, or 0 to 1, for numbers that are shares."""
+        """Show a slider from a quarter to four times the value; from 0 or -1 to 1 for numbers that are shares."""
         number, unit = quantity(self.draft.value(path)) or (0.0, "")
         share = not unit and abs(number) <= 1
         low = (-1.0 if name.endswith("start") else 0.0) if share else -1.0
@@ -326,7 +326,7 @@ class Page:
         self._about.set_text(OUTDATED if self._about.text else "")
 
     def _list_impacts(self) -> None:
-        """Send the list of impacts if it is open; it is larger than everything else that a slider changes."""
+        """Send the list of impacts if it is open: it is the largest part of a view."""
         if self._impacts.value:
             self._impact_list.rows = self._impact_rows
             self._impact_list.update()
@@ -501,7 +501,7 @@ class Page:
                 self._use_file(event.file.name, await event.file.read())
 
             refused = ui.label("").classes("text-red-700 text-sm")
-            upload = ui.upload(label="Choose another file", on_upload=read, auto_upload=True, max_file_size=MOST_FILE)
+            upload = ui.upload(label="Choose a file", on_upload=read, auto_upload=True, max_file_size=MOST_FILE)
             upload.props(f"accept={','.join(['.toml', *DATA_FILES])}")
             upload.on_rejected(
                 lambda: refused.set_text(f"A file has at most 1 MB and ends in .toml, {', '.join(DATA_FILES)}.")

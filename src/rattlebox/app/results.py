@@ -1,4 +1,4 @@
-"""The results in the folder of the page: names, downloads and comparison."""
+"""Results in the folder of the page: names and downloads."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ def download(folder: Path, name: str, suffix: str) -> bytes:
 
 
 def stored_map(folder: Path, name: str) -> tuple[Any, str]:
-    """Return the study of a map and the name of what the page draws: its measure, or the ratio to that without damper."""
+    """Return the study of a map and the name of the drawn variable: its measure, or the ratio to that without damper."""
     store = inside(folder, name, ".zarr")
     study = rb.open_study(store).load()
     measure = json.loads(study.attrs["measures"])[0]

@@ -110,7 +110,7 @@ class RunsTab:
             await self._page.show_saved(name, run)
 
     async def _load(self, names: list[str]) -> dict[str, rb.Run]:
-        """Return runs of the folder by name; show why if one cannot be read, and return none."""
+        """Return runs of the folder by name; none, with a message in the page, if one cannot be read."""
         folder = self._page.folder
 
         def load() -> dict[str, rb.Run]:
@@ -137,7 +137,7 @@ class RunsTab:
 
 
 async def offer(failure: ui.label, content_of: Callable[..., bytes], folder: Path, name: str, suffix: str) -> None:
-    """Let the browser download a result, or show why there is none."""
+    """Offer a result as a download, or show an error."""
     try:
         content = await threads.io_bound(content_of, folder, name, suffix) or b""
     except (rb.RattleboxError, OSError, MemoryError) as error:

@@ -13,15 +13,15 @@ import rattlebox as rb
 from .binary import encode
 
 MOST_SAMPLES = 6000
-"""Samples of a curve; longer runs are drawn by every n-th sample, and the page says so."""
+"""Samples of a curve; of longer runs every n-th sample is drawn, as the page states."""
 MOST_FRAMES = 3000
 """Frames of an animation of balls on a line."""
 MOST_LISTED = 200
 """Impacts in the list."""
 FLASH = 0.004
-"""Duration over that of the run for which a contact lights up."""
+"""Duration of the flash of a contact over that of the run."""
 MOST_BYTES = 200_000_000
-"""Size of the frames of particles; further frames are left out, every n-th remains."""
+"""Largest size of the frames of particles [B]; of longer runs every n-th frame is sent."""
 
 
 def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:

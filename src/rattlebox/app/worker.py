@@ -1,4 +1,4 @@
-"""A process that computes for one page: runs, maps and live views, so that the server itself never blocks.
+"""Process that computes runs, maps and live views of a page, so that the server never blocks.
 
 The parent sends a task, a tuple of a name of `TASKS` and its arguments; the worker answers with ("progress", ...) and at
 last ("done", result) or ("failed", text). It ends when its parent ends. Finished results are written before they are
@@ -32,7 +32,7 @@ def main(connection: Connection) -> None:
     """Do the tasks of a connection until it closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the server, which ends its workers
     threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True).start()
-    live(lambda *_: None, template("steel_ball"), ".", False)  # loads what the first task would have to wait for
+    live(lambda *_: None, template("steel_ball"), ".", False)  # loads all libraries before the first task
     while True:
         try:
             name, *arguments = connection.recv()
