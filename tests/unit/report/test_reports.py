@@ -128,6 +128,16 @@ def result_of(name: str) -> Any:
         "damping_curve": lambda: rb.damping_curve(free(), ["0.2 mm", "0.4 mm"], packings=4, **quiet),
         "damping curves": lambda: dict.fromkeys(("a", "b"), result_of("damping_curve")),
         "design": lambda: rb.design(case(), {"damper.gap": ("0.5 mm", "2 mm")}, "rms", trials=3, **quiet),
+        "design of a seed": lambda: rb.design(
+            case(),
+            {"damper.gap": ("0.5 mm", "2 mm")},
+            "rms",
+            trials=3,
+            seed=5,
+            log=["damper.gap"],
+            cycles=(5, 5),
+            **quiet,
+        ),
         "sensitivity": lambda: rb.sensitivity(
             case(duration="0.1 s"), {"damper.gap": ("0.5 mm", "2 mm"), "load.amplitude": (5.0, 10.0)}, "rms", 8, **quiet
         ),
@@ -204,6 +214,7 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
         "bifurcation of impacts",
         "basins apart",
         "lyapunov of pairs",
+        "design of a seed",
         "loss_map",
         "damping_curve",
         "drops",

@@ -184,6 +184,7 @@ def _call(study: xr.Dataset) -> Call | None:
         return None
     given = {"parameters": bounds, "objective": objective, "trials": int(study.trial.size)}
     given |= words.option_of(study, "curve") or {}
+    given |= {name: value for name, value in (words.option_of(study, "options") or {}).items() if value}
     for name, usual in (("packings", 1), ("robust", "worst"), ("max_added_mass", None), ("seed", 0)):
         value = words.option_of(study, name)
         if value not in (None, usual) or name == "packings":

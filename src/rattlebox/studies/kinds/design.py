@@ -246,7 +246,9 @@ class Design(Study):
                     raise _stopped(trials, store) from None
                 stopped = self._out_of_time(trials)
             found = search.result(trials.finished)
-        return save_result(found.assign_attrs(trials.times | stopped), self.kind, store)
+        return save_result(
+            found.assign_attrs({"version": __version__, "seed": self.seed} | trials.times | stopped), self.kind, store
+        )
 
     def _check_budget(self, search: DesignSearch, trials: Trials) -> None:
         """Predict the time of the trials that are left, and print it.
