@@ -369,6 +369,7 @@ def sine_sweep(**changed: Any) -> rb.SineSweep:
         (lambda: sine_sweep(first_frequency="1 m", sweep_rate="2 oct/min"), "a frequency .* is needed"),
         (lambda: sine_sweep(last_frequency=5.0, sweep_rate="2 oct/min"), "two different frequencies"),
         (lambda: sine_sweep(sweep_rate="2 octaves"), "oct/min, oct/s, dec/min, Hz/s or Hz/min"),
+        (lambda: sine_sweep(sweep_rate="2..3 oct/min"), "oct/min, oct/s, dec/min, Hz/s or Hz/min"),
         (lambda: sine_sweep(sweep_rate="-2 oct/min"), "must be greater than zero"),
         (lambda: sine_sweep(sweep_rate="1e-9 Hz/s"), "cycles; at most"),
         (lambda: sine_sweep(sweep_rate="1 Hz/s", duration=1.0), "a rate or a duration"),

@@ -238,7 +238,12 @@ def wave_numbers(ends: Ends, count: int, mu: float = 0.0) -> Vector:
     Returns
     -------
     (count,) float
-        Roots of the characteristic equation (see `Beam`), ascending, to rounding.
+        Wave numbers, ascending, to rounding.
+
+    Notes
+    -----
+    They are the roots z of the characteristic equations, of which `Beam` has a table and the source. A mass at an end lowers
+    each root, at most to that of a beam that is pinned at this end: both limits bracket it.
     """
     free = np.array([_root(ends, 0.0, *_bracket(ends, n)) for n in range(1, count + 1)])
     if mu == 0:

@@ -239,7 +239,8 @@ class Thornton(Contact):
     Parameters
     ----------
     yield_pressure
-        Limiting contact pressure p_y [Pa]; default 1.6 times the smaller yield stress of the two bodies.
+        Limiting contact pressure p_y [Pa]; default 1.6 times the yield stress of the body that yields first, the one with
+        the lower hardness (see `JacksonGreen`).
 
     Notes
     -----

@@ -83,7 +83,9 @@ POINTS_PER_CYCLE = 32
 MAX_POINTS = 20_000_000
 """Largest number of points of a sine sweep."""
 
-_RATE = re.compile(r"^\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(oct(?:ave)?s?|dec(?:ade)?s?|Hz)\s*/\s*(s|sec|min)\s*$")
+_RATE = re.compile(
+    r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(oct(?:ave)?s?|dec(?:ade)?s?|Hz)\s*/\s*(s|sec|min)\s*$"
+)
 
 
 def _sweep_rate(value: Any) -> str:

@@ -190,7 +190,10 @@ class Matrices(FilePart, DampedModes):
         return mass, np.zeros_like(mass) if self.C is None else np.array(self.C), stiffness
 
     def modes(self) -> ModalModel:
-        """Compute the modes of the undamped structure, K phi = omega^2 M phi, and the modal damping phi^T C phi."""
+        """Compute the modes of the undamped structure, K phi = omega^2 M phi, and the modal damping phi^T C phi.
+
+        `Modal` names the sources.
+        """
         from scipy.linalg import eigh
 
         mass, damping, stiffness = self.matrices()

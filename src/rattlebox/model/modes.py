@@ -15,7 +15,7 @@ from .space import AXES, Triple, unit_vector
 
 @dataclass(frozen=True, eq=False)
 class ModalModel:
-    """Modes of a linear structure, q'' + 2 decay q' + coupling q' + stiffness q = shape . F, with unit modal mass.
+    """Modes of a linear structure, with unit modal mass.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class ModalModel:
         Mass-normalised mode shapes at the named points [kg^-1/2]; with three components for a point in 3-D.
     coupling : (m, m) float or None
         Modal damping matrix D [1/s] without its diagonal, which is 2 decay; None for proportional damping. The
-        modes are those of the undamped structure: q'' + D q' + stiffness q = shape . F.
+        modes are those of the undamped structure.
     participation : (m,) or (m, 3) float or None
         Inertia of each mode per unit of base acceleration [kg^1/2]; three components for points in 3-D.
     q0, p0 : (m,) float
@@ -36,6 +36,11 @@ class ModalModel:
         Names of the points of tuned masses; the others are those of the structure.
     total_mass : float, (3, 3) float or None
         Mass r^T M r that moves with the base if the structure is rigid [kg]; a matrix if points move in 3-D.
+
+    Notes
+    -----
+    q'' + 2 a q' + D q' + k q = phi^T F - p a_b, with the decay rates a, the coupling D, the stiffness k, the shapes phi, the
+    participation p and the acceleration a_b of the base. `Modal` names the sources.
     """
 
     decay: Vector

@@ -37,7 +37,8 @@ _LARGEST_CHANGE = 0.02  # of the response of a mode
 _LONGEST_RECORD = 100.0  # in durations of the run
 _PEAKS = {"m/s^2": (1e-5, 1e5, 100.0), "m": (1e-9, 10.0, 1.0)}
 """Least and largest plausible peak of a record of the base, the latter also if its unit is assumed."""
-_ACROSS = 1e-6
+_PERPENDICULAR = 1e-6
+"""Cosine of an angle, or excitation of a mode relative to the largest one, below which it counts as zero."""
 _SMALLEST_FILL_RATIO = 1e-4
 _DENSITIES = 5.0, 25e3  # kg/m^3
 
@@ -195,7 +196,8 @@ def _check_interpolation(case: Case) -> Iterator[str]:
         changes = [
             (change_by_interpolation(rate, frequency, power, natural, float(modes.decay[k]) / (2 * np.pi)), natural, k)
             for k in elastic
-            if excited[k] > _ACROSS * excited.max() and (natural := float(np.sqrt(modes.stiffness[k])) / (2 * np.pi))
+            if excited[k] > _PERPENDICULAR * excited.max()
+            and (natural := float(np.sqrt(modes.stiffness[k])) / (2 * np.pi))
         ]
         change, natural, k = max(changes, key=lambda each: abs(each[0]), default=(0.0, 0.0, 0))
         if abs(change) > _LARGEST_CHANGE:
@@ -264,7 +266,7 @@ def _check_directions(case: Case) -> Iterator[str]:
         if signal.direction is None or not particles:
             continue
         along = [abs(unit_vector(damper.direction) @ unit_vector(signal.direction)) for damper in particles]
-        if max(along) < _ACROSS:
+        if max(along) < _PERPENDICULAR:
             name = f"base {number}" if len(case.base) > 1 else "base"
             yield (
                 f"{name} moves along {_format(signal.direction)}, but the structure moves along"

@@ -93,6 +93,11 @@ class Tabulated(Restitution):
         Strictly increasing approach speeds [m/s].
     values
         Restitution at each of them.
+
+    Notes
+    -----
+    e = e_k + (e_(k+1) - e_k) (V - V_k) / (V_(k+1) - V_k) for V_k <= V < V_(k+1), the first value below V_1 and the last
+    value above the last speed.
     """
 
     elementwise: ClassVar[bool] = False
@@ -203,7 +208,7 @@ class ThorntonRestitution(Restitution):
     Parameters
     ----------
     yield_pressure
-        Limiting contact pressure p_y [Pa]; default 1.6 times the smaller yield stress.
+        Limiting contact pressure p_y [Pa]; default 1.6 times the yield stress of the body that yields first.
 
     Notes
     -----
@@ -267,7 +272,7 @@ class Johnson(Restitution):
         """Return V_0."""
         scale = self.speed_scale
         if scale is None:
-            strength = yield_pressure(pair, None, "Johnson's law") / 1.6
+            strength = present(present(pair.first_to_yield("Johnson's law").material).yield_stress)
             root = sqrt(2 * strength * power(pair.radius, 3) / pair.mass)
             scale = 3.8**4 * power(strength / pair.modulus, 2) * root
         return "johnson", {"speed_scale": scale, "maximum": self.maximum}

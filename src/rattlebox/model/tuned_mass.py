@@ -174,8 +174,9 @@ class TunedMass(Part):
 def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalModel:
     """Return the modes of a structure with tuned masses.
 
-    The equations of the structure's modes and of the tuned masses, scaled to unit masses, are x'' + D x' + K x = f. The
-    eigenvectors of K are the new, undamped modes; the transformed damping matrix is not diagonal.
+    The equations of the modes of the structure and of the tuned masses (see `TunedMass`), scaled to unit masses, are
+    x'' + D x' + K x = f. The eigenvectors of K are the new, undamped modes; the transformed damping matrix is not diagonal
+    (`Modal` names the source).
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ import numpy as np
 
 from rattlebox.model.errors import at
 from rattlebox.model.packing import Bed, Compacted, Crowd
-from rattlebox.prepare.settle import SPREAD, settle
+from rattlebox.prepare.settle import VOLUME_POINTS, settle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +26,7 @@ MARGIN = 2.0
 """Distance of the bulk from the walls and from the surface of the bed, over the largest diameter."""
 TOLERANCE = 0.05
 """Difference between the measured and the stated bed fill above which a run has a note."""
-SLIPPERY = 0.2
+MIN_FRICTION = 0.2
 """Coefficient of friction below which a full cavity does not stay full: its bed sinks under gravity."""
 BULK_POINTS = 2**19
 
@@ -97,7 +97,7 @@ def bed_level(damper: ParticleDamper, positions: Array) -> tuple[float, float]:
 @lru_cache(maxsize=16)
 def _levels(cavity: AnyCavity, up: tuple[float, float, float]) -> tuple[Array, Array]:
     """Return heights of points in a cavity, ascending, and the mean height of all points up to each."""
-    heights = np.sort(cavity.spread(SPREAD) @ np.array(up))
+    heights = np.sort(cavity.spread(VOLUME_POINTS) @ np.array(up))
     return heights, np.cumsum(heights) / np.arange(1, heights.size + 1)
 
 
@@ -115,11 +115,11 @@ def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
     """
     asked = damper.particles[0].bed_fill
     friction = damper.largest_friction
-    if asked == 1 and isinstance(damper.packing, Compacted) and damper.up is not None and friction < SLIPPERY:
+    if asked == 1 and isinstance(damper.packing, Compacted) and damper.up is not None and friction < MIN_FRICTION:
         yield (
             f"warning: the bed of {name} fills {100 * fill:.3g} % of the cavity, not 100 %: with a coefficient of friction "
-            f"of {friction:g}, below {SLIPPERY:g}, it sinks under gravity and leaves a gap at the top, in which particles "
-            "move; try: count with more of them, or the friction of the real particles"
+            f"of {friction:g}, below {MIN_FRICTION:g}, it sinks under gravity and leaves a gap at the top, in which "
+            "particles move; try: count with more of them, or the friction of the real particles"
         )
     elif asked is not None and isinstance(damper.packing, Bed) and abs(fill - asked) > TOLERANCE:
         count = damper.contents.radius.size

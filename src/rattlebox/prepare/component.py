@@ -1,4 +1,4 @@
-"""Packed cases for steppers: dampers as a component in the time loop of another program."""
+"""Packed cases for steppers: dampers as components in the time loop of another program."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .pack import pack
 from .particles import Prepared, pack_particles, prepare
 
 IDLE = _core.Harmonic(amplitude=0.0, frequency=0.0, phase=0.0, start=0.0, stop=0.0)
-"""Signal of an input, whose values come with the steps."""
+"""Signal of an input, whose values are arguments of the steps."""
 
 _EMPTY = np.zeros(0)
 _NO_MODES = dict.fromkeys(
@@ -99,8 +99,8 @@ def damper_case(
     if structure_mass is not None:
         if isinstance(damper, ParticleDamper):
             raise Hint(
-                "structure_mass adjusts the contacts of impact dampers; particles are light against the structure",
-                "leave it out",
+                "structure_mass adjusts the contacts of impact dampers only: a particle is much lighter than the structure",
+                "no structure_mass",
             )
         structure = SDOF(mass=structure_mass, stiffness=0)
     return Case(
@@ -127,7 +127,7 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
         If the case has several dampers and no structure, or its method has no stepper.
     """
     if isinstance(case.method, TwoStep):
-        raise Hint("the two-step method has no stepper", "method = EventDriven() or Newton()")
+        raise Hint("the two-step method has no stepper", "method = EventDriven(), or Newton()")
     if alone and len(_dampers(case)) != 1:
         raise Hint(f"a damper alone is needed, but the case has {len(_dampers(case))}", "a stepper for each of them")
     return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)

@@ -91,7 +91,7 @@ class Batch:
         Participation of the modes in the motion of the base, (m, ...) [kg^1/2], and "residual_mass" (1, ...) [kg] of the
         truncated modes; empty if unknown.
     obstacle
-        The reason why the batch is only a part of the grid; None for the whole grid.
+        Reason for a batch that is only a part of the grid; None for the whole grid.
     """
 
     packed: _core.Problem
@@ -126,7 +126,7 @@ def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
     Parameters
     ----------
     case
-        The case of which these are variants.
+        Case from which the variants differ in the values of the columns.
     columns
         Values by path, such as "damper.gap": arrays with as many axes as `shape` and broadcastable to it. Numbers in SI
         units; names of materials, laws, lists and other values as objects.
@@ -185,7 +185,7 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
 
 
 def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, Any]) -> list[Batch]:
-    """Return the batches of the variants over columns; all of them have the fixed values."""
+    """Return the batches of the variants over columns, with the fixed values in all of them."""
     whole = tuple(np.arange(n) for n in shape)
     path = next((path for path, values in columns.items() if not is_number(case, path, values)), None)
     if path is None:
@@ -232,7 +232,7 @@ def _broadcast(
     case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]
 ) -> tuple[_core.Problem, dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]]]:
     """Pack the variants over columns of numbers; return the problem, the mode shapes at the points and the inertia."""
-    # A case with the first value of each column has a field for every array.
+    # The case with the first value of each column has a field for each array.
     first = {path: values.flat[0].item() for path, values in columns.items()}
     batch = replaced(case, {**fixed, **first})
     cavities: dict[Place, NDArray[Any]] = {}
@@ -277,7 +277,7 @@ def _problem(case: Case, axes: int = 0) -> _core.Problem:
     if case.particle_dampers:
         raise Hint(
             "this study computes impact dampers, not particle dampers",
-            "a sweep, a loss map or a sensitivity, or one run after the other",
+            "a sweep, a loss map or a sensitivity, or separate runs",
         )
     modes = case.modes
     return _core.Problem(

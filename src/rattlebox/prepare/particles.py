@@ -41,14 +41,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case with particle dampers and everything that is computed before its first step.
+    """A case with particle dampers, and the results of its preparation.
 
     Attributes
     ----------
     case
         The case, with a number in place of each softening "auto".
     notes
-        Reasons for the values of softening "auto", and beds with another volume than stated.
+        Notes on the values of softening "auto", and on beds with another volume than stated.
     step
         The time step and its limits.
     tables
@@ -56,7 +56,7 @@ class Prepared:
     positions
         Initial positions of the particles of each damper, (n, 3) [m].
     fills
-        `fill_ratio` and `bed_fill` of all cavities together at the start; the second if all have a bed.
+        `fill_ratio` of all cavities together, and their `bed_fill` if all of them contain a bed.
     """
 
     case: Case
@@ -68,7 +68,7 @@ class Prepared:
 
 
 def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
-    """Choose the softening and the time step of a case, and let its particles settle.
+    """Choose the softening and the time step of a case, and compute its settled packings.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
     Returns
     -------
     Prepared
-        Everything that `pack_particles` needs.
+        The case and the results.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def pack_particles(prepared: Prepared) -> _core.DemProblem:
 
 
 def settle_all(case: Case, proceed: Callable[[], bool]) -> bool:
-    """Compute the settled packings of a case in advance; `prepare` takes them from the cache of `settle`.
+    """Compute the settled packings of a case in advance; `prepare` reads them from the cache of `settle`.
 
     Parameters
     ----------

@@ -36,21 +36,21 @@ if TYPE_CHECKING:
 
 MAX_ITERATIONS = 5000
 KISSING_NUMBER = 12  # equal spheres that can touch one sphere
-SWELL = 2e-3  # relative enlargement of the radii while particles are pushed apart, so that none touch in the end
-FALL_SWELL = 5e-6  # the same during the fall; the gaps of the bed are twice as large
-SINK = 0.1  # overlap over radius at the largest speed of the fall; under the own weight it is 50 times smaller
+ENLARGEMENT = 2e-3  # relative enlargement of the radii while particles are pushed apart, so that none touch in the end
+FALL_ENLARGEMENT = 5e-6  # the same during the fall; the gaps of the bed are twice as large
+FALL_OVERLAP = 0.1  # overlap over radius at the largest speed of the fall; under the own weight it is 50 times smaller
 WEIGHT_FACTORS = tuple(0.5**n for n in range(1, 25))  # successive fractions of the weight during expansion
 RELAXATION_BLOCKS = 3  # blocks of twenty contact times under each of them
 RESTITUTION = 0.3  # With stronger damping, steps of this length generate energy where friction is large.
 STEPS = 20  # in a contact
 MAX_FALL_TIMES = 40  # longest simulation over the duration of a fall through the cavity; common beds need 3 to 13
 QUIET_BLOCKS = 5  # blocks of twenty contact times in a row below the energy limit, after which a bed is at rest
-STOPS = 100
+MAX_STOPS = 100
 """Largest number of times that a motion without damping, such as that of a ball in a round cavity, is stopped."""
 MAX_FRICTION = 1.0  # A larger coefficient of friction does not change the bed.
 CACHED_BEDS = 8
 ATTEMPTS = 4  # insertions with different random numbers into a cavity that is nearly full; more of a few particles
-SPREAD = 2**16  # points at which volumes in a cavity are computed
+VOLUME_POINTS = 2**16  # points at which volumes in a cavity are computed
 
 
 @overload
@@ -162,7 +162,7 @@ def _compacted_fill(cavity: AnyCavity, radii: Array, up: Array) -> float:
 def _under_lid(cavity: AnyCavity, up: Array, fill: float) -> Walls:
     """Return the walls of a cavity with a lid perpendicular to gravity, above a share of the volume."""
     walls = cavity.walls()
-    level = np.quantile(components_along(cavity.spread(SPREAD), up), fill)
+    level = np.quantile(components_along(cavity.spread(VOLUME_POINTS), up), fill)
     return Walls(
         (*walls.names, "lid"), np.vstack([walls.axis, up]), np.append(walls.offset, level), (*walls.form, "plane")
     )
@@ -220,7 +220,7 @@ def insert(
             if not left.size:
                 break
         there = np.sort(np.concatenate([there, new]))
-        places[there] = push_apart(cavity, places[there], radii[there], SWELL, proceed, walls)
+        places[there] = push_apart(cavity, places[there], radii[there], ENLARGEMENT, proceed, walls)
     return places
 
 
@@ -242,7 +242,7 @@ def push_apart(
     cavity: AnyCavity,
     places: Array,
     radii: Array,
-    swell: float,
+    enlargement: float,
     proceed: Callable[[], bool] = lambda: True,
     walls: Walls | None = None,
 ) -> Array:
@@ -256,7 +256,7 @@ def push_apart(
         Positions, (n, 3) [m].
     radii
         Radii of the spheres, (n,) [m].
-    swell
+    enlargement
         Enlargement of the spheres during the computation, relative to the radius.
     proceed
         Function that is called repeatedly.
@@ -285,7 +285,7 @@ def push_apart(
     E. Bitzek, P. Koskinen, F. Gähler, M. Moseler, P. Gumbsch, Physical Review Letters 97 (2006) 170201,
     doi:10.1103/PhysRevLett.97.170201.
     """
-    places, grown = places.copy(), radii * (1 + swell)
+    places, grown = places.copy(), radii * (1 + enlargement)
     walls = cavity.walls() if walls is None else walls
     margin = 0.3 * float(grown.min())
     listed = np.full_like(places, np.inf)  # positions at the last search for candidate pairs
@@ -303,7 +303,7 @@ def push_apart(
         first, second, apart = near[0][deep], near[1][deep], apart[deep]
         depth = walls.distances(places) - grown[:, None]
         small = np.minimum(grown[first], grown[second])
-        if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * swell:
+        if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * enlargement:
             return places
         between, length = between[deep], length[deep][:, None]
         push = -apart[:, None] * np.where(length > 0, between / np.maximum(length, 1e-300), [0.0, 0.0, 1.0])
@@ -357,7 +357,7 @@ class _SettlingBed:
         self._fall = math.sqrt(2 * height / self._pull)
         small = float(self._contents.radius.min())
         # The largest overlap of a linear contact is the speed times the duration over pi.
-        self._contact_time = math.pi * SINK * small / (self._pull * self._fall)
+        self._contact_time = math.pi * FALL_OVERLAP * small / (self._pull * self._fall)
         mass = float(self._contents.mass.min()) / 2
         stiffness = mass * (math.pi / self._contact_time) ** 2
         self._laws = _core.PairLaws(
@@ -371,16 +371,16 @@ class _SettlingBed:
 
     def fall(self, places: Array, at_rest: float) -> Array:
         """Compute the positions of the particles after they have fallen and come to rest."""
-        still = at_rest * float(np.sum(self._contents.mass * self._contents.radius)) * self._pull
+        limit = at_rest * float(np.sum(self._contents.mass * self._contents.radius)) * self._pull
         blocks = max(1, math.ceil(MAX_FALL_TIMES * self._fall / (20 * self._contact_time)))
-        for stopped in (False, *STOPS * (True,)):
+        for stopped in (False, *MAX_STOPS * (True,)):
             quiet, before = 0, 0.0
             for now, energy in self._simulate(places, 1.0, blocks):
-                quiet = quiet + 1 if energy < still else 0
+                quiet = quiet + 1 if energy < limit else 0
                 if quiet == QUIET_BLOCKS:
                     return now
                 if stopped and energy < before:
-                    if before < still:
+                    if before < limit:
                         return now
                     break  # The next fall starts from the positions at the largest speed.
                 places, before = now, energy
@@ -396,7 +396,7 @@ class _SettlingBed:
                 if cavity.room(now, reduced).min() >= 0 and not overlapping(now, reduced)[0].size:
                     return now
             places = now
-        return push_apart(cavity, places, radii, SWELL)
+        return push_apart(cavity, places, radii, ENLARGEMENT)
 
     def _simulate(self, places: Array, weight: float, blocks: int) -> Iterator[tuple[Array, float]]:
         """Yield positions and kinetic energy every twenty contact times, under a fraction of the weight."""
@@ -407,7 +407,7 @@ class _SettlingBed:
             position=places,
             velocity=np.zeros_like(places),
             spin=np.zeros_like(places),
-            radius=self._contents.radius * (1 + FALL_SWELL),
+            radius=self._contents.radius * (1 + FALL_ENLARGEMENT),
             mass=self._contents.mass,
             inertia=self._contents.inertia,
             species=np.zeros(count, np.int64),

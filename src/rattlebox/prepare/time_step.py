@@ -143,8 +143,9 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
 
     Notes
     -----
-    The estimate is the sum of the range of the cavity's velocity without particles (zero included), the range of the base
-    velocity, the speed after a fall through the cavity, and twice the largest initial speed of a particle.
+    V = r(v) + r(v_b) + (2 g h)^(1/2) + 2 v_0: the range of the velocity v of the cavity without particles (zero included),
+    the range of the velocity v_b of the base, the speed after a fall through the height h of the cavity, and twice the
+    largest initial speed v_0 of a particle.
     """
     times = evaluation_times(case)
     base = np.zeros((times.size, 3))

@@ -24,7 +24,7 @@ Index = tuple[int, ...]
 Packed = TypeVar("Packed", bound=_core.Node)
 
 _ULPS = 4
-_DRAWN = 8  # random variants that are compared, besides the extreme ones
+_RANDOM = 8  # random variants that are compared, besides the extreme ones
 _CORNERS = 16
 
 
@@ -156,7 +156,7 @@ class Merger:
     def _obstacle(self, where: Sequence[str]) -> NotMergeable:
         return NotMergeable(
             f"{self._path}: its values make cases that differ in more than numbers ({' of '.join(reversed(where))})",
-            "one sweep for each",
+            "a separate sweep for each value",
         )
 
 
@@ -164,7 +164,7 @@ class Merger:
 
 
 def invalid_starts(packed: _core.Problem, shape: Sequence[int]) -> Iterator[Index]:
-    """Yield a variant of each damper whose balls start in a wall, in each other or in too short a cavity, if one exists."""
+    """Yield, for each damper, a variant with an invalid start: balls in a wall, in each other, or in too short a cavity."""
     for damper in packed.dampers:
         position, half = damper.position, 0.5 * np.asarray(damper.clearance)
         cavity = np.sum(damper.shape * packed.mode_displacement, axis=0)
@@ -196,8 +196,8 @@ def examples(columns: Columns, shape: Sequence[int]) -> list[Index]:
             chosen += [
                 _grid_index(np.unravel_index(i, values.shape), shape) for i in (values.argmin(), values.argmax())
             ]
-    drawn = np.random.default_rng(0).integers(np.array(shape, dtype=int), size=(_DRAWN, len(shape)))
-    chosen += [_grid_index(index, shape) for index in drawn]
+    random = np.random.default_rng(0).integers(np.array(shape, dtype=int), size=(_RANDOM, len(shape)))
+    chosen += [_grid_index(index, shape) for index in random]
     return list(dict.fromkeys(chosen))
 
 
@@ -228,7 +228,7 @@ def compare(one: Any, batch: Any, index: Index, *where: str) -> None:
     Parameters
     ----------
     one, batch
-        Packed problems, parts of them, or mappings, lists or single values of these.
+        Packed problems, or parts, mappings, lists or single values of them.
     index
         Index of the variant in the grid of the batch.
 

@@ -307,7 +307,7 @@ def test_no_axes() -> None:
         (
             "damper.contact",
             [CONSTANT, PLASTIC],
-            ["damper.contact", "differ in more than numbers", "one sweep for each"],
+            ["damper.contact", "differ in more than numbers", "a separate sweep for each value"],
         ),
         ("damper.contact", [CONSTANT, rb.Thornton()], ["damper.contact", "contacts"]),
         ("damper.contact.restitution", [rb.JacksonGreen(), rb.Constant(0.5)], ["restitution of contacts"]),
