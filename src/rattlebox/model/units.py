@@ -203,7 +203,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
                 angular = any(word in str(value.units) for word in ("radian", "rev", "turn", "degree"))
                 if unit == "Hz" and angular:
                     return _finite(float(value.to("rad/s").magnitude) / (2 * math.pi)), unit
-                if unit == "rad/s" and not angular:
+                if unit == "rad/s" and "hertz" in str(value.units):  # 1/s is rad/s
                     return _finite(float(value.to("Hz").magnitude) * (2 * math.pi)), unit
                 return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
         grams = "m/s^2" in units and str(value.units) == "gram"  # g of gravity is meant
