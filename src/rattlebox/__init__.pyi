@@ -96,11 +96,11 @@ from rattlebox.report.write import write_report as write_report
 from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots
-from rattlebox.studies.calibrate import calibrate as calibrate
-from rattlebox.studies.calibration_data import BounceTimes as BounceTimes
-from rattlebox.studies.calibration_data import Drops as Drops
-from rattlebox.studies.calibration_data import RingDown as RingDown
-from rattlebox.studies.calibration_data import ShakerLoss as ShakerLoss
+from rattlebox.studies.calibration.calibrate import calibrate as calibrate
+from rattlebox.studies.calibration.measurements import BounceTimes as BounceTimes
+from rattlebox.studies.calibration.measurements import Drops as Drops
+from rattlebox.studies.calibration.measurements import RingDown as RingDown
+from rattlebox.studies.calibration.measurements import ShakerLoss as ShakerLoss
 from rattlebox.studies.check_softening import check_softening as check_softening
 from rattlebox.studies.compare import compare as compare
 from rattlebox.studies.damping_curve import damping_curve as damping_curve

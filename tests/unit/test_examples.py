@@ -14,7 +14,7 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 import rattlebox as rb
-from rattlebox.studies.trial_store import count_trials
+from rattlebox.studies.design.trial_store import count_trials
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPTS = sorted(path for path in EXAMPLES.rglob("*.py") if path.name != "write_data.py")

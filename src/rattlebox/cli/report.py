@@ -14,8 +14,8 @@ from rattlebox.report.kinds.unfinished import UnfinishedRun
 from rattlebox.report.write import write_report
 from rattlebox.results import load
 from rattlebox.results.snapshots import Snapshots
+from rattlebox.studies.design.trial_store import count_trials
 from rattlebox.studies.stored import has_map, open_study
-from rattlebox.studies.trial_store import count_trials
 
 
 def write(results: Sequence[Path], out: Path | None, title: str | None, question: str | None) -> None:

@@ -14,10 +14,10 @@ from rich.text import Text
 from rattlebox.cli.terminal import terminal
 from rattlebox.results.quantities import MISSING, PREFIXED_UNITS, quantity
 from rattlebox.results.schema import OUTCOMES
+from rattlebox.studies.design.trial_store import count_trials
 from rattlebox.studies.measures import INTERVAL
 from rattlebox.studies.outcomes import chunks, computed, status_lines
 from rattlebox.studies.stored import Progress, has_map, open_study, progress_of, report_damage
-from rattlebox.studies.trial_store import count_trials
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -20,9 +20,9 @@ from support.logistic_study import Logistic, variants_in
 from support.waiting import wait_for
 
 import rattlebox as rb
+from rattlebox.studies.design.trial_store import count_trials
 from rattlebox.studies.runner import Stopped, run_work
 from rattlebox.studies.stored import open_study, progress_of
-from rattlebox.studies.trial_store import count_trials
 
 SCRIPT = Path(logistic_study.__file__)
 

@@ -14,9 +14,9 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.studies.axes import read_axes
-from rattlebox.studies.calibration_fit import Fit
-from rattlebox.studies.calibration_space import Space
-from rattlebox.studies.calibration_work import CalibrationWork, simulation_of
+from rattlebox.studies.calibration.fit import Fit
+from rattlebox.studies.calibration.space import Space
+from rattlebox.studies.calibration.work import CalibrationWork, simulation_of
 from rattlebox.studies.runner import Stopped
 
 E, DAMPING = "damper.contact.restitution", "structure.damping_ratio"
@@ -120,7 +120,7 @@ def test_a_box_of_particles_is_calibrated_by_both_measurements(
 ) -> None:
     """Each sample has a packing of its own; ring-down and shaker of one box together bound its restitution."""
     monkeypatch.setattr("rattlebox.studies.budget.TIMED", 0.02)
-    monkeypatch.setattr("rattlebox.studies.calibration_by_simulation._ROUNDS", 1)
+    monkeypatch.setattr("rattlebox.studies.calibration.by_simulation._ROUNDS", 1)
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="4 mm", count=6),
         cavity=rb.Box(size=("10 mm",) * 3),

@@ -16,8 +16,8 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
+from rattlebox.studies.design.trial_store import count_trials
 from rattlebox.studies.runner import Stopped
-from rattlebox.studies.trial_store import count_trials
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "design.py"
 GAP, RADIUS = "damper.gap", "damper.ball.radius"

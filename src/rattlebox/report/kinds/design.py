@@ -20,7 +20,7 @@ from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 from rattlebox.results.case_words import counted, joined
 from rattlebox.results.quantities import amount
 from rattlebox.studies.budget import duration
-from rattlebox.studies.design_space import ADDED_MASS, DAMPING_RATIO
+from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.measures import INTERVAL, MEASURES
 
 if TYPE_CHECKING:

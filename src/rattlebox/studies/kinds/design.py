@@ -18,8 +18,10 @@ from rattlebox.model.errors import Hint
 from rattlebox.studies.axes import ParsedAxes, parse_axes
 from rattlebox.studies.budget import duration
 from rattlebox.studies.damping_curve import Way, read_amplitudes
-from rattlebox.studies.design_search import Curve, DesignSearch, Robust
-from rattlebox.studies.design_space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
+from rattlebox.studies.design.search import Curve, DesignSearch, Robust
+from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
+from rattlebox.studies.design.trial_store import load_study, quiet, trial_storage
+from rattlebox.studies.design.trials import Trials
 from rattlebox.studies.robust import packing_axis, robust_axes
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.store import save_result
@@ -39,8 +41,6 @@ from rattlebox.studies.study import (
     split_bounds,
     study_function,
 )
-from rattlebox.studies.trial_store import load_study, quiet, trial_storage
-from rattlebox.studies.trials import Trials
 
 if TYPE_CHECKING:
     import xarray as xr

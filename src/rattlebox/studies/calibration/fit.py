@@ -14,8 +14,8 @@ from scipy.special import chdtrc, fdtri
 
 from rattlebox.results.quantities import amount
 
-from .calibration_space import NORMAL, Space
 from .response_surface import Agreement, Region, Surfaces
+from .space import NORMAL, Space
 
 FloatArray = NDArray[np.float64]
 

@@ -14,8 +14,7 @@ import numpy as np
 
 from rattlebox._util.exceptions import StoreError
 from rattlebox._util.owned_folder import read_marker
-
-from .store import JOURNAL, exclusive_writer
+from rattlebox.studies.store import JOURNAL, exclusive_writer
 
 
 @contextmanager

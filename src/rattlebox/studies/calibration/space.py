@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint, at, nearest
+from rattlebox.studies.axes import materials_in
+from rattlebox.studies.parameter import Parameter
 
-from .axes import materials_in
-from .calibration_data import read_column
-from .parameter import Parameter
+from .measurements import read_column
 from .response_surface import Known
 
 if TYPE_CHECKING:

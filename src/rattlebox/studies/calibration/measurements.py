@@ -14,8 +14,7 @@ from rattlebox.model.dampers import Sphere
 from rattlebox.model.errors import Hint, at, nearest, one_of, several
 from rattlebox.model.units import parse, plain, whole_number
 from rattlebox.results.quantities import amount
-
-from .study import whole_cycles
+from rattlebox.studies.study import whole_cycles
 
 FloatArray = NDArray[np.float64]
 MeasuredTo = Literal["bottom", "centre", "top"]

@@ -13,8 +13,8 @@ from scipy.special import stdtrit
 from rattlebox.model.errors import Hint
 from rattlebox.results.quantities import amount
 
-from .calibration_data import Contacts, Drops
-from .calibration_space import NORMAL
+from .measurements import Contacts, Drops
+from .space import NORMAL
 
 if TYPE_CHECKING:
     import xarray

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from .budget import Budget
-from .design_search import MOST_COMBINATIONS, DesignSearch, Evaluation, Values
-from .design_space import ADDED_MASS
+from rattlebox.studies.budget import Budget
+
+from .search import MOST_COMBINATIONS, DesignSearch, Evaluation, Values
+from .space import ADDED_MASS
 from .trial_store import finished_trials, trial_seed
 
 

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, at
 from rattlebox.model.units import parse, whole_number
+from rattlebox.studies.store import save_result
 
-from .calibration_by_simulation import Calibration
-from .calibration_data import Contacts, Losses, read_data, source_of
-from .calibration_space import Space
-from .calibration_work import simulation_of
-from .restitution_of_contacts import restitution_of
-from .store import save_result
+from .by_simulation import Calibration
+from .measurements import Contacts, Losses, read_data, source_of
+from .restitution import restitution_of
+from .space import Space
+from .work import simulation_of
 
 if TYPE_CHECKING:
     import xarray

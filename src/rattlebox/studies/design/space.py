@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint
-
-from .axes import materials_in
-from .grid import labels
-from .parameter import Parameter
+from rattlebox.studies.axes import materials_in
+from rattlebox.studies.grid import labels
+from rattlebox.studies.parameter import Parameter
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

@@ -19,20 +19,19 @@ from rattlebox.model.space import unit_vector
 from rattlebox.model.structures import Shaker
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.quantities import amount
+from rattlebox.studies.axes import read_axes
+from rattlebox.studies.budget import RunGroup, time_of_particle_runs
+from rattlebox.studies.case_digest import describe_case
+from rattlebox.studies.damping_curve import Remarks, damping_curve_cases, mode_of, random_starts, ratios_of_decays
+from rattlebox.studies.particle_work import ParticleWork
+from rattlebox.studies.work import Values
+from rattlebox.studies.work_of_case import work_of_case
 
-from .axes import read_axes
-from .budget import RunGroup, time_of_particle_runs
-from .calibration_data import Losses, RingDown, ShakerLoss
-from .case_digest import describe_case
-from .damping_curve import Remarks, damping_curve_cases, mode_of, random_starts, ratios_of_decays
-from .particle_work import ParticleWork
-from .work import Values
-from .work_of_case import work_of_case
+from .measurements import Losses, RingDown, ShakerLoss
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
-
-    from .grid import Grid
+    from rattlebox.studies.grid import Grid
 
 FloatArray = NDArray[np.float64]
 

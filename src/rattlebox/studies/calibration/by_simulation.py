@@ -17,22 +17,22 @@ from rattlebox._util.progress import announce
 from rattlebox.model.errors import Hint, several
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.quantities import amount
+from rattlebox.studies.axes import read_axes
+from rattlebox.studies.budget import duration, workers_of
+from rattlebox.studies.runner import run_work
+from rattlebox.studies.sampling import random_design
+from rattlebox.studies.store import exclusive_writer
 
-from .axes import read_axes
-from .budget import duration, workers_of
-from .calibration_fit import Fit
-from .calibration_work import CalibrationWork, Point, Simulation
+from .fit import Fit
 from .response_surface import least_points
-from .runner import run_work
-from .sampling import random_design
-from .store import exclusive_writer
+from .work import CalibrationWork, Point, Simulation
 
 if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
 
-    from .calibration_space import Space
+    from .space import Space
 
 FloatArray = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""Calibration: contact parameters from measurements, with intervals."""
