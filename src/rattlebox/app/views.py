@@ -99,19 +99,17 @@ def comparison(runs: Mapping[str, rb.Run]) -> bytes:
         arrays[f"time {name}"] = motion.time.values[rows]
         arrays[f"motion {name}"] = 1e3 * _component(x, _along(run))[rows]
         arrays[f"loss {name}"] = scale * losses[name][rows]
-        colour = rb.plots.SERIES_COLOURS[number % len(rb.plots.SERIES_COLOURS)]
         for chart, kind in zip(charts, ("motion", "loss"), strict=True):
-            line = {"name": name, "x": f"time {name}", "y": f"{kind} {name}", "colour": colour, "dash": number > 5}
+            line = {"name": name, "x": f"time {name}", "y": f"{kind} {name}", "colour": number, "dash": number > 5}
             chart["series"].append(line)
     return encode(arrays, charts=charts)
 
 
 def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run, unit: str) -> list[dict[str, Any]]:
-    """Return the charts of a run: title, labels of the axes, and series that name arrays."""
-    colours = rb.plots.SERIES_COLOURS
+    """Return the charts of a run: title, labels of the axes, and series with their arrays and the number of their colour."""
 
     def series(number: int, name: str, y: str, x: str = "time", **more: Any) -> dict[str, Any]:
-        return {"name": name, "x": x, "y": y, "colour": colours[number % len(colours)], **more}
+        return {"name": name, "x": x, "y": y, "colour": number, **more}
 
     def chart(title: str, x: str, y: str, lines: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
         return {"title": title, "x": x, "y": y, "series": lines, **more}

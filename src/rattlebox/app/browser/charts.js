@@ -3,6 +3,7 @@ import { echarts } from "nicegui-echart";
 import { fetchBody } from "rattlebox-binary";
 
 const GREY = "#555";
+const COLOURS = ["#0b3d6b", "#d1742c", "#5f9ea0", "#a33b5c", "#8c8c2e", "#7a6fb0"]; // rattlebox.plots.SERIES_COLOURS, which needs Matplotlib
 
 // Lines of thousands of points are drawn by the processor: a graphics card gains nothing, and its emulation takes 300 ms.
 const context = HTMLCanvasElement.prototype.getContext;
@@ -16,11 +17,11 @@ function series(entry, arrays, shapes) {
   const samples = shapes[entry.x].length > 1 ? shapes[entry.x][1] : count, xRow = shapes[entry.x].length > 1 ? row : 0;
   const data = new Float32Array(2 * samples); // pairs in one array: thousands of small ones cost 20 ms of collection
   for (let i = 0; i < samples; i++) { data[2 * i] = x[xRow * samples + i]; data[2 * i + 1] = y[row * samples + i]; }
-  const dots = entry.dots === true;
+  const dots = entry.dots === true, color = COLOURS[entry.colour % COLOURS.length];
   return {
     name: entry.name, type: dots ? "scatter" : "line", data, dimensions: ["x", "y"], symbol: dots ? "circle" : "none", symbolSize: 4, animation: false,
-    sampling: entry.portrait ? undefined : "lttb", large: dots, itemStyle: { color: entry.colour },
-    lineStyle: { width: entry.portrait ? 0.7 : 1.3, color: entry.colour, type: entry.dash ? "dashed" : "solid" },
+    sampling: entry.portrait ? undefined : "lttb", large: dots, itemStyle: { color },
+    lineStyle: { width: entry.portrait ? 0.7 : 1.3, color, type: entry.dash ? "dashed" : "solid" },
   };
 }
 
