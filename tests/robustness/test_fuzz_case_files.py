@@ -107,7 +107,7 @@ anything = st.recursive(
     max_leaves=5,
 )
 many_examples = settings(
-    derandomize=True, max_examples=400, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    derandomize=True, max_examples=250, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 
 

@@ -261,7 +261,7 @@ def unlogged_contacts(case: rb.Case, run: rb.Run) -> list[str]:
     return result
 
 
-@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(cases())
 def test_random_case(case: rb.Case) -> None:
     """Any case ends with a status, without NaN, with a closed ledger, and with the same bits when run again."""

@@ -195,6 +195,7 @@ def search(**options):
 """
 
 
+@pytest.mark.slow
 def test_a_killed_design_with_particles_resumes_with_its_trials(tmp_path: Path) -> None:
     """A search for fill and number of cavities killed twice computes the missing trials only, with the same results."""
     script, store = str(Path(__file__).parents[3] / "examples" / "boring_bar_design.py"), tmp_path / "design.zarr"

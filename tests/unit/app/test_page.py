@@ -1,6 +1,7 @@
 """The page of the browser application, simulated without a browser."""
 
 import asyncio
+import multiprocessing
 import os
 import re
 import signal
@@ -140,7 +141,7 @@ def test_particle_run_is_cancelled_and_its_files_are_removed(tmp_path):
     async def visit():
         async with opened(tmp_path) as (page, user, _):
             with user.client:
-                page._templates.set_value("box")
+                page.use_text(LONG_BOX)
                 running = asyncio.ensure_future(page.run())
             await until(lambda: (tmp_path / "run-001.checkpoint").exists())
             worker = page._worker
@@ -212,6 +213,7 @@ def full_disk(tmp_path, monkeypatch):
     flag.touch()
     monkeypatch.setenv(full_disk_worker.FLAG, str(flag))
     monkeypatch.setattr(jobs, "main", full_disk_worker.main)
+    monkeypatch.setattr(jobs, "_CONTEXT", multiprocessing.get_context("spawn"))  # with the environment of this process
     return flag
 
 
@@ -309,7 +311,7 @@ def test_run_that_exceeds_the_memory_is_refused(tmp_path):
                     assert "GB" in (page.form._inputs["output.rate"].error or "")
                     await page.run()
                 assert not list(tmp_path.iterdir())
-                page.use_text(template("box"))
+                page.use_text(LONG_BOX)
                 running = asyncio.ensure_future(page.run())
             await until(lambda: (tmp_path / "run-001.checkpoint").exists())
             os.kill(page._worker._process.pid, signal.SIGKILL)

@@ -218,7 +218,7 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
         "loss_map",
         "damping_curve",
         "drops",
-        "calibration",
+        pytest.param("calibration", marks=pytest.mark.slow),
     ],
 )
 def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
