@@ -287,7 +287,8 @@ def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: floa
     limit = "the loss" if by_loss <= largest else "overlaps"
     return Choice(
         value,
-        f"softening {value:g}, limited by {limit}: the loss in a cycle may change by {change:.2g} m V^2; "
+        f"softening {value:g}, limited by {limit}: the loss in a cycle may change by {change:.2g} m V^2, "
+        "with the mass m of the particles and the velocity amplitude V of the cavity; "
         f"softening 1 would cost {faster:.2g} times as much",
     )
 
@@ -333,8 +334,9 @@ class Effect:
             notes.append(
                 f"warning: softening {self.softening:g}{where} lowers the resonance of the bed under its weight to about "
                 f"{quantity(self.resonance, 'Hz', 2)}, {self.resonance / self.frequency:.2g} times the frequency of the "
-                f"motion: the loss in a cycle may change by {min(self.change, 3):.2g} m V^2; below "
-                f'{MAX_CHANGE:g} is acceptable; try: softening = "auto", or compare with rb.check_softening'
+                f"motion: the loss in a cycle may change by {min(self.change, 3):.2g} m V^2, with the mass m of the "
+                f"particles and the velocity amplitude V of the cavity; below {MAX_CHANGE:g} m V^2 is acceptable; "
+                'try: softening = "auto", or compare with rb.check_softening'
             )
         if self.softening > 1 and self.share > MAX_ENDURING_SHARE:
             notes.append(
