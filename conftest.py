@@ -1,5 +1,6 @@
 """Settings of all tests."""
 
+import gc
 import os
 import signal
 
@@ -10,6 +11,9 @@ pytest_plugins = ("support.processor_time",)
 # The workers of pytest share the cores. More threads of BLAS wait for each other: eigenvalues of a matrix of 900 rows take
 # 1.4 s of processor time with two threads and 0.2 s with one. Read when NumPy loads, also in processes that tests start.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Garbage collections among the many objects of the libraries take a twentieth of the processor time of the tests.
+gc.set_threshold(200_000, 50, 50)
 
 
 def pytest_configure() -> None:
