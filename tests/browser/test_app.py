@@ -442,7 +442,7 @@ def test_case_files_are_opened(page, tmp_path):
     def choose_file(file):
         page.get_by_role("button", name="Open", exact=True).click()
         page.locator("input[type=file]").set_input_files(file)
-        page.get_by_text("Open a case file").wait_for(state="hidden")
+        page.wait_for_function("!document.querySelector('input[type=file]')")  # its dialog fades out
 
     choose_file(good)
     page.wait_for_function("document.querySelector('textarea').value.includes('0.6 mm')")
