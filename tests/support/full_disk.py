@@ -23,5 +23,5 @@ def main(connection: Connection) -> None:
         flush(handle)
 
     os.fsync = flush_if_space
-    worker.FIRST_LOOK, worker.MOST_WAIT = 0.1, 0.4  # many checkpoints, so that the disk is full at one of them
+    worker.FIRST_LOOK = worker.MOST_WAIT = 0.1  # many checkpoints, so that the disk is full at one of them
     worker.main(connection)
