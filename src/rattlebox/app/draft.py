@@ -198,9 +198,9 @@ def numeric_paths(given: Any, above: Path_ = ()) -> list[Path_]:
     return [above] if above and quantity(given) is not None else []
 
 
-def leaves(toml: str) -> dict[str, str]:
-    """Return all single values of a case file as text by path, but for the descriptions of materials."""
-    found: dict[str, str] = {}
+def leaves(toml: str) -> dict[str, Any]:
+    """Return all single values and lists of a case file by path, but for the descriptions of materials."""
+    found: dict[str, Any] = {}
 
     def walk(node: Any, path: Path_) -> None:
         if isinstance(node, dict):
@@ -210,15 +210,16 @@ def leaves(toml: str) -> dict[str, str]:
             for number, item in enumerate(node):
                 walk(item, (*path, number))
         elif path[-1] not in ("title", "source"):
-            found[dotted(path)] = _short(node)
+            found[dotted(path)] = node
 
     walk(tomllib.loads(toml), ())
     return found
 
 
-def _short(value: Any) -> str:
+def short(value: Any) -> str:
+    """Return a value of a case file as text of at most 30 characters."""
     if isinstance(value, list):
-        return ", ".join(map(_short, value)) if len(value) < 4 else f"{len(value)} values"
+        return ", ".join(map(short, value)) if len(value) < 4 else f"{len(value)} values"
     number = quantity(value)
     text = f"{number[0]:.6g} {number[1]}".strip() if number else str(value)
     return text if len(text) <= 30 else f"{text[:27]}..."

@@ -103,14 +103,18 @@ def store_file(folder: Path, name: str, content: bytes) -> None:
         If the name is not a plain one with a suffix of `DATA_FILES`, or is taken.
     """
     if not re.fullmatch(r"[\w-][\w .-]{0,80}", name) or not name.lower().endswith(DATA_FILES):
-        raise rb.DataError(
-            f"{name!r} is not the name of a file of data", f"a name that ends in {', '.join(DATA_FILES)}"
-        )
+        raise rb.DataError(f"{name!r} is not the name of a data file", f"a name that ends in {', '.join(DATA_FILES)}")
+    path = folder / name
     try:
-        with (folder / name).open("xb") as file:
-            file.write(content)
+        file = path.open("xb")
     except FileExistsError:
         raise rb.DataError(f"{name} is in the folder already", "another name, or remove the old file") from None
+    try:
+        with file:
+            file.write(content)
+    except OSError:
+        path.unlink()  # part of a record would look like a short one
+        raise
 
 
 def download(folder: Path, name: str, suffix: str) -> bytes:

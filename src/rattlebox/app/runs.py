@@ -13,7 +13,7 @@ from nicegui import ui
 
 import rattlebox as rb
 
-from .draft import leaves
+from .draft import leaves, short
 from .elements import Charts
 from .results import FORMATS, download, inside, name_of_case, paused_runs, runs
 from .views import comparison
@@ -151,11 +151,12 @@ def differences(loaded: dict[str, rb.Run]) -> str:
     """Return a table of the values in which the cases of runs differ."""
     cases = {name: leaves(run.case_toml) for name, run in loaded.items()}
     paths = list(dict.fromkeys(path for case in cases.values() for path in case))
-    differing = [path for path in paths if len({case.get(path) for case in cases.values()}) > 1]
+    first, *others = cases.values()
+    differing = [path for path in paths if any(case.get(path) != first.get(path) for case in others)]
     if not differing:
-        return "The cases are equal."
+        return "The case files are equal."
     shown = differing[:MOST_DIFFERENCES]
-    columns = [["", *shown], *([name, *(case.get(path, "-") for path in shown)] for name, case in cases.items())]
+    columns = [["", *shown], *([name, *(short(case.get(path, "-")) for path in shown)] for name, case in cases.items())]
     padded = [[text.rjust(max(map(len, column))) for text in column] for column in columns]
     more = [f"and {len(differing) - len(shown)} more"] if len(differing) > len(shown) else []
     return "\n".join(["Differences of the cases", *map("  ".join, zip(*padded, strict=True)), *more])

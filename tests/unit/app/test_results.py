@@ -29,6 +29,7 @@ from rattlebox.app.results import (
     store_file,
     stored_map,
 )
+from rattlebox.app.runs import differences
 from rattlebox.app.views import view_of_snapshots
 
 SHORT_BOX = (
@@ -204,3 +205,41 @@ def test_files_are_added_to_the_folder_only(folder, name):
     with pytest.raises(rb.DataError, match="not the name"):
         store_file(folder, name, b"1")
     assert sorted(folder.iterdir()) == before
+
+
+def test_a_number_of_a_long_list_is_a_difference():
+    """Cases that differ in one number of a long list are not called equal."""
+    start = [0.0, 0.1, 0.2, 0.3, 0.4]
+    balls = [rb.Sphere(radius="5 mm", material="steel")] * len(start)
+    contact = rb.Tsuji(restitution=0.6)
+
+    def run(first):
+        damper = rb.ImpactDamper(balls=balls, gap="9 mm", contact=contact, velocity=[first, *start[1:]])
+        return rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="1 ms"))
+
+    assert differences({"a": run(0.0), "b": run(0.0)}) == "The case files are equal."
+    rows = [line.split() for line in differences({"a": run(0.0), "b": run(0.5)}).splitlines()]
+    assert [row[0] for row in rows[2:]] == ["dampers[0].velocity"]
+
+
+def test_part_of_a_file_is_not_left(tmp_path, monkeypatch):
+    """A record that does not fit on the disk is removed: a part of it would look like a short record."""
+
+    class Full:
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def write(self, _):
+            raise OSError(28, "No space left on device")
+
+    def opened(path, mode):
+        path.touch()
+        return Full()
+
+    monkeypatch.setattr(Path, "open", opened)
+    with pytest.raises(OSError, match="No space"):
+        store_file(tmp_path, "push.csv", b"0, 1")
+    assert not list(tmp_path.iterdir())
