@@ -40,9 +40,9 @@ reproduction: $(PACKAGE)
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m 'not slow and not browser'
 
-# The application in a browser, if there is one; its simulated page is among the other tests.
+# The application in a browser, if there is one; its simulated page is among the other tests. ONLY=--lf runs what failed last.
 app-test: setup
-	$(BIN)/python -m pytest -q -rs -m 'browser and not slow' tests/browser
+	$(BIN)/python -m pytest -q -rs -m 'browser and not slow' $(ONLY) tests/browser
 
 verify: setup sanitize coverage mutate
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m slow

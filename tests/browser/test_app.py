@@ -29,7 +29,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-LONG = 120_000  # ms; a busy machine draws slowly
+LONG = 60_000  # ms; a busy machine draws slowly
 
 pytestmark = [
     pytest.mark.browser,
@@ -40,20 +40,23 @@ pytestmark = [
 
 @contextmanager
 def served(folder):
-    """Start `rattlebox app` and yield its process and address."""
+    """Start `rattlebox app` and yield its process and address; fail at its end if an error went to its log."""
     command = [sys.executable, "-m", "rattlebox.cli", "app", str(folder), "--no-browser"]
     ours = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}  # NiceGUI reads them
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=ours)
+    log = folder.with_name(f"{folder.name}.log")
+    with log.open("w") as file:  # a pipe that nobody reads would be full one day
+        process = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT, env=ours)
     try:
-        lines = []
-        while not (found := re.search(r"http://127\.0\.0\.1:\d+/\?token=\S+", "".join(lines))):
-            lines.append(process.stdout.readline())
-            assert process.poll() is None, lines
+        while not (found := re.search(r"http://127\.0\.0\.1:\d+/\?token=\S+", log.read_text())):
+            assert process.poll() is None, log.read_text()
+            time.sleep(0.05)
         yield process, found[0]
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
+        process.wait(timeout=60)
+        print(log.read_text())
+    assert not re.search(r'rattlebox.app.(?!guard)\w+\.py", line', log.read_text())  # others are of refused messages
 
 
 @pytest.fixture(scope="module")
@@ -95,18 +98,24 @@ def page(server, browser):
     assert [url for url in requests if not url.startswith((f"http://{here}/", f"ws://{here}/", "data:", "blob:"))] == []
 
 
-def choose(page, template):
-    """Choose another template; a menu that opened while the page was being built closes again."""
-    option, before = page.get_by_role("option", name=template), toml(page)
+def pick(page, label, option):
+    """Choose an option of a menu; one that opened while the page was being built closes again without a choice."""
+    chosen = page.locator(".q-select", has=page.get_by_label(label, exact=True)).get_by_text(option, exact=True)
     for _ in range(10):
-        page.get_by_label("template").click()
+        page.get_by_label(label, exact=True).click()
         with suppress(PlaywrightError):
-            option.click(timeout=LONG / 8)
-            other = "(text) => document.querySelector('textarea').value !== text"
-            page.wait_for_function(other, arg=before, timeout=LONG / 8)
+            page.get_by_role("option", name=option, exact=True).click(timeout=LONG / 8)
+            chosen.wait_for(timeout=LONG / 8)
             return
         page.keyboard.press("Escape")
-    pytest.fail("the menu of templates does not open")
+    pytest.fail(f"the menu {label} does not open")
+
+
+def choose(page, title):
+    """Choose another template."""
+    before = toml(page)
+    pick(page, "template", title)
+    page.wait_for_function("(text) => document.querySelector('textarea').value !== text", arg=before)
 
 
 def toml(page):
@@ -347,8 +356,7 @@ def test_pictures_for_the_documentation(page, tmp_path):
         page.get_by_label("to", exact=True).first.fill("30 mm")
         page.get_by_role("switch", name="log").first.click()
         page.get_by_role("switch", name="ratio").click()
-        page.get_by_label("second parameter").click()
-        page.get_by_role("option", name="load.amplitude").click()
+        pick(page, "second parameter", "load.amplitude")
         page.get_by_role("button", name="Compute map").click()
         page.get_by_text("saved as map-").wait_for()
         page.wait_for_timeout(1000)
@@ -442,7 +450,8 @@ def test_case_files_are_opened(page, tmp_path):
     def choose_file(file):
         page.get_by_role("button", name="Open", exact=True).click()
         page.locator("input[type=file]").set_input_files(file)
-        page.wait_for_function("!document.querySelector('input[type=file]')")  # its dialog fades out
+        page.locator(".q-dialog").wait_for(state="detached")  # it fades out
+        page.wait_for_function("!Object.values(mounted_app.elements).some(({tag}) => tag.includes('dialog'))")
 
     choose_file(good)
     page.wait_for_function("document.querySelector('textarea').value.includes('0.6 mm')")
@@ -619,12 +628,6 @@ def test_closed_page_and_killed_server(browser, tmp_path):
     assert [run.status for run in kept] == ["finished", "finished"]
 
 
-def pick(page, label, option):
-    """Choose an option of a menu."""
-    page.get_by_label(label, exact=True).click()
-    page.get_by_role("option", name=option, exact=True).click()
-
-
 def mapped(page, file, parameter, low, high, count, measure, *, log=False):
     """Compute a map as the lecture sheet says, and return parameter and measure of the downloaded table."""
     page.get_by_role("tab", name="Map").click()
@@ -635,7 +638,9 @@ def mapped(page, file, parameter, low, high, count, measure, *, log=False):
         page.get_by_role("switch", name="log").first.click()
     page.get_by_label("measure").fill(measure)
     page.get_by_role("option", name=measure, exact=True).click()
-    page.wait_for_timeout(500)
+    page.wait_for_timeout(500)  # answers of the page
+    shown = [page.get_by_label(label, exact=True).first.input_value() for label in ("from", "to", "values")]
+    assert [*shown, page.get_by_label("measure").input_value()] == [low, high, str(count), measure]
     page.get_by_role("button", name="Compute map").click()
     page.get_by_role("button", name="Stop").wait_for()
     page.get_by_role("button", name="Compute map").wait_for(timeout=20 * LONG)

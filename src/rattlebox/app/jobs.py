@@ -95,8 +95,7 @@ class Worker:
     def stop(self) -> None:
         """End the process and its computation."""
         self._process.kill()
-        self._process.join()
-        self._connection.close()
+        self._process.join()  # a thread may still read from the connection, which closes with its last reference
 
 
 class Live:
