@@ -11,8 +11,10 @@ import rattlebox as rb
 
 from . import cases, compute, quantities, store
 
+OTHERS = [pytest.param(level, marks=pytest.mark.slow) for level in ("v1", "v3", "native")]
 
-@pytest.mark.parametrize("level", ["v1", "v3", "v4", "native"])
+
+@pytest.mark.parametrize("level", ["v4", *OTHERS])
 def test_golden_results(level: str) -> None:
     """Each instruction set reproduces the stored values to 1e-11 and the stored bits, also with threads and restarts."""
     if level not in quantities.levels():

@@ -135,6 +135,7 @@ def test_a_flipped_bit_of_any_dataset_of_snapshots_is_detected(folder: Path, tmp
     assert {"VTKHDF/Points", "VTKHDF/NumberOfPoints", "VTKHDF/Steps/Values", "digests"} <= names
 
 
+@pytest.mark.slow
 def test_a_flipped_bit_of_any_array_or_attribute_of_a_run_is_detected(folder: Path, tmp_path: Path) -> None:
     """Every variable and attribute of a run is protected, also short ones."""
     path = tmp_path / "run.nc"

@@ -84,6 +84,7 @@ def check_complete(folder: Path, runs: Path) -> int:
     return len(files)
 
 
+@pytest.mark.slow
 def test_killed_while_files_are_written(runs: Path, tmp_path: Path) -> None:
     """After SIGKILL at a random time every CSV, PNG, SVG, netCDF, MAT and TOML file is complete."""
     generator, complete, unfinished = random.Random(1), 0, 0

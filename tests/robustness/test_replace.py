@@ -91,7 +91,8 @@ def replacement_has_checkpoint() -> bool:
     return any(Path("out").glob("replacement-*/run.checkpoint"))
 
 
-@pytest.mark.parametrize("by", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGKILL])
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.slow
 def test_finished_run_is_kept_until_the_new_one_is_finished(by: int) -> None:
     """Results and snapshots are unchanged after a stop; the same command resumes and replaces them at the end."""
     assert run("first.toml", "--csv").returncode == 0

@@ -9,13 +9,10 @@ from pathlib import Path
 
 from rattlebox.app import worker
 
-FLAG = "RATTLEBOX_TEST_FULL_DISK"
-"""Environment variable with the name of a file; the disk is full as long as the file exists."""
 
-
-def main(connection: Connection) -> None:
-    """Do the tasks of a connection; while the flag is set, files cannot be completed."""
-    flush, flag = os.fsync, Path(os.environ[FLAG])
+def main(flag: Path, connection: Connection) -> None:
+    """Do the tasks of a connection; as long as the file `flag` exists, files cannot be completed."""
+    flush = os.fsync
 
     def flush_if_space(handle: int) -> None:
         if flag.exists():

@@ -10,7 +10,9 @@ from support.impact_lines import Line
 @pytest.mark.parametrize(
     "lines",
     [
-        pytest.param(f, id=f.__name__, marks=pytest.mark.slow if f is study_lines.limits else ())
+        pytest.param(
+            f, id=f.__name__, marks=pytest.mark.slow if f in (study_lines.limits, study_lines.responses) else ()
+        )
         for f in study_lines.ALL
     ],
 )

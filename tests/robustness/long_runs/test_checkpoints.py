@@ -540,7 +540,7 @@ def test_sigterm_while_a_compiled_module_loads() -> None:
     assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "stopped\n")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGTERM])
 def test_command_resumes(number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An interrupted command prints how to resume; repeated, it finishes and removes the checkpoint."""
     case(duration="0.7 s").to_file(tmp_path / "case.toml")

@@ -187,6 +187,7 @@ def test_block_that_crashes_its_worker(tmp_path: Path) -> None:
             run_work(Logistic(crash=True), backend=client, block=60)
 
 
+@pytest.mark.slow
 def test_killed_scheduler(tmp_path: Path) -> None:
     """Without its scheduler a study ends with the blocks that are stored, and resumes on another backend."""
     store = tmp_path / "study.zarr"

@@ -36,6 +36,7 @@ def test_the_map(tmp_path: Path) -> None:
     assert not result.status.any()
 
 
+@pytest.mark.slow
 def test_the_python_script(tmp_path: Path) -> None:
     """The script runs unchanged and leaves a finished store."""
     (tmp_path / "script.py").write_text(block("python"))
@@ -53,6 +54,7 @@ def test_the_python_script(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.slow
 def test_the_job_script(tmp_path: Path) -> None:
     """The job script, with a stand-in for srun and on the loopback, runs the study and ends its processes."""
     programs = tmp_path / ".venv" / "bin"

@@ -57,7 +57,7 @@ def uninterrupted() -> dict[str, bytes]:
     return bits(diagram())
 
 
-@pytest.mark.parametrize("after", [10, 70])  # on the way up, and down again
+@pytest.mark.parametrize("after", [pytest.param(10, marks=pytest.mark.slow), 70])  # on the way up, and down again
 def test_killed_diagram_resumes(after: int, tmp_path: Path) -> None:
     """A diagram that is killed on its way up or down resumes with the bits of an uninterrupted one."""
     store = tmp_path / "study.zarr"

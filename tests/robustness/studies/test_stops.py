@@ -165,6 +165,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_a_killed_sweep_with_particles_continues_within_it(tmp_path: Path) -> None:
     """Stepped sines killed twice continue from their last frequencies, with the bits of those that ran through."""
     script, store = tmp_path / "response.py", tmp_path / "response.zarr"

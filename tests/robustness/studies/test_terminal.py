@@ -25,6 +25,7 @@ file = "{EXAMPLE}"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="terminals are made otherwise")
+@pytest.mark.slow
 def test_bar_and_ctrl_c(tmp_path: Path) -> None:
     """A terminal shows a bar with share, rate and remaining time; Ctrl-C ends with code 130 and how to resume."""
     (tmp_path / "study.toml").write_text(STUDY)

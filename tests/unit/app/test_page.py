@@ -1,12 +1,12 @@
 """The page of the browser application, simulated without a browser."""
 
 import asyncio
-import multiprocessing
 import os
 import re
 import signal
 import time
 from contextlib import asynccontextmanager
+from functools import partial
 
 import pytest
 from nicegui.testing import user_simulation
@@ -55,6 +55,7 @@ async def opened(folder):
             failure = error
         pages[0].close()
         Worker.stop_spare()
+        await asyncio.sleep(0.05)  # a task that is cancelled as it sends the last changes would end only after 2 s
     if failure is not None:
         raise failure
 
@@ -211,9 +212,7 @@ def full_disk(tmp_path, monkeypatch):
     """Let the processes of the page write to a disk that is full as long as the returned file exists."""
     flag = tmp_path / "disk is full"
     flag.touch()
-    monkeypatch.setenv(full_disk_worker.FLAG, str(flag))
-    monkeypatch.setattr(jobs, "main", full_disk_worker.main)
-    monkeypatch.setattr(jobs, "_CONTEXT", multiprocessing.get_context("spawn"))  # with the environment of this process
+    monkeypatch.setattr(jobs, "main", partial(full_disk_worker.main, flag))
     return flag
 
 
