@@ -115,6 +115,7 @@ class Unit:
 @contextmanager
 def unit(folder: Path, system: Any, fmi: int, **options: Any) -> Iterator[Unit]:
     """Write an FMU and load it."""
+    folder.mkdir(exist_ok=True)
     made = Unit(rb.to_fmu(system, folder / "damper.fmu", fmi=fmi, **options), folder / "unzipped")
     yield made
     made.fmu.freeInstance()
@@ -419,6 +420,13 @@ def test_wrong_options_are_refused(options: dict[str, Any], named: str, tmp_path
     path = tmp_path / options.pop("path", "damper.fmu")
     with pytest.raises(rb.CaseError, match=named):
         rb.to_fmu(two or ball(), path, alone=None if two is None else True, **options)
+
+
+def test_a_missing_folder_is_not_created(tmp_path: Path) -> None:
+    """As of other files, a mistyped folder of an FMU is an error."""
+    with pytest.raises(rb.DataError, match="no folder"):
+        rb.to_fmu(ball(), tmp_path / "missing" / "damper.fmu")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_fmu_that_cannot_be_written_leaves_the_earlier_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import rattlebox
-from rattlebox._util.atomic_io import atomic_write, disk_errors
+from rattlebox._util.atomic_io import atomic_write, require_folder
 from rattlebox.core import _core
 from rattlebox.core.component import component_library, other_libraries
 from rattlebox.model.case import Case
@@ -156,6 +156,7 @@ def fmu_and_notes(
     path = Path(path)
     if path.suffix != ".fmu":
         raise Hint(f"{path}: the name of an FMU must end with .fmu", f'"{path.with_suffix(".fmu")}"')
+    require_folder(path)
     libraries = {"x86_64-linux": component_library(), **(other_libraries() if other_systems else {})}
     if fmi == 2:
         libraries = {FMI_2_FOLDERS[system]: file for system, file in libraries.items() if system in FMI_2_FOLDERS}
@@ -172,8 +173,6 @@ def fmu_and_notes(
         "resources/limits": _limits(case, packed).encode(),
         "documentation/index.html": _page(model, variables, packed.notes, list(libraries)).encode(),
     }
-    with disk_errors(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
     with atomic_write(path) as name, zipfile.ZipFile(name, "w", zipfile.ZIP_DEFLATED) as file:
         for entry, data in content.items():
             file.writestr(zipfile.ZipInfo(entry), data, zipfile.ZIP_DEFLATED)

@@ -305,7 +305,7 @@ def _draw_building(axes: Axes, case: Case, marks: Marks) -> None:
         axes.add_patch(Rectangle((-0.15, y - 0.08), 1.3, 0.16, facecolor=SOLID, edgecolor=INK, lw=pen(0.8), zorder=2))
         if k % step == 0:
             text(axes, (-0.25, y), amount(building.masses[k], "kg"), ha="right", fontsize="small")
-            text(axes, (0.5, y - 0.5), amount(building.stiffnesses[k], "N/m"), fontsize="small", color=INK)
+            text(axes, (1.25, y - 0.5), amount(building.stiffnesses[k], "N/m"), ha="left", fontsize="small", color=INK)
         name = f"storey {k + 1}"
         own = [number for number, point in points.items() if point == name]
         for j, number in enumerate(own):
