@@ -485,7 +485,8 @@ class Page:
 
     def _open_dialog(self) -> None:
         names = sorted(path.name for path in self.folder.glob("*.toml"))
-        with ui.dialog().on("hide", lambda: dialog.delete()) as dialog, ui.card():
+        with ui.dialog() as dialog, ui.card():
+            dialog.on("hide", dialog.delete)
             ui.label("Open a case file, or add a file of data that a case names").classes("font-semibold")
             ui.label(
                 f"in the folder {self.folder.name}:"

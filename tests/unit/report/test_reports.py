@@ -141,6 +141,17 @@ def result_of(name: str) -> Any:
         "sensitivity": lambda: rb.sensitivity(
             case(duration="0.1 s"), {"damper.gap": ("0.5 mm", "2 mm"), "load.amplitude": (5.0, 10.0)}, "rms", 8, **quiet
         ),
+        "sensitivity with options": lambda: rb.sensitivity(
+            case(duration="0.1 s"),
+            {"damper.gap": ("0.5 mm", "2 mm"), "damper.ball.material": ["steel", "brass"]},
+            ["rms", "impacts"],
+            8,
+            log="damper.gap",
+            confidence=0.9,
+            seed=3,
+            skip="10 ms",
+            **quiet,
+        ),
         "drops": lambda: rb.calibrate(
             [
                 rb.Drops(height="300 mm", rebound=["192 mm", "189 mm", "194 mm"], error="1 mm"),
@@ -218,6 +229,7 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
         "loss_map",
         "damping_curve",
         "drops",
+        "sensitivity with options",
         pytest.param("calibration", marks=pytest.mark.slow),
     ],
 )

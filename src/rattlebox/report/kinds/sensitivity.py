@@ -11,8 +11,8 @@ import numpy as np
 from rattlebox.plots.sensitivity import plot_sensitivity
 from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
-from rattlebox.report.kinds.sweep import system_words
-from rattlebox.report.parts import Kind, Limit, Picture, Table
+from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
+from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 from rattlebox.results.case_words import joined
 from rattlebox.results.quantities import amount
 from rattlebox.studies.measures import MEASURES
@@ -72,12 +72,25 @@ def _limits(study: xr.Dataset) -> Iterator[Limit]:
     yield from words.study_limits(study)
 
 
+def _call(study: xr.Dataset) -> Call | None:
+    bounds, grid = (words.option_of(study, name) for name in ("bounds", "design"))
+    if bounds is None or grid is None:
+        return None
+    measures, remarks = measures_argument(study)
+    averaged = [path for path, column in grid["columns"].items() if column["varies_along"] != ["sample"]]
+    if averaged:
+        remarks += (f"levels and starts: add those of {joined(averaged)}",)
+    options = options_of(study, "log", "confidence", "seed", "skip", "cycles", "samples", "point")
+    given = {"bounds": bounds, "measure": measures, "n": int(study.attrs["n"]), **options}
+    return Call("sensitivity", given, "" if remarks else "sensitivity", remarks)
+
+
 KIND = Kind(
     name="Sensitivity",
     cases=words.cases_of,
     question=_question,
     answer=_answer,
-    call=lambda study: None,
+    call=_call,
     pictures=lambda study: [
         Picture(
             "Share of the variance that each parameter causes alone, and with its interactions.",

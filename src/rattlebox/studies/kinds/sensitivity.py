@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from contextlib import suppress
 from dataclasses import KW_ONLY
 from dataclasses import dataclass as plain_dataclass
 from functools import cached_property
@@ -173,7 +175,11 @@ class Sensitivity(Study):
     def compute(self) -> xr.Dataset:
         """Run the points and compute the indices; see `Study.compute`."""
         runs = self._sweep.run(**self.where)
-        return save_result(_indices(runs, list(self.bounds), self.n, self.confidence, self.seed), self.kind, self.store)
+        bounds, log = split_bounds(self.bounds, self.log)
+        found = _indices(runs, list(bounds), self.n, self.confidence, self.seed)
+        with suppress(TypeError):  # choices may be objects, which JSON does not know
+            found.attrs |= {"bounds": json.dumps(bounds, default=float), "log": json.dumps(log)}
+        return save_result(found, self.kind, self.store)
 
 
 sensitivity = study_function(Sensitivity)
@@ -197,8 +203,8 @@ def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed
         },
         coords={"parameter": paths, "measure": names},
     )
-    about = {"confidence": confidence, "n": n, "seed": seed, "case": runs.attrs["case"]}
-    return found.assign_attrs(title="Rattlebox sensitivity", **about)
+    about = {"title": "Rattlebox sensitivity", "confidence": confidence, "n": n, "seed": seed}
+    return found.assign_attrs(runs.attrs | about)
 
 
 def _indices_of_measure(
