@@ -8,6 +8,7 @@ import re
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -174,6 +175,13 @@ def result_of(name: str) -> Any:
     }[name]()
 
 
+@cache
+def page_of(name: str) -> Page:
+    """Return the report about a result; drawing is most of the work of these tests."""
+    with TemporaryDirectory() as folder:
+        return Page(rb.write_report(result_of(name), Path(folder) / "report.html"))
+
+
 KINDS = {
     "run": "How does an oscillator of 1 kg at 31.83 Hz with a steel ball of 90.23 g",
     "free run": "vibrate freely within 2 s?",
@@ -197,10 +205,9 @@ KINDS = {
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_path: Path) -> None:
+def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str) -> None:
     """A report has all parts, figures with captions, and neither scripts nor links to other files."""
-    path = rb.write_report(result_of(name), tmp_path / "report.html")
-    page = Page(path)
+    page = page_of(name)
     assert KINDS[name] in page.text
     headings = ("Case", "Inputs", "Results", "Warnings and notes", "Limits of the method", "How to reproduce")
     for heading in headings[2 * (name == "drops") :]:  # a drop test has no case
@@ -212,7 +219,7 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
         page.tags.count("figcaption") == page.tags.count("img") >= 1 or "Not drawn: the starts vary along" in page.text
     )
     assert "nan" not in re.sub(r"[A-Za-z]+nan|nan[A-Za-z]+", "", page.text)
-    assert path.stat().st_size < 2_000_000
+    assert len(page.source) < 2_000_000
 
 
 @pytest.mark.parametrize(
@@ -235,8 +242,9 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_p
 )
 def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The case file and the script of a report, in an empty folder, compute an equal result."""
-    result = result_of(name)
-    page = Page(rb.write_report(result, tmp_path / "first.html"))
+    result, page = result_of(name), page_of(name)
+    if name not in ("run", "sweep"):
+        monkeypatch.setattr(rb, "write_report", lambda result, path: Path(path).touch())
     monkeypatch.chdir(tmp_path)
     for file, content in page.downloads.items():
         Path(file).write_text(content, encoding="utf-8")
@@ -256,22 +264,20 @@ def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, m
         assert read_study("study.toml").run(progress=False).equals(result)
 
 
-def test_numbers_of_the_answer_are_those_of_the_result(tmp_path: Path) -> None:
+def test_numbers_of_the_answer_are_those_of_the_result() -> None:
     """The answer of a damping curve has the largest ratio with its interval, that of a run the peak."""
     curve = result_of("damping_curve")
-    text = Page(rb.write_report(curve, tmp_path / "a.html")).text
+    text = page_of("damping_curve").text
     best = int(np.argmax(curve.damping_ratio.values))
     lower, ratio, upper = (f"{100 * float(curve[name][best]):.3g}" for name in ("lower", "damping_ratio", "upper"))
     assert f"{ratio} % (95 % interval {lower} to {upper} %)" in text
     found = result_of("calibration")
     lower, value, upper = (f"{float(found[name][0]):.3g}" for name in ("lower", "value", "upper"))
-    text = Page(rb.write_report(found, tmp_path / "c.html")).text
+    text = page_of("calibration").text
     assert f"The contact restitution is {value} (95 % interval {lower} to {upper})" in text
     run = result_of("run")
     peak = float(np.abs(run.motion.displacement).max())
-    assert (
-        f"The peak displacement of mass is {1e3 * peak:.3f} mm" in Page(rb.write_report(run, tmp_path / "b.html")).text
-    )
+    assert f"The peak displacement of mass is {1e3 * peak:.3f} mm" in page_of("run").text
 
 
 def test_files_of_a_front_are_those_that_its_script_reads(tmp_path: Path) -> None:
@@ -288,7 +294,7 @@ def test_files_of_a_front_are_those_that_its_script_reads(tmp_path: Path) -> Non
 def test_sweeps_are_compared_only_where_both_are_computed(tmp_path: Path) -> None:
     """A report of an unfinished frequency response does not state that a sweep agrees with one that is not computed."""
     response = result_of("frequency_response")
-    assert "downward sweep" in Page(rb.write_report(response, tmp_path / "a.html")).text
+    assert "downward sweep" in page_of("frequency_response").text
     only_up = response.assign(amplitude=response.amplitude.where(response.direction == "up"))
     answer = Page(rb.write_report(only_up, tmp_path / "b.html")).text
     assert "agree within" not in answer and "differ by more" not in answer
@@ -307,18 +313,18 @@ def test_the_only_known_exponent_is_reported(tmp_path: Path) -> None:
     assert f"The largest Lyapunov exponent is {amount(float(study.exponent[1]), '1/s')}" in text
 
 
-def test_the_mean_of_a_measure_has_its_unit(tmp_path: Path) -> None:
+def test_the_mean_of_a_measure_has_its_unit() -> None:
     """The report of a sensitivity states the unit of the mean."""
     study = result_of("sensitivity")
-    text = Page(rb.write_report(study, tmp_path / "a.html")).text
+    text = page_of("sensitivity").text
     assert f"its mean is {amount(study['mean'].item(), 'm')}." in text
 
 
-def test_warnings_are_complete(tmp_path: Path) -> None:
+def test_warnings_are_complete() -> None:
     """Each note of a run is in its report, and limits have the values of the run."""
     run = result_of("particles")
     assert any("warning" in note for note in run.notes)
-    page = Page(rb.write_report(run, tmp_path / "report.html"))
+    page = page_of("particles")
     for note in run.notes:
         assert str(typeset(note)) in page.source
     assert f"{100 * run.diagnostics['largest_overlap']:.3g} % of the radius" in page.text
