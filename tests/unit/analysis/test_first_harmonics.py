@@ -9,6 +9,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.analysis import complex_power, shaken_cavity
+from rattlebox.analysis.shaken import force_harmonics
 from rattlebox.analysis.signals import trapezoid_weights
 
 FREQUENCY = 20.0
@@ -122,3 +123,16 @@ def test_reduced_loss_refers_to_the_speed_of_the_cavity(duration: float) -> None
     assert result.loss_per_cycle.item() > 0
     exact = result.loss_per_cycle.item() / (mass * (2 * math.pi * 10 * 1e-3) ** 2)
     assert result.reduced_loss.item() == pytest.approx(exact, rel=1e-6)
+
+
+@pytest.mark.parametrize("samples", [40, 64])
+def test_harmonics_of_a_force_and_their_variation_are_exact(samples: int) -> None:
+    """The second and third harmonic have their amplitudes, and the first one the deviation of its cycles from their mean."""
+    firsts = np.array([3.0, 5.0, 4.0, 8.0])  # amplitude of the first harmonic in each cycle [N]
+    times = np.linspace(0, firsts.size / FREQUENCY, firsts.size * samples + 1)
+    omega, cycle = 2 * math.pi * FREQUENCY, np.minimum((times * FREQUENCY + 1e-9).astype(int), firsts.size - 1)
+    momentum = (firsts[cycle] * np.sin(omega * times) + 0.7 / 2 * np.sin(2 * omega * times)) / omega
+    momentum += 0.2 / 3 * np.cos(3 * omega * times) / omega
+    harmonics, variation = force_harmonics(times, momentum, FREQUENCY, 4)
+    assert harmonics[:2] == pytest.approx([0.7, 0.2], abs=1e-9)
+    assert variation == pytest.approx(firsts.std(), rel=1e-9)

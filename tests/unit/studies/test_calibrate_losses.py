@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 import rattlebox as rb
 from rattlebox.studies.axes import read_axes
@@ -208,6 +209,10 @@ def test_parameters_that_act_together_are_told_apart_by_a_known_one() -> None:
     assert known.lower[0] < 0.7 < known.upper[0]
     assert (known.upper - known.lower)[0] < 0.4 * (together.upper - together.lower)[0]
     assert json.loads(known.attrs["known"]) == {DAMPING: [0.005, pytest.approx(0.0002)]}
+    for result, freedom in ((together, 0), (known, 1)):  # two ratios, perhaps a known value, and two parameters
+        assert result.attrs["degrees_of_freedom"] == freedom
+    assert known.attrs["p_value"] == pytest.approx(chi2.sf(known.attrs["chi2"], 1))
+    assert np.isnan(together.attrs["p_value"])
 
 
 def test_data_that_no_parameter_explains_are_reported() -> None:
@@ -387,6 +392,7 @@ def test_errors_of_losses_name_the_value(changes: dict[str, Any], words: str) ->
         ({"data": rb.ShakerLoss("1 mm", "40 Hz", reduced_loss=1.0, error="3 %")}, "1 measured value cannot determine"),
         ({"parameters": {"damper.friktion": (0, 1)}}, "damper.friktion"),
         ({"parameters": {E: (0.9, 0.4)}}, "the first value must be the smaller one"),
+        ({"parameters": {E: (0.0, 0.4)}, "log": [E]}, "and above zero"),
         ({"parameters": {E: (0.4, 1.4)}}, rf"parameters: {E}\[1\]"),
         ({"parameters": {E: 0.4}}, "a pair"),
         ({"parameters": {E: (0.4, float("nan"))}}, E),

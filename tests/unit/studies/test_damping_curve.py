@@ -26,11 +26,11 @@ def test_a_linear_damper(way: Any, structure: Any) -> None:
     modes = structure.modes()
     frequency = math.sqrt(modes.stiffness[0]) / (2 * math.pi)
     tuned = rb.TunedMass(
-        mass=0.01 / modes.shape(point)[0] ** 2, frequency=0.3 * frequency, damping_ratio=1.0, point=point
+        mass=0.01 / modes.shape(point)[0] ** 2, frequency=0.3 * frequency, damping_ratio=0.8, point=point
     )
     case = rb.Case(structure=structure, tuned_mass=tuned, duration=40 / frequency)
     result = rb.damping_curve(case, LEVELS, way=way, packings=1, point=point)
-    impedance = 0.09 + 0.6j  # stiffness of the tuned mass over m w^2
+    impedance = 0.09 + 0.48j  # stiffness of the tuned mass over m w^2
     added = -0.01 / 2 * (impedance / (impedance - 1)).imag
     np.testing.assert_allclose(result.damping_ratio, 0.02 + added, rtol=0.01)
     np.testing.assert_allclose(result.bare, 0.02)
@@ -184,6 +184,17 @@ def test_modal_takes_any_structure() -> None:
     np.testing.assert_allclose(runs[0].motion.displacement, runs[1].motion.displacement, atol=1e-15)
 
 
+def test_a_mode_that_is_not_there_names_those_that_are() -> None:
+    """Modes are counted from 1, also in messages."""
+    structure = rb.Modal(frequencies=[20.0, 90.0], damping_ratio=0.01, shapes={"tip": [1.0, 0.1]})
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="8 mm", material="steel"), gap="50 um", contact=rb.Tsuji(restitution=0.5)
+    )
+    case = rb.Case(structure=structure, damper=damper, duration="1 s")
+    with pytest.raises(rb.CaseError, match=r"one of these: 1, 2$"):
+        rb.damping_curve(case, [2e-4, 3e-4], mode=3)
+
+
 def test_a_mode_is_told_from_others_that_impacts_excite() -> None:
     """The decay of the second mode is that of its own coordinate, even where the first mode moves the point more."""
     structure = rb.Modal(
@@ -250,3 +261,11 @@ def test_shaking_is_the_damping_of_a_forced_vibration() -> None:
     assert amplitude > 2.6e-4
     viscous = 2 * math.pi * mass * (2 * math.pi * 50) * omega * amplitude**2  # loss in a cycle of a dashpot of ratio 1
     assert lost / viscous == pytest.approx(float(curve.damping_ratio.mean()), rel=0.006)
+
+
+def test_a_design_counts_the_cycles_that_are_given() -> None:
+    """The damping ratio of a design is the smallest of its curve with the same cycles at each amplitude."""
+    case, levels = ball_case(), ["0.3 mm", "0.4 mm"]
+    options: dict[str, Any] = {"way": "shaking", "cycles": (5, 10), "packings": 1}
+    found = rb.design(case, {"damper.gap": ["0.5 mm"]}, "damping_ratio", amplitudes=levels, trials=1, **options)
+    assert found["damping_ratio"].item() == rb.damping_curve(case, levels, **options).damping_ratio.min().item()

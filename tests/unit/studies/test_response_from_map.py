@@ -71,6 +71,21 @@ def test_constant_mass_is_a_linear_structure() -> None:
         assert float(found.interpolation_error.max()) < 1e-9
 
 
+@pytest.mark.parametrize("axis", [AMPLITUDE, FREQUENCY])
+def test_the_interpolation_error_is_the_change_without_every_second_value(axis: str) -> None:
+    """A map that is too coarse along one axis has an error, that of the response from the map without its middle value."""
+    amplitudes, frequencies = (
+        ([1e-7, 1e-4, 1.0], [5.0, 200.0]) if axis == AMPLITUDE else ([1e-7, 1.0], [5.0, 32.0, 200.0])
+    )
+    whole = made_map(lambda a, f: (0.05 - 0.02j) * (2 if a == 1e-4 or f == 32 else 1), amplitudes, frequencies)
+    options: dict[str, Any] = {"level": "1 N", "frequencies": np.linspace(25, 40, 31).tolist()}
+    found, thin = (rb.response_from_map(OSCILLATOR, table, **options) for table in (whole, whole.isel({axis: [0, 2]})))
+    change = np.abs(thin.amplitude.max("solution") / found.amplitude.max("solution") - 1)
+    assert float(change.max()) > 0.1
+    np.testing.assert_allclose(found.interpolation_error, change, rtol=1e-6)
+    np.testing.assert_allclose(found.peak_interpolation_error, np.abs(thin.peak / found.peak - 1), rtol=1e-6)
+
+
 def test_base_motion_of_a_point_in_3d() -> None:
     """The dampers move along one direction of a structure in 3-D; base and observed point have theirs."""
     shape = [[0.5, 0.0, 0.2], [0.0, 0.4, 0.1]]
