@@ -335,3 +335,27 @@ def test_friction_springs_lower_the_bound(speed: float) -> None:
     step = choose_step(made, tables(made), (speed,))
     assert step.shortest.bound == pytest.approx(1.2 / frequency, rel=1e-6)
     assert step.shortest.bound < 0.2 * step.shortest.duration
+
+
+def test_a_sweep_needs_the_step_of_its_highest_frequency() -> None:
+    """Up or down, a sine sweep to 300 Hz has the step of a harmonic load of 300 Hz."""
+    ends = {"amplitude": "1 N", "duration": "1 s"}
+    loads = [
+        rb.Harmonic(amplitude="1 N", frequency="300 Hz"),
+        rb.SineSweep(**ends, first_frequency="10 Hz", last_frequency="300 Hz"),
+        rb.SineSweep(**ends, first_frequency="300 Hz", last_frequency="10 Hz"),
+    ]
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="4 mm", count=1),
+        cavity=rb.Box(size=("20 mm",) * 3),
+        contact=rb.Tsuji(restitution=0.5),
+        softening=1e6,
+    )
+    structure = rb.SDOF(mass="1 kg", frequency="5 Hz", damping_ratio=0.01)
+    cases = [
+        rb.Case(structure=structure, damper=damper, load=load, duration="20 ms", output=rb.Output(rate="50 Hz"))
+        for load in loads
+    ]
+    steps = [rb.simulate(case).diagnostics["longest_automatic_step"] for case in cases]
+    assert steps[0] == pytest.approx(1 / 300 / 40, rel=0.01)
+    assert steps[1:] == [steps[0]] * 2

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.studies.calibration.restitution import impacts_of
 
 BALL = rb.Sphere(diameter="3 mm", material="glass")
 
@@ -189,3 +190,12 @@ def test_errors_name_the_value(make: Any, words: str) -> None:
     """Each wrong measurement raises an error with the place and what is wrong."""
     with pytest.raises(rb.CaseError, match=words):
         make()
+
+
+def test_reading_errors_of_heights_propagate() -> None:
+    """The standard deviation of the sum of ln e = ln(h_1 / h_0) / 2 is that of random reading errors of all heights."""
+    drops, rebounds = np.array([0.3, 0.6, 1.0]), np.array([0.18, 0.4, 0.5])
+    rng = np.random.default_rng(1)
+    read = [heights + 1e-3 * rng.standard_normal((40_000, 3)) for heights in (drops, rebounds)]
+    scatter = (np.log(read[1] / read[0]) / 2).sum(axis=1).std()
+    assert impacts_of(rb.Drops(height=drops, rebound=rebounds, error="1 mm")).error == pytest.approx(scatter, rel=0.02)
