@@ -299,3 +299,23 @@ def test_a_file_that_has_changed_is_another_study(tmp_path: Path, monkeypatch: p
     for name, varies in axes.items():
         with pytest.raises(rb.StoreError, match=r"another study\n  files\."):
             rb.sweep(record(100.0), varies, "peak", store=name, progress=False)
+
+
+def test_a_ball_that_starts_outside_of_a_displaced_cavity_is_refused() -> None:
+    """The one variant of many whose ball starts on the other side, where the cavity is not, is found."""
+    structure = rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping_ratio=0.01)
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="33 mm", material="steel"),
+        gap="0.4 mm",
+        contact=rb.Tsuji(restitution=0.6),
+        start="0 m",
+    )
+    case = rb.Case(structure=structure, damper=damper, duration="10 ms")
+    displaced = np.linspace(-9e-3, 9e-3, 181)
+    starts = displaced.copy()
+    axes = {"offset": {"structure.displacement": displaced, "damper.start": [f"{x} m" for x in starts]}}
+    assert not rb.sweep(case, axes, "peak", progress=False).status.any()
+    starts[140] *= -1
+    axes["offset"]["damper.start"] = [f"{x} m" for x in starts]
+    with pytest.raises(rb.CaseError, match="inside a wall of the cavity"):
+        rb.sweep(case, axes, "peak", progress=False)
