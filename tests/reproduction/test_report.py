@@ -183,7 +183,6 @@ def test_progress(report):
     assert f"figure {FIGURE}" in {last for _, _, last in calls}
 
 
-@pytest.mark.slow
 def test_figures_are_the_same_in_every_run(report, tmp_path):
     """A second report has bit-identical drawings, data and cases, also with worker processes."""
     page, *_ = report

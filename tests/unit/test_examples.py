@@ -71,7 +71,6 @@ def test_ball_on_a_shaker_is_thrown() -> None:
     assert run.energy_residual < 1e-10
 
 
-@pytest.mark.slow
 def test_many_small_balls_calm_a_structure_sooner_than_one_large_ball() -> None:
     """Balls in a box bring the structure below a fifth of its peak sooner than one ball of their mass, by sliding."""
     box = rb.simulate(rb.Case.from_file(EXAMPLES / "steel_balls_in_a_box.toml"))

@@ -343,7 +343,7 @@ def option_of(study: xr.Dataset, name: str) -> Any:
     if isinstance(value, str):
         with suppress(ValueError):  # a name, not JSON
             value = json.loads(value)
-    return value.tolist() if isinstance(value, np.ndarray) else value
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 def measure_table(study: xr.Dataset, names: Sequence[str]) -> Table:

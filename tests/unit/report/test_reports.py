@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import rattlebox as rb
 from rattlebox.report.page import typeset
@@ -262,6 +263,15 @@ def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, m
         from rattlebox.studies.study_file import read_study
 
         assert read_study("study.toml").run(progress=False).equals(result)
+
+
+@pytest.mark.parametrize("name", ["frequency_response", "lyapunov of pairs", "loss_map", "sensitivity with options"])
+def test_a_study_from_a_netcdf_file_has_the_same_script(name: str, tmp_path: Path) -> None:
+    """Attributes that come back from a file as NumPy numbers are written as plain ones."""
+    result_of(name).to_netcdf(tmp_path / "study.nc")
+    with xr.open_dataset(tmp_path / "study.nc") as stored:
+        again = Page(rb.write_report(stored.load(), tmp_path / "report.html"))
+    assert again.downloads == page_of(name).downloads
 
 
 def test_numbers_of_the_answer_are_those_of_the_result() -> None:
