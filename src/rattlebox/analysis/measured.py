@@ -16,7 +16,8 @@ from rattlebox.exchange.read.universal import Function, read_functions
 from rattlebox.model.errors import Hint
 from rattlebox.model.files import existing
 from rattlebox.model.records import Column, as_columns, read_numbers
-from rattlebox.model.units import factor_of, unit_above
+from rattlebox.model.units import factor_of
+from rattlebox.model.units_in_text import unit_above
 
 from .signals import FloatArray, labelled
 

@@ -142,6 +142,11 @@ class Part(BaseModel, metaclass=_PartMeta):
         """Return the fields whose values were read from a file."""
         return type(self).file_fields if getattr(self, "file", None) is not None else ()
 
+    def as_given(self) -> dict[str, Any]:
+        """Return the fields by name, without those that were read from a file, from which an equal part is made."""
+        from_file = self.fields_from_file()
+        return {name: getattr(self, name) for name in type(self).model_fields if name not in from_file}
+
     @classmethod
     def expand_aliases(cls, values: dict[str, Any]) -> dict[str, Any]:
         """Return values with the names of fields in place of aliases.

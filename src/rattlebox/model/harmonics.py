@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -15,7 +16,7 @@ from rattlebox._util.narrow import present
 
 from .elementwise import Vector, power
 from .errors import Hint
-from .signals import Amplitude, Points, Polyline, Signal
+from .signals import Amplitude, Points, Polyline, Signal, Unit
 from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime
 
 if TYPE_CHECKING:
@@ -59,6 +60,12 @@ class Harmonic(Signal):
         t = np.asarray(time, dtype=float)
         inside = (t >= self.start) & (t < (math.inf if self.stop is None else self.stop))
         return np.where(inside, self.amplitude * np.sin(2 * math.pi * self.frequency * t + self.phase), 0.0)
+
+    def unplaced(self, allowed: Sequence[Unit]) -> str:
+        """Return advice for a harmonic in another unit; for a displacement, the amplitude of its acceleration."""
+        if self.unit == "m" and "m/s^2" in allowed:
+            return f'amplitude = "{self.acceleration().amplitude:.8g} m/s^2", the acceleration of this displacement'
+        return super().unplaced(allowed)
 
     def coefficients(self) -> dict[str, Any]:
         """Return the coefficients for the core."""

@@ -28,13 +28,16 @@ _SUPPORTED = ".csv, .toml, .uff, .unv, .rst or .full"
 _TOML_FIELDS = ("frequencies", "damping_ratios", "modal_masses", "shapes", "participation")
 _DEFAULT_MODES = 10  # number of modes computed from a .full file
 _MOST_POINTS = 8  # largest number of points that are all read if none is named
+_SAME_UNIT = 1e-2  # relative difference of units that are the same
 _SMALLEST_SHAPE = 1e-12  # kg^-1/2
 
 _POINT_AND_AXIS = re.compile(r"^\s*(.+?)(?:\s+(-?[xyz]))?\s*$")
 
 
-def read_modes(path: str, count: int | None) -> ModesInFile | dict[str, Any]:
+def read_modes(path: str, count: int | None, *, has_mass_unit: bool = False) -> ModesInFile | dict[str, Any]:
     """Read modes from a file of any supported kind; from a TOML file as fields of Modal.
+
+    Units of a universal file that contradict each other are no error if the user states the unit of mass.
 
     Raises
     ------
@@ -48,7 +51,7 @@ def read_modes(path: str, count: int | None) -> ModesInFile | dict[str, Any]:
     if ending in _TABLES:
         return read_modal_table(file)
     if ending in _UNIVERSAL:
-        return read_universal_modes(file)
+        return read_universal_modes(file, needs_units=not has_mass_unit)
     if ending == ".rst":
         return read_result(file)
     if ending == ".full":
@@ -108,7 +111,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         with at("mode_count"):
             count = whole_number(count, "mode_count", 1)
     with at("file"):
-        modes = read_modes(path, count)
+        modes = read_modes(path, count, has_mass_unit=given.get("mass_unit") is not None)
     name = Path(path).name
     masses = None
     if given.get("modal_masses") is not None:
@@ -125,7 +128,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
             modal_masses=masses,
             damping_ratios=numbers(modes["damping_ratios"]) if "damping_ratios" in modes else None,
             participation=numbers(modes["participation"]) if "participation" in modes else None,
-            mass_unit=1.0,
+            mass_unit=None if given.get("mass_unit") is not None else 1.0,
         )
     elif masses is not None:
         modes = replace(modes, modal_masses=masses, mass_unit=1.0)
@@ -180,7 +183,13 @@ def _scale(modes: ModesInFile, given: Mapping[str, Any], name: str, path: str) -
     unit, notes = modes.mass_unit, []
     if given.get("mass_unit") is not None:
         with at("mass_unit"):
-            unit = parse(f"1 {given['mass_unit']}", ("kg",))[0]
+            own = parse(f"1 {given['mass_unit']}", ("kg",))[0]
+            if unit is not None and abs(own / unit - 1) > _SAME_UNIT:
+                raise Hint(
+                    f"{name} states that its unit of mass is {unit:.6g} kg, and mass_unit is {own:.6g} kg",
+                    "mass_unit left out; or a modal table in CSV, with units, if the file is wrong",
+                )
+            unit = own
     elif unit is None:
         unit = 1.0
         notes.append(f"{name} states no unit of mass; kg is assumed (mass_unit sets another)")

@@ -281,10 +281,13 @@ class Positions(FilePart, Packing):
 
         Raises
         ------
-        CaseError
+        DataError
             If the file cannot be read; the message names the line or the columns.
+        CaseError
+            If its columns are no packing.
         """
-        return cls.model_validate({"file": os.fspath(path)})
+        fields: dict[str, Any] = {"file": os.fspath(path)}
+        return cls(**fields)
 
 
 AnyPacking = Annotated[Lattice | Settled | Compacted | Positions, Field(discriminator="kind")]
@@ -568,7 +571,7 @@ def check_size(cavity: AnyCavity, radius: float) -> None:
         large = "larger than" if 2 * radius > widest else "as large as"
         raise Hint(
             f"a particle of {2e3 * radius:.4g} mm is {large} the cavity, which is {1e3 * widest:.4g} mm wide",
-            "smaller particles, or a larger cavity; a number without a unit is in metres",
+            "smaller particles, or a larger cavity; check both and their units",
         )
 
 

@@ -274,11 +274,6 @@ def _names_a_unit(value: Any) -> bool:
         return False
 
 
-def _from_file(node: Any) -> tuple[str, ...]:
-    """Return the fields of a part that were read from a file."""
-    return node.fields_from_file() if isinstance(node, Part) else ()
-
-
 def _with(node: Any, place: Place, value: Any) -> Any:
     """Return a copy with another value at a place, in which the parts above it are dicts."""
     if not place:
@@ -287,8 +282,7 @@ def _with(node: Any, place: Place, value: Any) -> Any:
     if isinstance(step, int):
         return [_with(item, tuple(rest), value) if i == step else item for i, item in enumerate(node)]
     if isinstance(node, Part):
-        from_file = _from_file(node)
-        node = {name: getattr(node, name) for name in type(node).model_fields if name not in from_file}
+        node = node.as_given()
     if not isinstance(node, dict):
         raise Hint(f"there is no {step!r} in {node!r}", "a whole part, or fields of it, not both")
     return {**node, step: _with(node.get(step), tuple(rest), value)}

@@ -17,7 +17,6 @@ from .recorded import Record
 from .shocks import Shock
 from .signals import Sampled, Signal
 from .space import Direction, unit_vector
-from .units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from .case import Case
@@ -28,6 +27,8 @@ _LARGEST_BODY = 1.0  # m
 _LARGEST_FRICTION = 3.0
 _LEAST_PARTICIPATION = 1e-3
 """Participation times shape, from which a base excites a mode: the response of a rigid structure is 1."""
+_LEAST_EFFECTIVE_SHARE = 0.2
+"""Sum of the effective masses of the modes over the total mass, below which there is a warning."""
 _FEWEST_SAMPLES = 4.0  # per period
 _LARGEST_DAMPING_RATIO = 0.5  # also 0.5 % without its sign
 _SMALLEST_MODULUS = 1e5  # Pa
@@ -64,7 +65,8 @@ def plausibility_notes(case: Case, *, signals: bool = True) -> tuple[str, ...]:
         for warning in _check_damper(case, damper, " ".join(damper.label(index).split()))
     )
     warnings = (*_check_structure(case), *(_check_signals(case) if signals else ()), *dampers)
-    notes = (*(f"note: {note}" for note in case.structure.notes()), *_note_assumed_units(case))
+    about_structure = (*case.structure.notes(), *(case.structure.base_notes() if case.base else ()))
+    notes = (*(f"note: {note}" for note in about_structure), *_note_assumptions(case))
     return (*notes, *(f"warning: {warning}" for warning in warnings))
 
 
@@ -76,17 +78,10 @@ def _named_signals(case: Case) -> list[tuple[str, Signal]]:
     ]
 
 
-def _note_assumed_units(case: Case) -> Iterator[str]:
-    """Yield the units that are assumed for files without units, and the resulting peaks."""
+def _note_assumptions(case: Case) -> Iterator[str]:
+    """Yield the notes of signals and packings, such as units that are assumed for files, and the resulting peaks."""
     for name, signal in _named_signals(case):
-        if isinstance(signal, Record) and signal.unit_is_assumed:
-            peak = abs(signal.scale) * float(np.max(np.abs(signal.values)))
-            in_g = f" = {peak / STANDARD_GRAVITY:.4g} g" if signal.unit == "m/s^2" else ""
-            file = " ".join(Path(signal.file or "").name.split())
-            yield (
-                f"note: {name}: {file} states no unit; {signal.unit} is assumed, with a peak of {peak:.4g} {signal.unit}"
-                f"{in_g}; set unit or scale if that is wrong"
-            )
+        yield from (f"note: {name}: {note}" for note in signal.notes())
 
     for index, damper in enumerate(case.particle_dampers):
         packing = damper.packing
@@ -101,12 +96,12 @@ def _check_peaks(case: Case) -> Iterator[str]:
     for name, signal in _named_signals(case):
         if not isinstance(signal, Record) or signal.unit not in _PEAKS:
             continue
-        peak = abs(signal.scale) * float(np.max(np.abs(signal.values)))
+        peak = signal.peak
         least, most, most_assumed = _PEAKS[signal.unit]
         if not least <= peak <= (most_assumed if signal.unit_is_assumed else most):
             yield (
                 f"{name} is a record with a peak of {peak:.4g} {signal.unit}; usual are {least:g} to"
-                f" {most_assumed:g} {signal.unit}; try: unit or scale, the unit of its numbers"
+                f" {most_assumed:g} {signal.unit}; try: unit, that of its numbers"
             )
 
 
@@ -135,8 +130,15 @@ def _check_participation(case: Case, modes: ModalModel) -> Iterator[str]:
             f"the motion of the base barely excites the modes: participation times shape is at most {reach:.2g}; usual are "
             f"{_LEAST_PARTICIPATION:g} and more; try: other modes, points or direction"
         )
-    if modes.total_mass is None:
-        effective = float(np.max(np.sum(np.square(modes.participation), axis=0)))
+    effective = float(np.max(np.sum(np.square(modes.participation), axis=0)))
+    total = None if modes.total_mass is None else float(np.max(modes.total_mass))
+    if total is not None and effective < _LEAST_EFFECTIVE_SHARE * total:
+        yield (
+            f"the effective masses of the modes add up to {effective:.3g} kg, {100 * effective / total:.2g} % of the total"
+            f" mass; usual are {100 * _LEAST_EFFECTIVE_SHARE:g} % and more; try: participation with its unit, such as"
+            ' "-0.07 t^0.5", or further modes'
+        )
+    if total is None:
         yield (
             f"the force on the base lacks the inertia of truncated modes; the modes of the case have {effective:.4g} kg;"
             " try: total_mass, the mass of the structure"
@@ -286,7 +288,7 @@ def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) 
         diameters = [2 * ball.half for ball in damper.balls]
         mass = float(sum(damper.masses))
         if damper.clearance > 2 * _LARGEST_BODY:
-            yield f"the gap of {name} is {damper.clearance / 2:.4g} m; a number without a unit is in metres"
+            yield f"the gap of {name} is {damper.clearance / 2:.4g} m, more than usual; check the value and its unit"
     else:
         body = "particle"
         materials = [*(species.material for species in damper.particles), damper.wall]
@@ -294,21 +296,21 @@ def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) 
         mass = float(damper.contents.mass.sum())
         fill_ratio = float(np.sum(4 / 3 * np.pi * damper.contents.radius**3)) / damper.cavity.volume
         if 0 < fill_ratio < _SMALLEST_FILL_RATIO:
-            yield f"the fill ratio of {name} is {fill_ratio:.2g}; a number without a unit is in metres"
+            yield f"the fill ratio of {name} is {fill_ratio:.2g}, less than usual; check the sizes and their units"
         frictions = [entry.friction.coefficient for entry in damper.contact_table.entries if entry.friction]
         if max(frictions, default=0.0) > _LARGEST_FRICTION:
             yield f"the coefficient of friction in {name} is {max(frictions):g}; a percentage needs its sign: 40 % is 0.4"
     for material in dict.fromkeys(m for m in materials if isinstance(m, Material)):
         label = " ".join(material.name.split()) or "a material"
         if material.young < _SMALLEST_MODULUS:
-            yield f"the modulus of {label} in {name} is {material.young:g} Pa; a number without a unit is in pascals"
+            yield f"the modulus of {label} in {name} is {material.young:g} Pa, too little for a solid; check its unit"
         if not _DENSITIES[0] <= material.density <= _DENSITIES[1]:
             yield (
                 f"the density of {label} in {name}, {material.density:g} kg/m^3, is outside the range of solids"
                 f" ({_DENSITIES[0]:g} to {_DENSITIES[1]:g} kg/m^3); check the unit"
             )
     if max(diameters) > _LARGEST_BODY:
-        yield f"a {body} of {name} is {max(diameters):.4g} m wide; a number without a unit is in metres"
+        yield f"a {body} of {name} is {max(diameters):.4g} m wide, more than usual; check the value and its unit"
     mobility = case.modes.mobility(damper.point)
     if mass * mobility > 1:
         yield (

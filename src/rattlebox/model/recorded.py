@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, PrivateAttr, model_serializer, model_validator
@@ -16,65 +17,103 @@ from rattlebox.exchange.read.universal import read_functions
 
 from .base import FilePart
 from .elementwise import Vector
-from .errors import Hint, at
+from .errors import Hint, at, several
 from .files import absolute, existing
-from .records import Column, Columns, as_columns, read_columns, read_samples
-from .signals import UNIT_NAMES, UNITS, Sampled
-from .units import Number, PositiveTime, factor_of, numbers, parse, plain, unit_above
+from .records import Column, Columns, as_columns, read_columns
+from .signals import UNIT_NAMES, UNITS, Sampled, Unit
+from .units import STANDARD_GRAVITY, Number, PositiveTime, factor_of, numbers, parse
+from .units_in_text import unit_above, units_in_lines
+
+_UNIVERSAL = (".uff", ".unv", ".uf")
+_SHOWN = 60  # characters of a line in a message
+_NO_UNIT = "unit left out; scale is a factor of the record apart from its unit"
+_UNIT_ADVICE = 'unit = "m/s^2", and scale = ..., the factor from the numbers to that unit'
+_SCALE_FACTOR = re.compile(r"\bscale\s+factor\b\W*([\d.]+)(\s*\(?[a-z].*/)?", re.I)
+"""A factor of the numbers; with a unit, as in "2000(gal)/8388608", they are readings of a converter."""
 
 
-def _apply_stated_units(columns: Columns, fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Return times, values, unit and scale of a file; units of the fields take precedence over those above the columns.
+def _time_factor(columns: Columns) -> float:
+    """Return the factor of the times to seconds.
 
     Raises
     ------
     DataError
         If the file states a unit that is unknown.
-    Hint
-        If the file and the field `unit` state different dimensions.
     """
-    times, values, (time_headings, value_headings) = columns
     try:
-        time_scale, _ = unit_above(time_headings, ("s",)) or (1.0, "s")
+        factor, _ = unit_above(columns.headings[0], ("s",)) or (1.0, "s")
     except Hint as hint:
         raise DataError(hint.complaint, 'times in seconds below the heading "time (s)"', ["file"]) from None
-    record = {"times": times * time_scale if time_scale != 1 else times, "values": values}
-    if fields.get("scale") is not None:
-        return record
-    wanted = fields.get("unit")
+    return factor
+
+
+def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple[float, str] | None, list[str]]:
+    """Return the factor to SI and the SI unit of the values as the file states it, and notes; None if it states none.
+
+    Parameters
+    ----------
+    columns
+        Content of the file.
+    wanted
+        Unit that the user states; it has priority over free lines of the file, and must not contradict the heading.
+    name
+        Name of the file, for notes.
+
+    Raises
+    ------
+    DataError
+        If the file states a unit that is unknown, or several, and the user none.
+    Hint
+        If the heading of the column and the user state different units.
+    """
+    own = None if wanted is None else factor_of(wanted, UNITS)
     try:
-        stated = unit_above(value_headings, UNITS)
+        stated = unit_above(columns.headings[1], UNITS)
     except Hint as hint:
-        if wanted in UNITS:
-            return record
-        advice = 'unit = "m/s^2", and scale = ..., the factor from the numbers to that unit'
-        raise DataError(hint.complaint, advice, ["file"]) from None
-    if stated is None:
-        return record
-    scale, unit = stated
-    if wanted in UNITS and wanted != unit:
-        raise Hint(
-            f"the file has {UNIT_NAMES[unit]} in this column, not {UNIT_NAMES[wanted]}",
-            f"another column, or scale = ..., the factor from its numbers to {wanted}",
-            ["unit"],
+        if own is not None:
+            return None, []  # an unknown heading does not contradict the user
+        raise DataError(hint.complaint, _UNIT_ADVICE, ["file"]) from None
+    if stated is not None and own not in (None, stated):
+        heading = columns.headings[1][-1]
+        if own is not None and own[1] != stated[1]:
+            kinds = f"{UNIT_NAMES[cast(Unit, stated[1])]} in this column, not {UNIT_NAMES[cast(Unit, own[1])]}"
+            raise Hint(
+                f"the file has {kinds}: {heading!r}", "another column, or values that are computed first", ["unit"]
+            )
+        raise Hint(f"the file states another unit above the column: {heading!r}", _NO_UNIT, ["unit"])
+    if stated is not None:
+        return stated, []
+    try:
+        found, mentioned = units_in_lines(columns.lines, UNITS)
+    except Hint as hint:
+        if own is not None:
+            return None, []
+        raise DataError(f"{name}: {hint.complaint}", _UNIT_ADVICE, ["file"]) from None
+    if own is not None:
+        others = [each for each in found if (each.factor, each.unit) != own and each.unit == own[1]]
+        return None, [
+            f"{name}: unit = {wanted!r} is used, but line {each.number} states another one: {each.line[:_SHOWN]!r}"
+            for each in others[:1]
+        ]
+    scale = next((line for _, line in columns.lines if (match := _SCALE_FACTOR.search(line)) and match[2]), "")
+    if scale:
+        raise DataError(
+            f"{name}: its numbers are readings, to which the scale factor of its header is not applied: {scale.strip()!r}",
+            'unit = "gal" and scale = 2000 / 8388608 for a factor of 2000(gal)/8388608',
+            ["file"],
         )
-    return {**record, "unit": wanted or unit, "scale": scale}
-
-
-def _with_si_unit(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of a record with another unit of the same dimension turned into the SI unit and a scale."""
-    unit = values.get("unit")
-    conversion = factor_of(unit, UNITS) if isinstance(unit, str) and unit not in UNITS else None
-    if conversion is None:
-        return values
-    factor, si_unit = conversion
-    if factor == 1:
-        return {**values, "unit": si_unit}
-    with at("scale"):
-        scale = 1.0 if values.get("scale") is None else plain(values["scale"])
-    if not isinstance(scale, (int, float)):
-        return values
-    return {**values, "unit": si_unit, "scale": scale * factor}
+    if len(found) == 1:
+        (only,) = found
+        note = f"the unit of {name} is taken from line {only.number}, {only.line[:_SHOWN]!r}"
+        return (only.factor, only.unit), [note]
+    if units := [*found, *mentioned]:
+        lines = " and ".join(f"{each.number}, {each.line[:_SHOWN]!r}" for each in units[:2])
+        raise DataError(
+            f"{name} does not state clearly in which unit its values are; units are in line {lines}",
+            'unit = "m/s^2", "g" or "gal", the unit of the values',
+            ["file"],
+        )
+    return None, []
 
 
 def _time_history(path: Path, columns: Any) -> Columns:
@@ -96,23 +135,30 @@ def _time_history(path: Path, columns: Any) -> Columns:
     if not 0 <= index < len(functions):
         raise DataError(f"{path} contains no time history {wanted!r}, but {', '.join(names)}", "columns = [1]")
     history = functions[index]
-    times = history.abscissa - history.abscissa[0]
     headings = [f"a ({history.unit})"] if history.unit else []
-    return Columns(times, np.asarray(history.values, dtype=float), ([], headings))
+    return Columns(history.abscissa, np.asarray(history.values, dtype=float), ([], headings))
 
 
-def _check_unit(columns: Columns, wanted: Any) -> None:
-    """Raise if a file states another unit of acceleration, force or displacement than the field `unit`."""
-    conversion = factor_of(wanted, UNITS) if isinstance(wanted, str) and wanted not in UNITS else None
-    if conversion is None or conversion[0] == 1:
-        return
-    headings = columns.headings[1]
-    try:
-        stated = unit_above(headings, UNITS)
-    except Hint:
-        return  # an unknown heading does not contradict the field
-    if stated is not None and stated != conversion:
-        raise Hint(f"the file states another unit above the column: {headings[-1]!r}", "leave unit out", ["unit"])
+def _ground_motion(path: Path, unit: Any) -> Columns:
+    """Read an AT2 file.
+
+    Raises
+    ------
+    DataError
+        If neither the file nor the field `unit` states a unit.
+    """
+    motion = read_ground_motion(path)
+    times = np.arange(motion.values.size, dtype=float) * motion.step
+    columns = Columns(times, motion.values, ([], [f"a ({motion.unit})"] if motion.unit else []), motion.lines)
+    if unit is None and not motion.unit and not any(units_in_lines(motion.lines, UNITS)):
+        raise DataError(f"{path} states no unit", 'unit = "g"')
+    return columns
+
+
+def _words_on_text(columns: Columns) -> str:
+    """Return what was found where the unit should be: the end of "FILE ... ; m/s^2 is assumed"."""
+    above = [*columns.headings[1], *(line for _, line in columns.lines)]
+    return "has no unit that is recognised above its numbers" if any(above) else "states no unit"
 
 
 def _column(value: Any) -> tuple[float, ...]:
@@ -126,6 +172,10 @@ def _column(value: Any) -> tuple[float, ...]:
     return tuple(array.tolist())
 
 
+def _as_time_zero(value: Any) -> Any:
+    return value if value is None or value == "first" else parse(value, ("s",))[0]
+
+
 class Record(FilePart, Sampled):
     """A record with linear interpolation between its points; it must cover the whole run.
 
@@ -134,21 +184,28 @@ class Record(FilePart, Sampled):
     times
         Strictly increasing [s].
     values
-        As many values, in `unit`.
+        As many values, in `unit`; they are stored in SI units.
     scale
-        Factor of the values; default 1, or the factor from the unit in the file.
+        Factor of the record; default 1. It is independent of the unit: a record in g with `scale=2` is twice as strong.
     dt
         Time between evenly spaced samples [s], the first at 0 s; instead of `times`.
     unit
-        Unit of the values: "N", "m/s^2", "m", or another of these dimensions, such as "g", "gal", "mg", "cm/s^2" or "kN".
+        Unit of the values: "N", "m/s^2", "m", or another of these dimensions, such as "g", "gal", "mg", "cm/s^2" or "kN";
+        stored as the SI unit.
     file
         CSV, NPY, NPZ, MAT, AT2 (PEER) or universal file (.uff, .unv), instead of times and values. Units above the columns
-        of a text file, as in "time (ms), acceleration (g)", are converted; unknown ones raise. Without them times are in s
-        and values in `unit`; if neither states a unit, the run notes the assumed unit and the peak.
+        of a text file, as in "time (ms), acceleration (g)", are converted, and so is the only unit in other lines above, as
+        in "UNIT: CM/SEC/SEC"; unknown and contradicting ones raise. Without them times are in s and values in `unit`; if
+        neither states a unit, the run notes the assumed unit and the peak. A first line with the number of samples, or with
+        number and time step, is no data.
     columns
         Columns or variables with times and values, by number in the order of the file from 1, or by name: `columns=(1, 3)`,
         `columns=("t", "a")`. With `dt` only that of the values; in a universal file the number of the time history. Optional
-        if the file has only two columns (with `dt` one), or variables called time and value.
+        if the file has only two columns (with `dt` one), or variables called time and value. `columns="rows"`: samples that
+        go on from row to row, five or eight a row; optional if the rows show it.
+    time_zero
+        Time of the record that is 0 s in the run [s], or "first" for its first point; default 0 s, in universal files
+        "first". A run notes a shift, and points before 0 s, which are not used.
 
     Notes
     -----
@@ -161,63 +218,105 @@ class Record(FilePart, Sampled):
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("times", "values")
+    begin_advice: ClassVar[str] = 'time_zero = "first", which shifts its first point to 0 s'
     kind: Literal["record"] = "record"
     times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     file: str | None = None
-    columns: tuple[Column, Column] | tuple[Column] | None = None
+    columns: tuple[Column, Column] | tuple[Column] | Literal["rows"] | None = None
     dt: PositiveTime | None = None
     scale: Number = 1.0
+    time_zero: Annotated[Literal["first"] | float | None, BeforeValidator(_as_time_zero)] = None
+    _unit_as_given: str | None = PrivateAttr(default=None)
     _unit_is_assumed: bool = PrivateAttr(default=False)
+    _notes: tuple[str, ...] = PrivateAttr(default=())
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
     @classmethod
-    def _from_file(cls, values: Any) -> Any:
+    def _from_file(cls, values: Any, handler: Any) -> Record:
         if not isinstance(values, dict):
-            return values
-        wanted = values.get("unit")
-        values = _with_si_unit(values)
+            kept: Record = handler(values)
+            return kept
+        given = values.get("unit")
+        notes: tuple[str, ...] = ()
+        values = cls._with_step(values)
+        has_file = values.get("file") is not None
+        if has_file:
+            values, notes = cls._read(values)
+        elif (
+            isinstance(given, str) and given not in UNITS and "values" in values and (known := factor_of(given, UNITS))
+        ):
+            with at("values"):
+                values = {**values, "unit": known[1], "values": known[0] * numbers(values["values"])}
+        record: Record = handler(values)
+        put = BaseModel.__setattr__
+        put(record, "_unit_as_given", given if has_file else None)
+        put(record, "_unit_is_assumed", has_file and values.get("unit") is None)
+        put(record, "_notes", tuple(notes))
+        return record
+
+    @staticmethod
+    def _with_step(values: dict[str, Any]) -> dict[str, Any]:
+        """Return the fields with times in place of a step, if the values are not in a file."""
         step = None
         if values.get("dt") is not None:
             with at("dt"):
                 step = parse(values["dt"], ("s",))[0]
                 if not step > 0:
                     raise Hint("must be greater than zero")
-        if values.get("file") is None:
-            if values.get("columns") is not None:
-                raise Hint("columns need a file", 'file = "push.csv"', ["columns"])
-            if step is not None and "values" in values:
-                if "times" in values:
-                    raise Hint("give times or dt, not both", "leave dt out", ["dt"])
-                return {**values, "times": step * np.arange(np.size(values["values"])), "dt": None}
+        if values.get("file") is not None:
+            return {**values, "dt": step}
+        if values.get("columns") is not None:
+            raise Hint("columns need a file", 'file = "push.csv"', ["columns"])
+        if step is None or "values" not in values:
             return values
+        if "times" in values:
+            raise Hint("give times or dt, not both", "leave dt out", ["dt"])
+        return {**values, "times": step * np.arange(np.size(values["values"])), "dt": None}
+
+    @staticmethod
+    def _read(values: dict[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
+        """Return the fields with the content of the file in SI units, and notes."""
         if "times" in values or "values" in values:
             raise Hint(
                 "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
             )
+        step, wanted = values.get("dt"), values.get("unit")
+        is_universal = str(values["file"]).lower().endswith(_UNIVERSAL)
         with at("columns"):
-            one = step is not None or str(values["file"]).lower().endswith((".uff", ".unv", ".uf"))
-            columns = as_columns(values.get("columns"), 1 if one else 2)
+            columns = as_columns(values.get("columns"), 1 if step is not None or is_universal else 2)
         with at("file"):
             path = absolute(values["file"])
-            if path.lower().endswith(".at2"):
-                if step is not None or columns is not None:
-                    raise Hint(f"{path} states its time step and has one record", "leave dt and columns out")
-                motion = read_ground_motion(existing(path))
-                headings = [f"a ({motion.unit})"] if motion.unit else []
-                times = np.arange(motion.values.size, dtype=float) * motion.step
-                record = Columns(times, motion.values, ([], headings))
-                if not motion.unit and values.get("unit") is None:
-                    raise DataError(f"{path} states no unit", 'unit = "g"')
-            elif path.lower().endswith((".uff", ".unv", ".uf")):
-                record = _time_history(existing(path), values.get("columns"))
-            elif step is not None:
-                samples, headings = read_samples(path, columns[0] if columns else None)
-                record = Columns(np.arange(samples.size, dtype=float) * step, samples, ([], headings))
+            is_ground_motion = path.lower().endswith(".at2")
+            if is_universal and columns == "rows":
+                raise Hint("a universal file has no rows", "columns = [1]", ["columns"])
+            if is_ground_motion and (step is not None or columns is not None):
+                raise Hint(f"{path} states its time step and has one record", "leave dt and columns out")
+            if is_ground_motion:
+                record = _ground_motion(existing(path), wanted)
+            elif is_universal:
+                record = _time_history(existing(path), columns)
             else:
-                record = read_columns(path, columns)
-        _check_unit(record, wanted)
-        return {**values, **_apply_stated_units(record, values), "file": path}
+                record = read_columns(path, columns, step)
+        name = " ".join(Path(path).name.split())
+        stated, notes = _stated_unit(record, wanted if isinstance(wanted, str) else None, name)
+        own = factor_of(wanted, UNITS) if isinstance(wanted, str) else None
+        factor, unit = stated or own or (1.0, wanted)
+        to_seconds = _time_factor(record)
+        fields = {
+            "times": record.times * to_seconds if to_seconds != 1 else record.times,
+            "values": record.values * factor if factor != 1 else record.values,
+            "unit": unit,
+            "file": path,
+        }
+        for number, line in record.lines:
+            if (match := _SCALE_FACTOR.search(line)) and not match[2] and match[1] not in ("1", "1.0"):
+                notes.append(
+                    f"{name}: line {number} states a scale factor, which is not applied: {line.strip()[:_SHOWN]!r}"
+                )
+        if unit is None:
+            notes.append(_words_on_text(record))
+        return {**values, **fields}, (*(f"{name}: {note}" for note in record.notes), *notes)
 
     @model_validator(mode="after")
     def _validate(self) -> Record:
@@ -232,7 +331,6 @@ class Record(FilePart, Sampled):
                 "columns = [2, 1], if times and values are swapped" if self.file else "",
                 self.where,
             )
-        BaseModel.__setattr__(self, "_unit_is_assumed", self.file is not None and self.unit is None)
         return self
 
     @property
@@ -245,13 +343,61 @@ class Record(FilePart, Sampled):
         """Field with the numbers, for messages."""
         return ("file",) if self.file else ("times",)
 
+    @property
+    def peak(self) -> float:
+        """Largest magnitude [SI]."""
+        return abs(self.scale) * float(np.max(np.abs(self.values)))
+
+    @property
+    def _begin(self) -> float:
+        """Time of the record that is 0 s in the run [s]."""
+        if self.time_zero is not None and self.time_zero != "first":
+            return self.time_zero
+        is_first = self.time_zero == "first" or (self.file or "").lower().endswith(_UNIVERSAL)
+        return self.times[0] if is_first else 0.0
+
+    def notes(self) -> Iterator[str]:
+        """Yield notes on assumptions about the file, an assumed unit, a shift, and points that are not used."""
+        yield from (note for note in self._notes[: len(self._notes) - self._unit_is_assumed])
+        if self._unit_is_assumed:
+            in_g = f" = {self.peak / STANDARD_GRAVITY:.4g} g" if self.unit == "m/s^2" else ""
+            file = " ".join(Path(self.file or "").name.split())
+            yield (
+                f"{file} {self._notes[-1]}; {self.unit or 'SI'} is assumed, with a peak of {self.peak:.4g} "
+                f"{self.unit}{in_g}; set unit if that is wrong"
+            )
+        zero, first = self._begin, self.times[0]
+        before = sum(1 for time in self.times if time < zero)
+        if before:
+            unused = abs(self.scale) * max(map(abs, self.values[:before]))
+            yield (
+                f"the record begins at {first:.6g} s; its {several(before, 'point')} before {zero:.6g} s, with a peak of "
+                f"{unused:.4g} {self.unit}, are not used (time_zero sets where the run begins)"
+            )
+        elif zero:
+            yield f"the record begins at {first:.6g} s and is shifted: its time {zero:.6g} s is 0 s of the run (time_zero)"
+
+    def as_given(self) -> dict[str, Any]:
+        """Return the fields in the notation of the input: those of a file with the unit that the user states."""
+        fields = super().as_given()
+        return {**fields, "unit": self._unit_as_given} if self.file is not None else fields
+
+    def unplaced(self, allowed: Sequence[Unit]) -> str:
+        """Return advice for a record in another unit than a field of a case accepts."""
+        if self.unit == "m" and "m/s^2" in allowed:
+            return (
+                "its second derivative, rb.Record(times=t, values=scipy.interpolate.CubicSpline(t, x)(t, 2), "
+                'unit="m/s^2")'
+            )
+        return f"a record in {allowed[0]}"
+
     @model_serializer(mode="wrap")
     def _without_file_fields(self, handler: Any) -> Any:
         data = handler(self)
-        for name in self.fields_from_file():
-            data.pop(name, None)
-        if self._unit_is_assumed:
-            data.pop("unit", None)
+        if self.file is not None:
+            for name in self.file_fields:
+                data.pop(name, None)
+            data["unit"] = self._unit_as_given
         return data
 
     @classmethod
@@ -263,7 +409,7 @@ class Record(FilePart, Sampled):
         path
             The file; times in seconds, unless their column states another unit.
         **options
-            Other fields: columns, dt, unit, scale, point, direction.
+            Other fields: columns, dt, unit, scale, time_zero, point, direction.
 
         Returns
         -------
@@ -278,5 +424,6 @@ class Record(FilePart, Sampled):
         return cls(file=os.fspath(path), **options)
 
     def polyline(self) -> tuple[Vector, Vector]:
-        """Return times [s] and values of the points."""
-        return np.array(self.times), self.scale * np.array(self.values)
+        """Return times in the run [s] and values of the points."""
+        times, zero = np.array(self.times), self._begin
+        return times - zero if zero else times, self.scale * np.array(self.values)

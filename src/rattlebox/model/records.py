@@ -1,4 +1,4 @@
-"""Tables of numbers in text, NPY, NPZ and MAT files: columns of times and values.
+"""Tables of numbers in text, NPY, NPZ and MAT files: columns of times and values, or samples row by row.
 
 `numpy.loadtxt` is 8 times as fast (0.1 s instead of 0.8 s for 200 000 lines), but needs the delimiter, the number of
 lines above the data and the columns, and detects neither units nor decimal commas.
@@ -7,9 +7,11 @@ lines above the data and the columns, and detects neither units nor decimal comm
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -17,23 +19,127 @@ from rattlebox._util.exceptions import DataError
 
 from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
+from .units_in_text import Line
 
 Column = int | str
 """Number of a column, counted from 1, or its name."""
 
+Selection = Sequence[Column] | Literal["rows"] | None
+"""Columns of a record; "rows" for samples that go on from row to row; None for all that there are."""
+
 _ANY = "one or two columns of numbers below their names and units: time (s), acceleration (g)"
 _NEEDED = {1: "one is", 2: "two are", 3: "three are"}
+_BY_ROWS = 'columns = "rows"'
+_COUNT = re.compile(r"\+?\d+\.?")
+_WHOLE = re.compile(r"(?<![\d.])\d{1,12}(?![\d.])")
+_SAMPLES = re.compile(
+    r"\b(?:npts|points|samples|values|data)\b\W{0,12}(\d{1,12})(?![\d.])"
+    r"|(?<![\d.])(\d{1,12})\s+(?:(?:data\s+)?points|samples|values)\b",
+    re.I,
+)
+"""Numbers of samples in text: "NPTS= 24", "NO. OF POINTS: 32", "12 samples"."""
+_HEADINGS = 2  # lines above a single column that may name it
+_LARGE = 10  # samples from which a number in a text is no coincidence
+_PROBED = 2000  # rows from which the layout is concluded
 
 
-class Columns(NamedTuple):
-    """Columns of times and values, (n,) float, and the headings (names, units) above each."""
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Columns of times and values.
+
+    Attributes
+    ----------
+    times, values : (n,) float
+        Times and values, in the units of the file.
+    headings
+        Text (names, units) above the times and above the values, from top to bottom.
+    lines
+        Other lines above the numbers.
+    notes
+        Assumptions about the file.
+    """
 
     times: Array
     values: Array
     headings: tuple[list[str], list[str]] = ([], [])
+    lines: tuple[Line, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
-def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
+class _Row(NamedTuple):
+    """A line of text with its number, its cells, and its content without comment mark."""
+
+    number: int
+    cells: list[str]
+    is_comment: bool
+    content: str
+
+
+@dataclass(frozen=True, eq=False)
+class _Text:
+    """A table of text: rows of data, and the lines above them."""
+
+    file: Path
+    rows: list[_Row]
+    names: list[str] | None
+    headings: list[list[str]]
+    lines: list[Line]
+    step: float | None
+    notes: tuple[str, ...]
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return len(self.rows[0].cells)
+
+    @property
+    def labels(self) -> list[str]:
+        """Names of the columns, or their numbers from 1."""
+        return self.names or [str(k + 1) for k in range(self.width)]
+
+    def above(self, index: int) -> list[str]:
+        """Return the headings of a column."""
+        return [cells[index] for cells in self.headings]
+
+    def table(self) -> tuple[Array, int]:
+        """Return the first full rows, (n, width) float, and the number of all cells; no rows if one is not of numbers."""
+        full = self.rows if len(self.rows[-1].cells) == self.width else self.rows[:-1]
+        try:
+            probe = np.array([[float(cell) for cell in row.cells] for row in full[:_PROBED]])
+        except ValueError:
+            probe = np.empty((0, self.width))
+        return probe.reshape(-1, self.width), sum(len(row.cells) for row in self.rows)
+
+    def goes_by_rows(self) -> bool:
+        """Return whether the samples go on from row to row, as far as that can be told."""
+        if self.width == 1:
+            return False
+        probe, cells = self.table()
+        beside = {int(number) for _, line in self.lines for pair in _SAMPLES.findall(line) for number in pair if number}
+        anywhere = {int(number) for _, line in self.lines for number in _WHOLE.findall(line)}
+        for stated in (beside, anywhere if cells >= _LARGE else set()):
+            if (cells in stated) != (len(self.rows) in stated):
+                return cells in stated
+        return (self.names is None and len(self.rows[-1].cells) < self.width) or _continues(probe)
+
+    def other_step(self, index: int, step: float) -> str:
+        """Return a note if another column looks like times with another step than that of the user; else ""."""
+        probe, _ = self.table()
+        if index == 0 or self.width < 2 or len(probe) < 3:
+            return ""
+        rises = np.diff(probe[:, 0])
+        even = float(rises[0])
+        if (
+            even <= 0
+            or np.any(np.abs(rises - even) > 0.01 * even)
+            or even == round(even)
+            or abs(step / even - 1) < 0.01
+        ):
+            return ""
+        return f"dt is {step:.6g} s, but the first column rises evenly by {even:.6g}"
+
+
+def read_columns(path: str, columns: Selection = None, step: float | None = None) -> Columns:
     """Read times and values from a file.
 
     Parameters
@@ -43,12 +149,15 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
         begin with # or % are not data. NPY, NPZ, MAT: an array of columns, or a variable for each, numbered in the order of
         the file; without `columns` also an array of two rows.
     columns
-        Columns or variables with times and values. Optional if there are two, or variables called time and value.
+        Columns or variables with times and values, or with a time step only that of the values. Optional if there are no
+        others, or variables called time and value. "rows" for samples that go on from row to row.
+    step
+        Time between evenly spaced samples [s], the first at 0 s; None for a column of times, or a step in the first line.
 
     Returns
     -------
     Columns
-        Times and values, with their headings.
+        Times and values, with the text above them.
 
     Raises
     ------
@@ -57,80 +166,141 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
     """
     file = existing(path)
     if file.suffix.lower() in BINARY:
-        return Columns(*_select_arrays(file, read_arrays(file), columns))
-    lines, names, headings = _parse_text(file, requested=[str(column) for column in columns or ()])
-    indices = _column_indices(file, columns, names)
-    times, values = _parse_rows(file, lines, indices).T
-    above_times, above_values = ([cells[index] for cells in headings] for index in indices)
-    return Columns(times, values, (above_times, above_values))
+        arrays = read_arrays(file)
+        if not arrays:
+            raise DataError(f"{file} contains no numbers", _ANY)
+        if step is None and columns != "rows":
+            return Columns(*_select_arrays(file, arrays, columns))
+        values, notes = _select_samples(file, arrays, columns)
+        return Columns(_even_times(file, values.size, step), values, notes=notes)
+    text = _parse_text(file, requested=[str(column) for column in columns or ()])
+    by_rows = columns == "rows" or (columns is None and text.goes_by_rows() and (step or text.step))
+    if step is None and (columns not in (None, "rows") or not (by_rows or (text.step and text.width == 1))):
+        return _times_and_values(text, columns if columns != "rows" else None)
+    return _samples(text, columns, step, bool(by_rows))
 
 
-def read_samples(path: str, column: Column | None = None) -> tuple[Array, list[str]]:
-    """Read evenly spaced samples from a file.
+def _times_and_values(text: _Text, columns: Sequence[Column] | None) -> Columns:
+    by_number = not any(isinstance(column, str) for column in columns or ())
+    if by_number and not _rises(text.table()[0]) and text.goes_by_rows():
+        raise _by_rows_error(text.file, text.width, 'dt = "0.01 s", the time between samples, and columns = "rows"')
+    indices = _column_indices(text.file, columns, text.labels, is_named=text.names is not None)
+    times, values = _parse_rows(text.file, text.rows, indices).T
+    headings = text.above(indices[0]), text.above(indices[1])
+    return Columns(times, values, headings, tuple(text.lines), text.notes)
 
-    Parameters
-    ----------
-    path
-        File as for `read_columns`.
-    column
-        Column or variable of the samples. Optional if there is only one.
 
-    Returns
-    -------
-    (n,) float
-        Samples.
-    list of str
-        Headings of the column.
+def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool) -> Columns:
+    """Return evenly spaced samples: those of one column, or all numbers row by row."""
+    notes = list(text.notes)
+    if step is not None and text.step is not None and abs(step / text.step - 1) > 1e-6:
+        raise DataError(
+            f"{text.file} states a time step of {text.step:g} s in its first line of numbers, not {step:g} s",
+            "dt left out",
+        )
+    if by_rows:
+        values = _parse_by_rows(text.file, text.rows)
+        if text.width > 1:
+            notes.append(f"the samples are read row by row, {text.width} a row, {values.size} in all")
+        headings: list[str] = []
+    else:
+        is_named = text.names is not None
+        (index,) = _column_indices(text.file, columns, text.labels, needed=1, is_named=is_named)
+        by_name = columns is not None and isinstance(columns[0], str)
+        if not by_name and text.goes_by_rows():
+            raise _by_rows_error(text.file, text.width, _BY_ROWS)
+        if step is not None and (note := text.other_step(index, step)):
+            notes.append(note)
+        values = _parse_rows(text.file, text.rows, [index])[:, 0]
+        headings = text.above(index)
+        if not is_named and text.width > 2:
+            notes.append(
+                f"column {index + 1} of {text.width} columns without names is read, one sample a row, {values.size} in all"
+            )
+    times = _even_times(text.file, values.size, step or text.step)
+    return Columns(times, values, ([], headings), tuple(text.lines), tuple(notes))
 
-    Raises
-    ------
-    DataError
-        If the file cannot be read; with the line at fault, or the available columns.
+
+def _even_times(file: Path, count: int, step: float | None) -> Array:
+    if step is None:
+        raise DataError(f"{file} does not state the time between its samples", 'dt = "0.01 s"')
+    return np.arange(count, dtype=float) * step
+
+
+def _continues(table: Array) -> bool:
+    """Return whether the numbers of a table go on from row to row as they do within rows.
+
+    Samples of one signal change as much from the end of a row to the beginning of the next one as within rows, and more
+    from row to row. Columns of several signals do neither.
     """
-    file = existing(path)
-    columns = None if column is None else [column]
-    if file.suffix.lower() not in BINARY:
-        lines, names, headings = _parse_text(file, requested=[] if column is None else [str(column)])
-        (index,) = _column_indices(file, columns, names, needed=1)
-        return _parse_rows(file, lines, [index])[:, 0], [cells[index] for cells in headings]
-    arrays = read_arrays(file)
-    if not arrays:
-        raise DataError(f"{file} contains no numbers", _ANY)
-    if len(arrays) == 1 and next(iter(arrays.values())).ndim == 2 and not isinstance(column, str):
+    if len(table) < 3 or table.shape[1] < 2:
+        return False
+    with np.errstate(over="ignore", invalid="ignore"):  # of a damaged file
+        inside = float(np.mean(np.diff(table, axis=1) ** 2))
+        across = float(np.mean((table[1:, 0] - table[:-1, -1]) ** 2))
+        down = float(np.mean(np.diff(table, axis=0) ** 2))
+    return 0.1 * inside <= across <= 10 * inside and inside + across < down
+
+
+def _rises(table: Array) -> bool:
+    """Return whether the first column of a table of two columns increases, as times do."""
+    return table.shape[1] == 2 and bool(np.all(np.diff(table[:, 0]) > 0))
+
+
+def _by_rows_error(file: Path, width: int, advice: str) -> DataError:
+    return DataError(f"{file}: its {width} columns are one signal, whose samples go on from row to row", advice)
+
+
+def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) -> tuple[Array, tuple[str, ...]]:
+    """Return the samples of a column of the only array, or of one variable, with notes."""
+    if len(arrays) == 1 and next(iter(arrays.values())).ndim == 2 and not (columns and isinstance(columns[0], str)):
         (table,) = arrays.values()
         table = table.T if table.shape[0] == 1 else table
-        (index,) = _column_indices(file, columns, [str(k + 1) for k in range(table.shape[1])], needed=1)
-        return check_finite(table[:, index], f"{file}: column {index + 1}"), []
+        one_signal = table.shape[1] > 1 and _continues(check_finite(table, f"{file}")[:_PROBED])
+        if one_signal and columns is not None:
+            raise _by_rows_error(file, table.shape[1], _BY_ROWS)
+        if one_signal:
+            notes = f"the samples are read row by row, {table.shape[1]} a row, {table.size} in all"
+            return table.ravel(), (notes,)
+        labels = [str(k + 1) for k in range(table.shape[1])]
+        (index,) = _column_indices(file, columns, labels, needed=1, is_named=False)
+        return check_finite(table[:, index], f"{file}: column {index + 1}"), ()
+    if columns == "rows":
+        if len(arrays) != 1:
+            raise DataError(f"{file} has {len(arrays)} arrays ({', '.join(arrays)})", "a file with one of them")
+        (array,) = arrays.values()
+        return check_finite(array.ravel(), f"{file}"), ()
     variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
     (index,) = _column_indices(file, columns, list(arrays), variables, needed=1)
     name, array = list(arrays.items())[index]
     if array.size != max(array.shape, default=1):
         raise DataError(f"{file}: {name} has shape {array.shape}; one row of numbers is needed")
-    return check_finite(array.ravel(), f"{file}: {name}"), []
+    return check_finite(array.ravel(), f"{file}: {name}"), ()
 
 
 def as_columns(value: Any, count: int = 2) -> Any:
-    """Return `count` columns as a tuple; None stays None.
+    """Return `count` columns as a tuple; None and "rows" are returned unchanged.
 
     Raises
     ------
     Hint
         If the value is not a sequence of so many numbers and names.
     """
-    if value is None:
-        return None
+    if value is None or value == "rows":
+        return value
     good = isinstance(value, (list, tuple)) and len(value) == count
     if not good or not all(isinstance(item, (int, str)) and not isinstance(item, bool) for item in value):
         if count == 1:
-            raise Hint("with dt, one column is needed, that of the values", 'columns = ["force"]')
+            raise Hint(
+                "with dt, one column is needed, that of the values",
+                'columns = ["force"], or columns = "rows" for samples that go on from row to row',
+            )
         raise Hint("two numbers or names are needed: columns of times and of values", 'columns = ["time", "force"]')
     return tuple(value)
 
 
 def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
     """Return times and values: two variables, or two columns of the only variable."""
-    if not arrays:
-        raise DataError(f"{file} contains no numbers", _ANY)
     if columns is None and {"time", "value"} <= set(arrays):
         columns = ("time", "value")
     if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
@@ -138,8 +308,10 @@ def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Colum
         if columns is None and table.ndim == 2 and table.shape[0] == 2 != table.shape[1]:
             table = table.T
         if table.ndim == 2:
+            if not _rises(table) and _continues(table[:_PROBED]):
+                raise _by_rows_error(file, table.shape[1], 'dt = "0.01 s" and columns = "rows"')
             names = [str(k + 1) for k in range(table.shape[1])]
-            first, second = (table[:, k] for k in _column_indices(file, columns, names))
+            first, second = (table[:, k] for k in _column_indices(file, columns, names, is_named=False))
             return check_finite(first, f"{file}: the times"), check_finite(second, f"{file}: the values")
     variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
     pair = [list(arrays.items())[k] for k in _column_indices(file, columns, list(arrays), variables)]
@@ -159,6 +331,7 @@ def _column_indices(
     names: list[str],
     variables: Sequence[str] | None = None,
     needed: int = 2,
+    is_named: bool = True,
 ) -> list[int]:
     """Return the indices of columns, or of variables described by `variables`; None stands for the first ones."""
     what = "column" if variables is None else "variable"
@@ -167,10 +340,14 @@ def _column_indices(
     if columns is None:
         if len(names) != needed:
             advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
-            raise DataError(
-                f"{file} has {several(len(names), what)} ({available}), {_NEEDED[needed]} needed",
-                f"columns = {list(range(1, needed + 1))}" if len(names) > needed else advice,
-            )
+            if len(names) > needed:
+                advice = f"columns = {list(range(1, needed + 1)) if is_named else list(names[:needed])}"
+                advice = advice.replace("'", '"')
+            if len(names) > needed and not is_named:
+                advice = 'dt = "0.01 s" and ' if needed == 2 else ""
+                advice += f"{_BY_ROWS}, if the samples go on from row to row; else a line of names above the columns"
+                advice += ', and columns = ["time", "force"]' if needed == 2 else ', and columns = ["force"]'
+            raise DataError(f"{file} has {several(len(names), what)} ({available}), {_NEEDED[needed]} needed", advice)
         columns = range(1, needed + 1)
     indices = []
     for column in columns:
@@ -211,11 +388,12 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     DataError
         If the file cannot be read; with the line at fault.
     """
-    lines, names, _ = _parse_text(file, known)
+    text = _parse_text(file, known)
+    names = text.labels
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise DataError(f"{file} has two columns {twice!r}", "another name for one of them")
-    return dict(zip(names, _parse_rows(file, lines, list(range(len(names)))).T, strict=True))
+    return dict(zip(names, _parse_rows(file, text.rows, list(range(len(names)))).T, strict=True))
 
 
 def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tuple[Array, list[list[str]]]:
@@ -243,15 +421,13 @@ def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tup
         If the file cannot be read; with the line at fault, or the available columns.
     """
     file = existing(path)
-    lines, names, headings = _parse_text(file, requested=[str(column) for column in columns or ()])
-    indices = _column_indices(file, columns, names, needed=count)
-    return _parse_rows(file, lines, indices), [[cells[index] for cells in headings] for index in indices]
+    text = _parse_text(file, requested=[str(column) for column in columns or ()])
+    indices = _column_indices(file, columns, text.labels, needed=count)
+    return _parse_rows(file, text.rows, indices), [text.above(index) for index in indices]
 
 
-def _parse_text(
-    file: Path, known: Sequence[str] = (), requested: Sequence[str] = ()
-) -> tuple[list[tuple[int, list[str]]], list[str], list[list[str]]]:
-    """Return the numbered lines of data as cells, the names of the columns, and all headings with as many cells.
+def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] = ()) -> _Text:
+    """Return the table of a text file.
 
     The names are the last line above the data with as many cells and no number in them, or an earlier one (above a line of
     units) that contains more of the known or requested names.
@@ -260,44 +436,160 @@ def _parse_text(
     start = _first_data_line(lines)
     if start is None:
         raise DataError(f"{file} contains no numbers", _ANY)
-    width = len(lines[start][1])
-    for number, cells, _ in lines[:start]:
-        if len(cells) != width and set(cells) <= set(known):
-            raise DataError(f"{file}, line {lines[start][0]}: {width} columns, but {len(cells)} in line {number}")
-    above = [cells for _, cells, _ in lines[:start]]
-    if width == 1:
-        above = [[" ".join(cells)] for cells in above]  # a single column has no delimiter
-    headings = [cells for cells in above if len(cells) == width and not any(map(_is_number, cells))]
+    rows = [row for row in lines[start:] if not row.is_comment]
+    if all(not row.cells[0] for row in rows):  # a delimiter at the beginning of each line
+        lines = [row._replace(cells=row.cells[1:] if not row.cells[0] else row.cells) for row in lines]
+        rows = [row._replace(cells=row.cells[1:]) for row in rows]
+    step: float | None = None
+    notes: tuple[str, ...] = ()
+    if counted := _number_of_samples(file, rows):
+        step, note = counted
+        rows, notes = rows[1:], (note,)
+    width = len(rows[0].cells)
+    for row in lines[:start]:
+        if len(row.cells) != width and set(row.cells) <= set(known):
+            raise DataError(
+                f"{file}, line {rows[0].number}: {width} columns, but {len(row.cells)} in line {row.number}"
+            )
+    above = [(row, _heading_cells(row, width)) for row in lines[:start]]
+    if width == 1:  # a name and a unit; further lines are text
+        above = [(row, cells if start - k <= _HEADINGS else None) for k, (row, cells) in enumerate(above)]
+    headings = [cells for _, cells in above if cells and not any(map(_is_number, cells))]
     expected = {*known, *requested}
     names = max(reversed(headings), key=lambda cells: len(expected & set(cells)), default=None)
-    data = [(number, cells) for number, cells, is_comment in lines[start:] if not is_comment]
-    return data, names or [str(k + 1) for k in range(width)], headings
+    # The unit in the heading of a column is not that of another one.
+    free = [
+        (row.number, row.content)
+        for row, cells in above
+        if cells is None or cells not in headings or "unit" in row.content.lower()
+    ]
+    return _Text(file, rows, names, headings, free, step, notes)
 
 
-def _first_data_line(lines: list[tuple[int, list[str], bool]]) -> int | None:
+def _heading_cells(row: _Row, width: int) -> list[str] | None:
+    """Return the cells of a line above a table of so many columns; None if it has another number of cells.
+
+    Columns that are separated by blanks may have blanks in their headings: "Time (s)  Ground acceleration (cm/s^2)".
+    """
+    if width == 1:
+        return [" ".join(row.cells)]  # a single column has no delimiter
+    text = row.content.strip()
+    has_brackets = "(" in text or "[" in text
+    if len(row.cells) == width and not (has_brackets and row.cells == text.split()):
+        return row.cells
+    if row.cells != text.split():  # another delimiter
+        return None
+    ways = (_words(text), re.split(r"\s{2,}|\t", text), re.split(r"(?<=[)\]])\s+", text), re.split(r"[;,\t]", text))
+    return next(([cell.strip() for cell in cells] for cells in ways if len(cells) == width), None)
+
+
+def _words(text: str) -> list[str]:
+    """Return the words of a line; brackets belong to the word before them."""
+    words: list[str] = []
+    depth = 0
+    for token in text.split():
+        if words and (depth > 0 or token[0] in "(["):
+            words[-1] += f" {token}"
+        else:
+            words.append(token)
+        depth = max(0, depth + token.count("(") + token.count("[") - token.count(")") - token.count("]"))
+    return words
+
+
+def _number_of_samples(file: Path, rows: list[_Row]) -> tuple[float | None, str] | None:
+    """Return the time step and a note if the first line of numbers states the number of samples; None if it is data.
+
+    Raises
+    ------
+    DataError
+        If it is neither a row of the table below nor the number of its samples.
+    """
+    first, rest = rows[0], rows[1:]
+    if len(rest) < 2 or len(first.cells) > 2 or not all(map(_is_number, first.cells)):
+        return None
+    counts = [cell for cell in first.cells if _COUNT.fullmatch(cell) and len(cell) < 13]
+    if not counts:
+        return None
+    fits = (len(rest), sum(len(row.cells) for row in rest))
+    count = next((cell for cell in counts if int(float(cell)) in fits), counts[0])
+    others = [float(cell) for cell in first.cells if cell is not count]
+    step = next((number for number in others if 0 < number < np.inf), None)
+    is_exact = int(float(count)) in fits and (step is not None or len(first.cells) == 1)
+    same_width = len(first.cells) == len(rest[0].cells)
+    if same_width and len(first.cells) == 2 and int(float(count)) < _LARGE:  # "3 0.7" may be the first of four points
+        is_exact = is_exact and _breaks_times(first, rest, step)
+    if not is_exact and same_width and len(first.cells) == 2 and not _breaks_times(first, rest, step):
+        return None
+    if not is_exact and len(first.cells) == 1:
+        if same_width and not _is_far_above(first, rest):
+            return None
+        raise DataError(
+            f"{file}, line {first.number}: {count} is no number of samples, of which {fits[-1]} follow, and no row like"
+            " those below it",
+            f"# before the line, or {float(count)!r} if it is a sample",
+        )
+    if not is_exact and step is None:
+        return None
+    note = f"line {first.number}, {first.content.strip()!r}, is read as the number of samples"
+    note += ("" if step is None else " and the time step") + ", not as data"
+    return step, note if is_exact else f"{note}; it states {count} samples, but {fits[0]} rows follow"
+
+
+def _breaks_times(first: _Row, rest: list[_Row], step: float | None) -> bool:
+    """Return whether a first row is not the point before those of a table with times, but has their step."""
+    try:
+        times = np.array([float(row.cells[0]) for row in rest[:_PROBED]])
+    except ValueError:
+        return False
+    even = float(times[1] - times[0])
+    rises = even > 0 and bool(np.all(np.abs(np.diff(times) - even) < 0.01 * even))
+    return rises and step is not None and float(first.cells[0]) >= times[0] and abs(step / even - 1) < 0.01
+
+
+def _is_far_above(first: _Row, rest: list[_Row]) -> bool:
+    """Return whether a first whole number is far above all others, which are not whole."""
+    try:
+        others = np.array([float(row.cells[0]) for row in rest])
+    except ValueError:
+        return False
+    far = float(first.cells[0]) > 10 * float(np.abs(others).max())
+    return far and float(first.cells[0]) >= 10 and not all(_COUNT.fullmatch(row.cells[0].lstrip("-")) for row in rest)
+
+
+def _first_data_line(lines: list[_Row]) -> int | None:
     """Return the index of the first line of data: one with numbers only, or else (columns of text) with a number.
 
     Lines directly above that begin with a number count as data, so that an error in them is reported.
     """
-    uncommented = [k for k, (_, _, is_comment) in enumerate(lines) if not is_comment]
+    uncommented = [k for k, row in enumerate(lines) if not row.is_comment]
 
     def is_numeric(place: int, cell: int) -> bool:
-        return _is_number(_with_decimal_point(lines[uncommented[place]][1][cell]))
+        return _is_number(_with_decimal_point(lines[uncommented[place]].cells[cell]))
 
-    only_numbers = (place for place, k in enumerate(uncommented) if all(map(_is_number, lines[k][1])))
+    only_numbers = (place for place, k in enumerate(uncommented) if all(map(_is_number, lines[k].cells)))
     first = next(only_numbers, None)
     if first is None:
-        widths = (len(lines[k][1]) for k in uncommented)
+        widths = (len(lines[k].cells) for k in uncommented)
         first = next((p for p, width in enumerate(widths) if any(is_numeric(p, cell) for cell in range(width))), None)
     while first and is_numeric(first - 1, 0):
         first -= 1
     return None if first is None else uncommented[first]
 
 
-def _parse_rows(file: Path, lines: list[tuple[int, list[str]]], indices: list[int]) -> Array:
-    width = len(lines[0][1])
+def _parse_by_rows(file: Path, rows: list[_Row]) -> Array:
+    """Return all numbers row by row; the last row may be shorter."""
+    width = len(rows[0].cells)
+    short = len(rows) > 1 and len(rows[-1].cells) < width
+    full, last = (rows[:-1], rows[-1:]) if short else (rows, [])
+    parts = [_parse_rows(file, full, list(range(width))).ravel()]
+    parts += [_parse_rows(file, last, list(range(len(row.cells)))).ravel() for row in last]
+    return np.concatenate(parts)
+
+
+def _parse_rows(file: Path, lines: list[_Row], indices: list[int]) -> Array:
+    width = len(lines[0].cells)
     try:
-        rows = [[float(cells[k]) for k in indices] for _, cells in lines if len(cells) == width]
+        rows = [[float(row.cells[k]) for k in indices] for row in lines if len(row.cells) == width]
     except ValueError:
         rows = []
     numbers = np.array(rows).reshape(len(rows), len(indices))
@@ -306,15 +598,15 @@ def _parse_rows(file: Path, lines: list[tuple[int, list[str]]], indices: list[in
     return numbers
 
 
-def _bad_row(file: Path, lines: list[tuple[int, list[str]]], indices: list[int]) -> DataError:
+def _bad_row(file: Path, lines: list[_Row], indices: list[int]) -> DataError:
     """Return the error of the first line that is not a row of numbers."""
-    width = len(lines[0][1])
-    for number, cells in lines:
+    width = len(lines[0].cells)
+    for number, cells, _, _ in lines:
         if len(cells) != width:
-            advice = "the whole file: its last line is cut short"
+            advice = "the whole file, if its last line is cut short"
             return DataError(
-                f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0][0]}",
-                advice if number == lines[-1][0] and len(cells) < width else "",
+                f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0].number}",
+                advice if number == lines[-1].number and len(cells) < width else "",
             )
         row = [cells[k] for k in indices]
         bad = next((cell for cell in row if not _is_number(cell)), None)
@@ -327,8 +619,8 @@ def _bad_row(file: Path, lines: list[tuple[int, list[str]]], indices: list[int])
     raise AssertionError("all lines are rows of numbers")
 
 
-def _split_lines(file: Path) -> list[tuple[int, list[str], bool]]:
-    """Return the number, the cells and the comment flag of each line that is not empty."""
+def _split_lines(file: Path) -> list[_Row]:
+    """Return the lines that are not empty."""
     try:
         text = file.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
@@ -354,7 +646,7 @@ def _split_lines(file: Path) -> list[tuple[int, list[str], bool]]:
         while cells and not cells[-1]:
             cells.pop()
         if cells:
-            lines.append((number, cells, is_comment))
+            lines.append(_Row(number, cells, is_comment, content))
     return lines
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -19,6 +19,9 @@ from .units import factor_of, parse
 Unit = Literal["N", "m/s^2", "m"]
 UNITS: tuple[Unit, ...] = ("N", "m/s^2", "m")
 UNIT_NAMES = {"N": "a force", "m/s^2": "an acceleration", "m": "a displacement"}
+
+
+_EXAMPLES = {"N": "5 kN", "m/s^2": "9.81 m/s^2", "m": "1 mm"}
 
 
 class _Amplitude(float):
@@ -41,7 +44,7 @@ Amplitude = Annotated[
         {
             "anyOf": [{"type": "number"}, {"type": "string"}],
             "description": "force as a load, acceleration as base motion, displacement or acceleration on a shaker",
-            "examples": ["5 kN", "9.81 m/s^2", "1 mm"],
+            "examples": list(_EXAMPLES.values()),
         }
     ),
 ]
@@ -122,9 +125,20 @@ class Signal(Part):
         unit = allowed[0] if self.unit is None else self.unit
         if unit not in allowed:
             wanted = " or ".join(f"{UNIT_NAMES[a]} ({a})" for a in allowed)
-            where, amount = ("unit", "") if self.kind == "record" else ("amplitude", "1 ")
-            raise Hint(f"{place} needs {wanted}, not {UNIT_NAMES[unit]}", f'{where} = "{amount}{allowed[0]}"', [where])
+            where = "amplitude" if "amplitude" in type(self).model_fields else "unit"
+            raise Hint(f"{place} needs {wanted}, not {UNIT_NAMES[unit]}", self.unplaced(allowed), [where])
         return self if self.unit == unit else self.model_copy(update={"unit": unit})
+
+    def unplaced(self, allowed: Sequence[Unit]) -> str:
+        """Return advice for a signal in another unit than a field of a case accepts; `allowed` are those of the field."""
+        examples = " or ".join(f'"{_EXAMPLES[unit]}"' for unit in allowed)
+        return (
+            f"an amplitude such as {examples}" if "amplitude" in type(self).model_fields else f"values in {allowed[0]}"
+        )
+
+    def notes(self) -> Iterator[str]:
+        """Return notes on assumptions, such as the unit of a file."""
+        return iter(())
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
         """Return the values at the given times [s], in the unit of the signal, same shape."""
@@ -178,6 +192,8 @@ class Polyline(Signal):
 class Sampled(Polyline):
     """Piecewise linear signal through samples, which must cover the run."""
 
+    begin_advice: ClassVar[str] = "a record that begins at 0 s"  # for one that begins later
+
     def covers(self, duration: float) -> bool:
         """Return whether the signal covers a run from 0 to its duration [s], to within rounding."""
         slack = ROUNDING * duration
@@ -212,8 +228,8 @@ def signals_in(*units: Unit) -> BeforeValidator:
         signals = as_several(value)
         for index, signal in enumerate(signals):
             if isinstance(signal, dict) and "amplitude" in signal:
-                with at(index, "amplitude"):
-                    parse(signal["amplitude"], units)
+                with at(index, "amplitude"):  # `placed` has better advice for a displacement
+                    parse(signal["amplitude"], (*units, "m") if units == ("m/s^2",) else units)
         return signals
 
     return BeforeValidator(read)

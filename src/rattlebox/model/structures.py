@@ -41,6 +41,7 @@ from .units import (
     PositiveMass,
     Stiffness,
     Velocity,
+    in_si,
     numbers,
 )
 
@@ -69,6 +70,10 @@ def _shape(value: Any) -> Any:
     return _of_shape(array, 1, "a list of numbers, one for each mode, or of three for each mode,")
 
 
+def _participation(value: Any) -> Any:
+    return _shape(in_si(value, "kg^0.5"))
+
+
 def _weights(value: Any) -> Any:
     array = numbers(value)
     if array.ndim == 2 and len(array) == 3:
@@ -90,6 +95,7 @@ def _point(value: Any) -> Any:
 Numbers = Annotated[list[float], BeforeValidator(_numbers)]
 Matrix = Annotated[list[list[float]], BeforeValidator(_matrix)]
 Shape = Annotated[list[float] | list[list[float]], BeforeValidator(_shape)]
+Participation = Annotated[list[float] | list[list[float]], BeforeValidator(_participation)]
 Weights = Annotated[list[float] | list[list[float]], BeforeValidator(_weights)]
 Point = Annotated[int | list[float] | list[list[float]], BeforeValidator(_point)]
 _ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "damping ratio"})
@@ -108,6 +114,10 @@ class StructurePart(Part):
 
     def notes(self) -> Iterator[str]:
         """Return notes on assumptions, such as the units of files."""
+        return iter(())
+
+    def base_notes(self) -> Iterator[str]:
+        """Return notes on the response to a motion of the base."""
         return iter(())
 
     def warnings(self) -> Iterator[str]:
@@ -286,7 +296,7 @@ class Modal(FilePart, StructurePart):
         point in 3-D.
     participation
         Inertia of each mode per unit of base acceleration [kg^1/2], needed for base motion; three numbers for each mode if
-        points move in 3-D.
+        points move in 3-D. Text has its unit: a model in mm, t and N has "-0.07 t^0.5".
     total_mass
         Mass of the structure that follows the base if it does not vibrate [kg]; three numbers, for x, y and z, if points
         move in 3-D. With it the force on the base contains the inertia of truncated modes.
@@ -301,7 +311,7 @@ class Modal(FilePart, StructurePart):
     mode_count
         Number of modes, the first ones of the file; the number of computed modes of a .full file, default 10.
     mass_unit
-        Unit of mass of the file, "kg", "t" or "g", if the file does not state it.
+        Unit of mass of the file, "kg", "t" or "g", if the file does not state it; another one than it states is refused.
     modal_masses
         Modal mass of each mode of the file [kg], if the file does not state them; "1 kg" for mass-normalised shapes.
 
@@ -334,7 +344,7 @@ class Modal(FilePart, StructurePart):
     damping_ratio: Ratio | None = None
     damping_matrix: Annotated[Matrix | None, SI("1/s")] = None
     shapes: Annotated[dict[str, Shape], SI("kg^-0.5")] = Field(examples=[{"tip": [0.7, -0.7]}])
-    participation: Annotated[Shape | None, SI("kg^0.5")] = None
+    participation: Annotated[Participation | None, SI("kg^0.5")] = None
     total_mass: PositiveMass | Annotated[list[PositiveMass], Field(min_length=3, max_length=3)] | None = None
     displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
     velocity: Annotated[Numbers | None, SI("kg^0.5 m/s")] = None
@@ -437,6 +447,16 @@ class Modal(FilePart, StructurePart):
         """Return notes on the assumed units of the file."""
         return iter(self._notes)
 
+    def base_notes(self) -> Iterator[str]:
+        """Yield the share of the modes in the total mass."""
+        if self.total_mass is not None and self.participation is not None:
+            shares = " and ".join(f"{100 * share:.3g} %" for share in np.atleast_1d(self._effective_share()))
+            yield f"the effective masses of the modes are {shares} of the total mass"
+
+    def _effective_share(self) -> Vector:
+        """Return the sum of the effective masses over the total mass; one for each axis of a model in 3-D."""
+        return np.asarray(np.sum(np.square(np.array(self.participation)), axis=0) / np.array(self.total_mass))
+
     def fields_from_file(self) -> tuple[str, ...]:
         """Return the fields that were read from the file."""
         return self._read
@@ -482,7 +502,7 @@ class Modal(FilePart, StructurePart):
             raise Hint("total_mass is three numbers if points move in 3-D, else one", place=["total_mass"])
         if self.participation is not None:
             effective = np.sum(np.square(self.participation), axis=0)
-            if np.any(effective > np.array(self.total_mass) * (1 + 1e-3)):
+            if np.any(self._effective_share() > 1 + 1e-3):
                 raise Hint(
                     f"the squares of the participation, the effective masses, add up to {effective.max():.4g} kg,"
                     f" more than the total mass of {np.max(self.total_mass):.4g} kg",

@@ -32,9 +32,9 @@ LARGEST = 1e30
 
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
-_BRACKETED = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*$")
-
 _DENSITY = re.compile(r"^\s*\(?\s*([^()]+?)\s*\)?\s*\^2\s*/\s*Hz\s*$")
+
+_TON = re.compile(r"(?<![a-z_])(k|kilo|mega)?tons?(?![a-z_])", re.I)
 
 _COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(.*?)\s*$")
 
@@ -101,6 +101,7 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "rad": {"rad": (1, 1)},
     "rad/s": {"rad/s": (1, 1)},
     "kg^-0.5": {"kg^-0.5": (1, 1)},
+    "kg^0.5": {"kg^0.5": (1, 1), "t^0.5": (math.sqrt(1e3), 1), "g^0.5": (1, math.sqrt(1e3))},
     "N m^2": {"N m^2": (1, 1), "N*m^2": (1, 1), "Nm^2": (1, 1), "kN m^2": (1e3, 1), "N mm^2": (1, 1e6)},
     "N m": {"N m": (1, 1), "N*m": (1, 1), "Nm": (1, 1), "kN m": (1e3, 1), "N mm": (1, 1e3)},
     "kg/m": {"kg/m": (1, 1), "g/m": (1, 1e3), "t/m": (1e3, 1), "kg/mm": (1e3, 1)},
@@ -108,15 +109,28 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "J": {"J": (1, 1), "mJ": (1, 1e3), "uJ": (1, 1e6), "µJ": (1, 1e6)},
 }
 
+_SINGLE_CASE = {
+    name.lower(): name
+    for known in _COMMON.values()
+    for name in known
+    if [other.lower() for every in _COMMON.values() for other in every].count(name.lower()) == 1
+}
+"""Units that are known in any case, since no two of them differ by it alone."""
+
 _DENSITIES = {"m/s^2": ("m^2/s^3", "m^2/s^4/Hz", "(m/s^2)^2/Hz"), "N": ("N^2/Hz",), "m": ("m^2/Hz",)}
 
-_LABELS = re.compile(r"[txyzTXYZ]|\d*")
-"""Text in brackets above a column that is not a unit: a(t), a (X), force (1)."""
+_LONGEST_UNIT = 60  # characters
+_OTHER_UNITS = {
+    "v": "voltage", "volt": "voltage", "volts": "voltage", "mv": "voltage", "a": "current", "amps": "current",
+    "bar": "pressure", "psi": "pressure", "strain": "strain", "um/m": "strain", "deg": "angle", "degc": "temperature",
+    "counts": "reading of a converter", "count": "reading of a converter",
+}  # fmt: skip
+"""Units in headers of quantities that no case has."""
 
 _NAMES = {
     "m": "length", "s": "time", "kg": "mass", "N": "force", "N/m": "stiffness", "N s/m": "damping coefficient",
     "m/s": "velocity", "m/s^2": "acceleration", "Hz": "frequency", "Pa": "pressure or modulus", "kg/m^3": "density",
-    "rad": "angle", "kg^-0.5": "mass-normalised mode shape", "rad/s": "angular velocity",
+    "rad": "angle", "kg^-0.5": "mass-normalised mode shape", "kg^0.5": "participation", "rad/s": "angular velocity",
     "N m^2": "bending stiffness", "N m": "bending stiffness per width", "kg/m": "mass per length", "kg/m^2": "mass per area",
     "J": "energy",
 }  # fmt: skip
@@ -124,6 +138,7 @@ _NAMES = {
 _EXAMPLES = {
     "m": "0.4 mm", "s": "1 ms", "kg": "20 kg", "N": "5 kN", "N/m": "80 kN/m", "N s/m": "25.3 N s/m", "m/s": "0.1 m/s",
     "m/s^2": "9.81 m/s^2", "Hz": "10 Hz", "Pa": "200 GPa", "kg/m^3": "7850 kg/m^3", "rad": "90 deg", "rad/s": "10 rad/s",
+    "kg^0.5": "-2.3 kg^0.5",
     "N m^2": "350 N m^2", "N m": "1.2 kN m", "kg/m": "7.8 kg/m", "kg/m^2": "5 kg/m^2",
     "J": "2 mJ",
 }  # fmt: skip
@@ -138,7 +153,13 @@ def registry() -> pint.UnitRegistry[Any]:
 
 
 def _pint_unit(unit: str) -> str:
-    return unit.replace("N s/m", "N*s/m").replace("kg^-0.5", "kg**-0.5").replace("N m", "N*m").replace("^", "**")
+    return (
+        unit.replace("N s/m", "N*s/m")
+        .replace("kg^-0.5", "kg**-0.5")
+        .replace("kg^0.5", "kg**0.5")
+        .replace("N m", "N*m")
+        .replace("^", "**")
+    )
 
 
 def _article(name: str) -> str:
@@ -264,43 +285,65 @@ def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
     units
         SI units of the dimensions allowed.
     """
-    unit = _spelt(unit)
+    unit = _spelt(_in_words(unit.strip().strip(".\"'")))
     if "m/s^2" in units and unit.lower() in ("g", "g0", "g_0", "gn", "gal"):
         unit = unit.lower().replace("g0", "g_0")
-    if "/" not in unit and not any(unit in _COMMON.get(si, {}) for si in units):
-        return None  # a(t), F (rod): pint would read them as year and rod
-    try:
-        factor, si = parse(f"1 {unit}", units)
-    except Hint:
-        return None
-    return factor, str(si)
-
-
-def unit_above(heads: list[str], units: tuple[str, ...]) -> tuple[float, str] | None:
-    """Return the factor to SI and the SI unit from the header lines of a column; None if they have no unit.
-
-    Parameters
-    ----------
-    heads
-        Text above the column, from top to bottom: a name, a unit, or both, as in "a (g)" or "t [ms]".
-    units
-        SI units that the column may have.
-
-    Raises
-    ------
-    Hint
-        If a unit in brackets is unknown or of another dimension.
-    """
-    for head in reversed(heads):
-        bracketed = _BRACKETED.search(head)
-        unit = (bracketed[1] or bracketed[2] or "" if bracketed else head).strip()
-        if known := factor_of(unit, units):
-            return known
-        if bracketed and not _LABELS.fullmatch(unit):
-            table = ", ".join(dict.fromkeys(name for si in units for name in _COMMON[si]))
-            kinds = " or ".join(_NAMES[si] for si in units)
-            raise Hint(f"{unit!r}, written above the column as {head!r}, is not a unit of {kinds}; known: {table}")
+    for spelling in (unit, *_other_case(unit)):
+        is_known = any(spelling in _COMMON.get(si, {}) for si in units)
+        if is_known or (spelling == unit and "/" in unit):  # pint would read a(t) and F (rod) as year and rod
+            try:
+                factor, si = parse(f"1 {spelling}", units)
+            except Hint:
+                continue
+            return factor, str(si)
     return None
+
+
+def _other_case(unit: str) -> tuple[str, ...]:
+    """Return the usual spellings of a unit in capitals, such as CM/SEC/SEC, KN and MS; MN stays as it is written."""
+    if not unit.isupper() and "/" not in unit:
+        return ()
+    lower = _spelt(unit.lower())
+    return lower, _SINGLE_CASE.get(lower, lower)
+
+
+def unit_name(text: str) -> str:
+    """Return the quantity of a unit, such as "acceleration"; "" for text that is no common unit."""
+    known = factor_of(text, tuple(_COMMON))
+    return _NAMES[known[1]] if known else _OTHER_UNITS.get(text.strip().lower(), "")
+
+
+def names_of_units(units: tuple[str, ...]) -> list[str]:
+    """Return the spellings of the common units of some dimensions."""
+    return list(dict.fromkeys(name for si in units for name in _COMMON[si]))
+
+
+_WORDS = (
+    (re.compile(r"\bmet(?:er|re)s?\b", re.I), "m"),
+    (re.compile(r"\bcentimet(?:er|re)s?\b", re.I), "cm"),
+    (re.compile(r"\bmillimet(?:er|re)s?\b", re.I), "mm"),
+    (re.compile(r"\b(?:inch|inches)\b", re.I), "in"),
+    (re.compile(r"\b(?:foot|feet)\b", re.I), "ft"),
+    (re.compile(r"\bnewtons?\b", re.I), "N"),
+    (re.compile(r"\bmilliseconds?\b", re.I), "ms"),
+    (re.compile(r"\bmicroseconds?\b", re.I), "us"),
+    (re.compile(r"\bseconds?\b|\bsecs\b", re.I), "s"),
+    (re.compile(r"\bgals\b", re.I), "gal"),
+    (re.compile(r"\bg'?s\b", re.I), "g"),
+    (re.compile(r"\s*\bper\b\s*", re.I), "/"),
+    (re.compile(r"(?<=/s)(?:ec)?\s+squared\b", re.I), "^2"),
+    (re.compile(r"/\s*\(\s*([^()]*?)\s*\)"), r"/\1"),
+)
+"""Words and notations of units in headers, with their symbols."""
+
+
+def _in_words(unit: str) -> str:
+    """Return a unit with symbols in place of words: "meters per second squared" is m/s^2."""
+    if len(unit) > _LONGEST_UNIT:
+        return ""
+    for pattern, symbol in _WORDS:
+        unit = pattern.sub(symbol, unit)
+    return unit.strip()
 
 
 def _spelt(unit: str) -> str:
@@ -308,6 +351,7 @@ def _spelt(unit: str) -> str:
     unit = unit.replace("**", "^").replace("²", "^2").replace("μ", "µ").replace("·", " ")
     unit = re.sub(r"/\s*sec\b|/\s*sec(?=[\d^])", "/s", unit)
     unit = re.sub(r"/s(?:2|/s)$", "/s^2", unit)
+    unit = re.sub(r"^sqrt\((\w+)\)$|^(\w+)\^\(?1/2\)?$", r"\1\2^0.5", unit)
     return re.sub(r"(?<=[a-z])[ *]s\^?-2$", "/s^2", unit)
 
 
@@ -353,6 +397,12 @@ def _is_angle(value: Any) -> bool:
 
 
 def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
+    if prefixed := _TON.search(text):
+        number *= {"": 1.0, "k": 1e3, "kilo": 1e3, "mega": 1e6}[(prefixed[1] or "").lower()]  # kt are knots
+        raise Hint(
+            f"{text!r}: ton is 1000 kg, 907.185 kg or 1016.05 kg in different countries",
+            " or ".join(f'"{number:.12g} {_TON.sub(name, text)}"' for name in ("t", "short_ton", "long_ton")),
+        )
     ureg = registry()
     try:
         return number * ureg.parse_units(text.replace("µ", "u").replace("^", "**").replace("²", "**2"))

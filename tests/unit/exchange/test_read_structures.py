@@ -171,6 +171,104 @@ def test_columns_that_number_the_modes_are_left_out(tmp_path: Path, name: str) -
     np.testing.assert_array_equal(numbered.participation, plain.participation)
 
 
+def set_55(kind: int, frequency: float, *, number: int = 3) -> str:
+    """Return a set 55 of a normal mode at two nodes, with data of this kind."""
+    cells = "".join(f"{x:13.5E}" for x in (1.2, -0.4, 0.9)[:number])
+    head = (
+        f"    -1\n    55\n{'NONE' + chr(10):s}"
+        + "NONE\n" * 4
+        + f"         1         2         2{kind:10d}         2{number:10d}\n"
+    )
+    values = f"{frequency:13.5E}{2.5:13.5E}{0.01:13.5E}{0.0:13.5E}"
+    return (
+        f"{head}         2         4         1         1\n{values}\n         7\n{cells}\n         9\n{cells}\n    -1\n"
+    )
+
+
+@pytest.mark.parametrize("kind", [2, 3, 5, 9, 11, 12])
+def test_sets_of_other_quantities_are_no_modes(tmp_path: Path, kind: int) -> None:
+    """A set 55 of stresses, velocities or accelerations is refused, and left out beside that of displacements.
+
+    All sets 55 of the tests were displacements, and their type of data was not read.
+    """
+    (tmp_path / "a.uff").write_text(set_55(kind, 11.0) + set_55(kind, 17.0))
+    options: dict[str, Any] = {"points": {"p": 7}, "mass_unit": "kg"}
+    with pytest.raises(
+        rb.DataError, match=r"contains normal modes of .*; mode shapes are displacements \(type 8\)\n  try:"
+    ):
+        rb.Modal.from_file(tmp_path / "a.uff", **options)
+    (tmp_path / "a.uff").write_text("".join(set_55(each, f) for f in (11.0, 17.0) for each in (8, kind)))
+    assert rb.Modal.from_file(tmp_path / "a.uff", **options).frequencies == [11.0, 17.0]
+    (tmp_path / "a.uff").write_text(set_55(0, 11.0))
+    unknown = rb.Modal.from_file(tmp_path / "a.uff", **options)
+    assert any("does not state the quantity of its modes" in note for note in unknown.notes())
+    (tmp_path / "a.uff").write_text(set_55(8, 11.0, number=1))
+    with pytest.raises(rb.DataError, match="1 values at a node"):
+        rb.Modal.from_file(tmp_path / "a.uff", **options)
+
+
+def test_a_unit_of_mass_that_contradicts_the_file(tmp_path: Path) -> None:
+    """A unit of mass other than that of set 164, or of a table, is refused; where units contradict each other it decides.
+
+    Tests gave `mass_unit` for files that state none.
+    """
+    units = "    -1\n   164\n{:10d}{:20s}{:10d}\n{:25.17E}{:25.17E}{:25.17E}\n{:25.17E}\n    -1\n"
+    mm_t_N = units.format(10, "mm, t, N", 2, 1e3, 1.0, 1.0, 273.15)
+    (tmp_path / "a.uff").write_text(mm_t_N + set_55(8, 11.0))
+    right = rb.Modal.from_file(tmp_path / "a.uff", points={"p": 7})
+    assert rb.Modal.from_file(tmp_path / "a.uff", points={"p": 7}, mass_unit="t").shapes == right.shapes
+    assert right.modes().shapes["p"][0, 0] == pytest.approx(1.2 / math.sqrt(2500))
+    for unit in ("kg", "g"):
+        with pytest.raises(
+            rb.CaseError, match=r"a\.uff states that its unit of mass is 1000 kg, and mass_unit is .* kg"
+        ):
+            rb.Modal.from_file(tmp_path / "a.uff", points={"p": 7}, mass_unit=unit)
+    (tmp_path / "a.csv").write_text("frequency (Hz),damping,modal mass (g),p\n11,0.01,2500,1.2\n")
+    with pytest.raises(
+        rb.CaseError, match=r"a\.csv states that its unit of mass is 0\.001 kg, and mass_unit is 1000 kg"
+    ):
+        rb.Modal.from_file(tmp_path / "a.csv", mass_unit="t")
+    (tmp_path / "a.uff").write_text(units.format(10, "mm", 2, 1.0, 1.0, 1.0, 273.15) + set_55(8, 11.0))
+    with pytest.raises(rb.DataError, match="try: mass_unit"):
+        rb.Modal.from_file(tmp_path / "a.uff", points={"p": 7})
+    decided = rb.Modal.from_file(tmp_path / "a.uff", points={"p": 7}, mass_unit="t")
+    assert decided.shapes == right.shapes
+
+
+@pytest.mark.parametrize("text", ["-0.05 t^0.5", "-0.05 t^1/2", "-0.05 sqrt(t)", f"{-50 * math.sqrt(1e-3)!r} kg^0.5"])
+def test_participation_with_a_unit(text: str) -> None:
+    """Participation is converted from its unit; its share of the total mass is noted, and a small one is a warning.
+
+    The signature allowed text, but only numbers were read, and no test gave numbers of a model in mm, t and N.
+    """
+    options: dict[str, Any] = {
+        "frequencies": [11.0],
+        "damping_ratio": 0.01,
+        "shapes": {"p": [0.5]},
+        "total_mass": "6 kg",
+    }
+    base = rb.HalfSine(amplitude="1 g", duration="5 ms")
+    modal = rb.Modal(participation=[text], **options)
+    np.testing.assert_allclose(modal.participation, [-0.05 * math.sqrt(1e3)], rtol=1e-12)
+    notes = plausibility_notes(rb.Case(structure=modal, base=base, duration="0.1 s"))
+    assert notes == ("note: the effective masses of the modes are 41.7 % of the total mass",)
+    assert plausibility_notes(rb.Case(structure=modal, duration="0.1 s")) == ()
+    slip = rb.Modal(participation=[-0.05], **options)
+    notes = plausibility_notes(rb.Case(structure=slip, base=base, duration="0.1 s"))
+    assert any(note.startswith("warning") and "0.042 % of the total mass" in note and "t^0.5" in note for note in notes)
+    with pytest.raises(rb.CaseError, match=r"participation\[0\] = '1 kg'\n  a participation .* is needed, not a mass"):
+        rb.Modal(participation=["1 kg"], **options)
+
+
+def test_a_column_of_participation_with_a_unit(tmp_path: Path) -> None:
+    """The unit above a column of participation is that of the modes, or the table is refused."""
+    (tmp_path / "a.csv").write_text("frequency (Hz),damping,p (t^-0.5),participation (t^0.5)\n11,0.01,16,0.05\n")
+    np.testing.assert_allclose(rb.Modal.from_file(tmp_path / "a.csv").participation, [0.05 * math.sqrt(1e3)])
+    (tmp_path / "a.csv").write_text("frequency (Hz),damping,p (kg^-0.5),participation (t^0.5)\n11,0.01,0.5,0.05\n")
+    with pytest.raises(rb.DataError, match="participation is in another unit of mass"):
+        rb.Modal.from_file(tmp_path / "a.csv")
+
+
 def test_toml_tables(tmp_path: Path) -> None:
     """A TOML table has the fields of Modal and, optionally, modal masses."""
     (tmp_path / "modes.toml").write_text(

@@ -230,7 +230,10 @@ def test_names_among_other_lines_above_the_data(tmp_path: Path, text: str) -> No
         ("t;f\n0,0;1,5\n1,0;2,5\n", r"line 2: '0,0' is not a number\n  try: a decimal point, not a comma"),
         ("t;f\n0;1,5\n1;2\n2;3\n", r"line 2: '1,5' is not a number\n  try: a decimal point, not a comma"),
         ("t,f\n0,soft\n1,2\n2,3\n", r"line 2: 'soft' is not a number"),
-        ("t,f\n0,1\n1,2\n2", r"line 4: 1 column, but 2 in line 2\n  try: the whole file: its last line is cut short"),
+        (
+            "t,f\n0,1\n1,2\n2",
+            r"line 4: 1 column, but 2 in line 2\n  try: the whole file, if its last line is cut short",
+        ),
     ],
 )
 def test_faults_in_the_first_lines_of_data(tmp_path: Path, text: str, message: str) -> None:
@@ -273,24 +276,28 @@ def test_units_above_columns_are_applied(tmp_path: Path, above: str) -> None:
     slower, scale, unit = UNITS_ABOVE[above]
     record = rb.Record(file=tmp_path / "push.csv")
     assert record.times == pytest.approx((0, 2 * slower), rel=1e-15)
-    assert (record.values, record.unit) == ((1, 3), unit)
-    assert record.scale == pytest.approx(scale, rel=1e-15)
+    assert record.values == pytest.approx((scale, 3 * scale), rel=1e-15)
+    assert (record.scale, record.unit) == (1.0, unit)
     parts = {} if unit == "m" else {"load" if unit == "N" else "base": record}
     case = rb.Case(structure=rb.SDOF(mass=1, stiffness=1), duration=1e-9, **parts)
     assert rb.Case.from_toml(case.to_toml()) == case
 
 
 def test_scale_and_unit_of_a_record(tmp_path: Path) -> None:
-    """A given scale overrides the unit of the file; a unit of another quantity is refused without one."""
+    """A scale multiplies the record in physical units; a unit that contradicts the heading is refused, also with a scale."""
     (tmp_path / "push.csv").write_text("t (s),a (g)\n0,1\n2,3\n")
-    scaled = rb.Record(file=tmp_path / "push.csv", scale=2.5, unit="N")
-    assert (scaled.scale, scaled.unit, scaled.values) == (2.5, "N", (1, 3))
-    with pytest.raises(rb.CaseError, match=r"unit = 'N'\n  the file has an acceleration in this column, not a force"):
-        rb.Record(file=tmp_path / "push.csv", unit="N")
-    with pytest.raises(rb.CaseError, match=r"the file states another unit above the column: 'a \(g\)'"):
-        rb.Record(file=tmp_path / "push.csv", unit="gal")
-    assert rb.Record(file=tmp_path / "push.csv", unit="g").scale == 9.80665
-    assert rb.Record(file=tmp_path / "push.csv", unit="m/s²").unit == "m/s^2"
+    scaled = rb.Record(file=tmp_path / "push.csv", scale=2.5)
+    assert (scaled.scale, scaled.unit) == (2.5, "m/s^2")
+    np.testing.assert_allclose(scaled.evaluate([0.0, 2.0]), [2.5 * 9.80665, 7.5 * 9.80665], rtol=1e-15)
+    for options in ({}, {"scale": 2.5}):
+        with pytest.raises(
+            rb.CaseError, match=r"unit = 'N'\n  the file has an acceleration in this column, not a force"
+        ):
+            rb.Record(file=tmp_path / "push.csv", unit="N", **options)
+        for unit in ("gal", "m/s^2"):
+            with pytest.raises(rb.CaseError, match=r"the file states another unit above the column: 'a \(g\)'"):
+                rb.Record(file=tmp_path / "push.csv", unit=unit, **options)
+    assert rb.Record(file=tmp_path / "push.csv", unit="g").values == scaled.values
 
 
 @pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.npz", "push.mat"])

@@ -250,9 +250,7 @@ REFUSED = {
     r"less than one particle of 8.878e\+05 kg and 6000 mm in diameter": lambda: damper(
         particles=balls(count=None, diameter=6, fill_ratio=0.3)
     ),
-    "larger than the cavity, .*\n  try: .*; a number without a unit is in metres": lambda: damper(
-        particles=balls(diameter=6)
-    ),
+    "larger than the cavity, .*\n  try: .*; check both and their units": lambda: damper(particles=balls(diameter=6)),
 }
 
 

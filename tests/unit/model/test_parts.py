@@ -296,7 +296,7 @@ def test_a_record_may_miss_the_ends_by_rounding(parts: dict[str, Any], late: flo
     ("times", "message"),
     [
         ([0.0, 0.5], r"covers 0 s to 0.5 s, the run 0 to 1 s\n  try: duration = \"0.5 s\", or a longer record"),
-        ([0.5, 2.0], r"covers 0.5 s to 2 s, the run 0 to 1 s\n  try: a record that begins at 0 s"),
+        ([0.5, 2.0], r"covers 0.5 s to 2 s, the run 0 to 1 s\n  try: time_zero = \"first\""),
         ([0.0, 1 - 1e-8], r"covers 0 s to 0.99999999 s, the run 0 to 1 s"),
     ],
 )

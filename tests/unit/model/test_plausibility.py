@@ -29,10 +29,10 @@ def test_usual_cases_have_no_notes():
 def test_sizes_in_metres_are_noted():
     """A run warns of a ball or a gap of more than a metre, with the likely reason."""
     (wide, heavy) = notes(ball=rb.Sphere(radius=3.317, material="steel"))
-    assert wide.startswith("warning: a ball of damper is 6.634 m wide") and "metres" in wide
+    assert wide.startswith("warning: a ball of damper is 6.634 m wide") and "check the value and its unit" in wide
     assert heavy.startswith("warning: the balls of damper") and "1.2e+06 kg" in heavy and "6e+04 times" in heavy
     (gap,) = notes(gap=2.5)
-    assert gap.startswith("warning: the gap of damper is 2.5 m") and "metres" in gap
+    assert gap.startswith("warning: the gap of damper is 2.5 m") and "check the value and its unit" in gap
 
 
 @pytest.mark.parametrize(("point", "count"), [("light", 1), ("heavy", 0)])
@@ -172,7 +172,7 @@ def test_a_base_across_the_structure_is_noted():
 def test_a_cavity_in_metres_is_noted():
     """A run warns of a fill ratio of almost zero, with the likely reason."""
     (note,) = of(grains(cavity=rb.Box(size=(20, 20, 20))))
-    assert note.startswith("warning: the fill ratio of damper is 9.8e-11") and "metres" in note
+    assert note.startswith("warning: the fill ratio of damper is 9.8e-11") and "their units" in note
 
 
 def test_a_record_in_milliseconds_is_noted():

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from rattlebox._util.exceptions import DataError
 
 _COUNT = re.compile(r"NPTS\s*=\s*(\d+)", re.I)
-_STEP = re.compile(r"DT\s*=\s*([\d.]+(?:E[-+]?\d+)?)", re.I)
-_OLD_HEADER = re.compile(r"^\s*(\d+)\s+([\d.]+(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
-_UNIT = re.compile(r"UNITS?\s+OF\s+(\S+)|\bIN\s+(G|CM/S\S*|M/S\S*)\s*$", re.I)
+_STEP = re.compile(r"DT\s*=\s*(\d*\.?\d*(?:E[-+]?\d+)?)", re.I)
+_OLD_HEADER = re.compile(r"^\s*(\d+)\s+(\d*\.?\d*(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
+_UNIT = re.compile(r"UNITS?\s+OF\s+(\S+)", re.I)
 _OTHER_QUANTITY = re.compile(r"\b(velocity|displacement)\b", re.I)
 _WHOLE = "the file as it was downloaded"
 _HEADER = 12  # most lines of the header
+_DIGITS = 12  # from which a number of samples is absurd
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,12 +32,15 @@ class GroundMotion:
     values : (n,) float
         Samples, in `unit`.
     unit
-        Unit as the file states it, such as "G"; "" if it states none.
+        Unit as the file states it after "units of", such as "G"; "" if it does not.
+    lines
+        Numbers and texts of the lines of the header, which may state the unit otherwise.
     """
 
     step: float
     values: NDArray[np.float64]
     unit: str
+    lines: tuple[tuple[int, str], ...] = ()
 
 
 def read_ground_motion(path: Path) -> GroundMotion:
@@ -86,13 +90,19 @@ def read_ground_motion(path: Path) -> GroundMotion:
     other = _OTHER_QUANTITY.search(header)
     if other and not re.search(r"\baccel", header, re.I):
         raise DataError(f"{path} contains a {other[1].lower()}, not an acceleration", "the file with the ending .AT2")
-    if not float(step) > 0:
-        raise DataError(f"{path}, line {begin}: the time step is {step}; it must be greater than zero")
+    if not (_is_positive(step) and len(count) < _DIGITS):
+        raise DataError(
+            f"{path}, line {begin}: the time step is {step} s and the number of samples {count[:_DIGITS]}; both must be"
+            " positive and finite",
+            _WHOLE,
+        )
     values = []
     for number, line in enumerate(lines[begin:], start=begin + 1):
         try:
             values += [float(word) for word in line.split()]
         except ValueError:
+            if len(values) == int(count):
+                continue  # such as "*** End Data ***"
             raise DataError(f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers", _WHOLE) from None
     if len(values) != int(count):
         raise DataError(
@@ -103,7 +113,16 @@ def read_ground_motion(path: Path) -> GroundMotion:
     if not np.isfinite(samples).all():
         raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite", _WHOLE)
     unit = _UNIT.search(header)
-    return GroundMotion(float(step), samples, (unit[1] or unit[2]).strip(".,") if unit else "")
+    return GroundMotion(
+        float(step), samples, unit[1].strip(".,()") if unit else "", tuple(enumerate(lines[:begin], start=1))
+    )
+
+
+def _is_positive(text: str) -> bool:
+    try:
+        return 0 < float(text) < float("inf")
+    except ValueError:
+        return False
 
 
 def _first_group(pattern: re.Pattern[str], line: str) -> str:

@@ -23,6 +23,7 @@ _NUMBERING = ("mode", "mode number", "mode no", "mode no.", "number", "no", "no.
 _FREQUENCY = {"": 1.0, "hz": 1.0, "khz": 1e3, "rad/s": 1 / (2 * np.pi)}
 _DAMPING = {"": 1.0, "1": 1.0, "-": 1.0, "%": 0.01}
 _SHAPE = {"": None, "kg^-0.5": 1.0, "kg^-1/2": 1.0, "t^-0.5": 1e3, "t^-1/2": 1e3, "g^-0.5": 1e-3, "g^-1/2": 1e-3}
+_PARTICIPATION = {"": None, "kg^0.5": 1.0, "kg^1/2": 1.0, "t^0.5": 1e3, "t^1/2": 1e3, "g^0.5": 1e-3, "g^1/2": 1e-3}
 _MASS = {"": None, "kg": 1.0, "g": 1e-3, "t": 1e3}
 
 
@@ -145,6 +146,14 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
     if "participation" in columns:
         places = columns["participation"]
         participation = table[:, places[0]] if len(places) == 1 else table[:, places]
+        # phi^T M r has the unit of mass for shapes with modal masses, and of its root for mass-normalised shapes.
+        stated = {scale(column, _PARTICIPATION if modal_masses is None else _MASS) for column in places} - {None}
+        mass_unit = stated.copy().pop() if mass_unit is None and len(stated) == 1 else mass_unit
+        if stated - {mass_unit}:
+            raise DataError(
+                f"{path}: the participation is in another unit of mass than the mode shapes or modal masses",
+                "one unit of mass: (kg^0.5) and (kg^-0.5) without modal masses, (kg) with them",
+            )
     frequencies, damping = table[:, frequency] * float(scale(frequency, _FREQUENCY) or 1.0), None
     notes = []
     if not units[frequency].strip():

@@ -22,7 +22,12 @@ _UNIT_CODES = {
 # Analysis types of the sets 55 and 2414, type of result of the set 2414, types of sets.
 _NORMAL_MODES = 2
 _COMPLEX_MODES = (3, 7)
-_DISPLACEMENT = 8
+_DISPLACEMENT, _UNKNOWN = 8, (0, 1)  # also types of data of the set 55
+_QUANTITIES = {
+    0: "unknown data", 1: "general data", 2: "stress", 3: "strain", 4: "element force", 5: "temperature",
+    6: "heat flux", 7: "strain energy",
+    9: "reaction force", 10: "kinetic energy", 11: "velocity", 12: "acceleration",
+}  # fmt: skip
 _GEOMETRY = (15, 2411, 2420)  # nodes, nodes, coordinate systems
 _TAIL = 4096  # bytes that contain the last line
 _LARGEST_IMAGINARY = 1e-6  # largest imaginary part of a real mode, over the largest component
@@ -96,13 +101,15 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
     return sets
 
 
-def read_universal_modes(path: Path) -> ModesInFile:
+def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile:
     """Read the normal modes of a universal file.
 
     Parameters
     ----------
     path
         An existing file with sets 55 or 2414 of normal modes and, for the units, 164.
+    needs_units
+        Whether units that contradict each other are an error; else they are left out.
 
     Returns
     -------
@@ -126,7 +133,21 @@ def read_universal_modes(path: Path) -> ModesInFile:
     """
     every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
     sets = [each for each in every if each["type"] not in _GEOMETRY]
-    modes = [_mode(path, each) for each in sets if each["type"] != 164 and _is_mode(each)]
+    # The set 55 may also have stresses, velocities or accelerations of the same modes.
+    normal = [each for each in sets if each["type"] == 55 and _is_normal(each)]
+    quantities = {int(each["spec_data_type"]) for each in normal}
+    wanted = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
+    chosen = [each for each in sets if each["type"] != 164 and _is_mode(each, wanted)]
+    modes = [_mode(path, each) for each in _without_twins(chosen)]
+    others = [_QUANTITIES.get(kind, f"data of type {kind}") for kind in sorted(quantities - set(wanted))]
+    notes = [f"{path.name} does not state the quantity of its modes; displacements are assumed"] * (
+        bool(quantities) and wanted == _UNKNOWN and bool(modes)
+    )
+    if not modes and others:
+        raise DataError(
+            f"{path} contains normal modes of {' and '.join(others)}; mode shapes are displacements (type 8)",
+            "an export of displacements",
+        )
     if not modes:
         kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
         scatter = [
@@ -160,8 +181,8 @@ def read_universal_modes(path: Path) -> ModesInFile:
         shapes={str(int(node)): shapes[:, k] for k, node in enumerate(nodes)},
         modal_masses=masses,
         damping_ratios=damping if damping.any() else None,
-        mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164]),
-        notes=_check_axes(path, [each for each in every if each["type"] in _GEOMETRY], nodes),
+        mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164], needs_units),
+        notes=tuple(notes) + _check_axes(path, [each for each in every if each["type"] in _GEOMETRY], nodes),
     )
 
 
@@ -216,9 +237,23 @@ def _phase_scatter(each: dict[str, Any]) -> float:
     return float(np.degrees(np.arctan2(np.linalg.norm(z.imag), np.linalg.norm(z.real))))
 
 
-def _is_mode(each: dict[str, Any]) -> bool:
+def _without_twins(sets: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the sets without those of type 55 if those of type 2414 are the same modes."""
+    of_55 = [float(each["freq"]) for each in sets if each["type"] == 55]
+    of_2414 = [float(each["record12_field2"]) for each in sets if each["type"] == 2414]
+    if of_2414 and len(of_55) == len(of_2414) and np.allclose(of_55, of_2414, rtol=1e-4):
+        return [each for each in sets if each["type"] == 2414]
+    return sets
+
+
+def _is_normal(each: dict[str, Any]) -> bool:
+    return int(each["analysis_type"]) == _NORMAL_MODES
+
+
+def _is_mode(each: dict[str, Any], wanted: tuple[int, ...]) -> bool:
+    """Return whether a set has a mode shape; `wanted` are the types of data in the set 55."""
     if each["type"] == 55:
-        return int(each["analysis_type"]) == _NORMAL_MODES
+        return _is_normal(each) and int(each["spec_data_type"]) in wanted
     at_nodes = int(each.get("dataset_location", 1)) == 1
     return int(each["analysis_type"]) == _NORMAL_MODES and int(each["result_type"]) == _DISPLACEMENT and at_nodes
 
@@ -226,6 +261,11 @@ def _is_mode(each: dict[str, Any]) -> bool:
 def _mode(path: Path, each: dict[str, Any]) -> tuple[float, float, float, Any, Any]:
     """Return frequency, modal mass, damping ratio, nodes and shape of a set."""
     if each["type"] == 55:
+        if int(each["n_data_per_node"]) not in (3, 6):
+            raise DataError(
+                f"{path}: a mode has {each['n_data_per_node']} values at a node; 3 or 6 are needed",
+                "translations x, y, z",
+            )
         nodes = np.asarray(each["node_nums"])
         shape = np.array([each[f"r{k}"] for k in (1, 2, 3)]).T
         values = each["freq"], each["modal_m"], each["modal_damp_vis"]
@@ -244,8 +284,8 @@ def _mode(path: Path, each: dict[str, Any]) -> tuple[float, float, float, Any, A
     return frequency, mass, damping, nodes, np.real(shape)
 
 
-def _mass_unit(path: Path, sets: list[dict[str, Any]]) -> float | None:
-    """Return the unit of mass of a file [kg]; None if it states none."""
+def _mass_unit(path: Path, sets: list[dict[str, Any]], is_needed: bool) -> float | None:
+    """Return the unit of mass of a file [kg]; None if it states none, or a contradiction and the unit is not needed."""
     if not sets:
         return None
     length, force, code = float(sets[0]["length"]), float(sets[0]["force"]), int(sets[0]["units_code"])
@@ -257,6 +297,8 @@ def _mass_unit(path: Path, sets: list[dict[str, Any]]) -> float | None:
     if code in _UNIT_CODES:
         for what, value, expected in zip(("lengths", "forces"), (length, force), _UNIT_CODES[code], strict=True):
             if abs(value / expected - 1) > 1e-2:
+                if not is_needed:
+                    return None
                 raise DataError(
                     f"{path}: set 164 states a factor of {value:g} for {what}, but its code {code} means {expected:g}",
                     "mass_unit, the unit of mass of the file",
