@@ -66,7 +66,7 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 per cycle.
+        Evenly spaced times [s], at least 5 per cycle; the last step may be shorter, and its sample is then not used.
     values : (N,) array_like
         Free decay of one mode; the unit of a DataArray is used.
     amplitudes : (A,) array_like

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .signals import FloatArray, labelled, sampled, step_of, units_of
+from .signals import FloatArray, evenly_sampled, labelled, step_of, units_of
 
 if TYPE_CHECKING:
     import xarray
@@ -24,7 +24,8 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles.
+        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles; the last step may be shorter, and its sample is
+        then not used.
     values : (N,) array_like
         Oscillation about zero with one dominant frequency; subtract the rest position first. A DataArray passes its
         unit on.
@@ -75,7 +76,8 @@ def damping_ratio(
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles.
+        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles; the last step may be shorter, and its sample is
+        then not used.
     values : (N,) array_like
         Free decay about zero of one mode. The unit of a DataArray is used.
     method
@@ -194,7 +196,7 @@ def oscillation(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatAr
     """Return times, signal, and samples per cycle of its dominant frequency."""
     from scipy.signal import periodogram
 
-    t, x = sampled(time, 16, values=values)
+    t, x = evenly_sampled(time, 16, values=values)
     step = step_of(t)
     frequency, power = periodogram(x, 1 / step, nfft=4 * t.size, detrend="constant")
     peak = float(frequency[np.argmax(power)])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .signals import FloatArray, labelled, positive, sampled, step_of, units_of
+from .signals import FloatArray, evenly_sampled, labelled, positive, sampled, step_of, units_of
 
 if TYPE_CHECKING:
     import xarray
@@ -80,7 +80,7 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s].
+        Evenly spaced times [s]; the last step may be shorter, and its sample is then not used.
     values : (N,) array_like
         Signal; the unit of a DataArray is used. The mean of each segment is removed.
     resolution
@@ -127,7 +127,7 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
     from scipy.signal import welch
     from scipy.stats import chi2
 
-    t, x = sampled(time, 16, values=values)
+    t, x = evenly_sampled(time, 16, values=values)
     cut = _segments(t, resolution)
     frequency, density = welch(x, cut.rate, WINDOW, cut.length, cut.length - cut.shift, detrend="constant")
     freedom = 2 * cut.independent
@@ -237,7 +237,7 @@ def transfer_function(
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s].
+        Evenly spaced times [s]; the last step may be shorter, and its sample is then not used.
     source, response : (N,) array_like
         Input and output signals; the units of DataArrays are used.
     resolution
@@ -278,7 +278,7 @@ def transfer_function(
     import xarray
     from scipy.signal import csd, welch
 
-    t, x, y = sampled(time, 16, source=source, response=response)
+    t, x, y = evenly_sampled(time, 16, source=source, response=response)
     cut = _segments(t, resolution)
     if cut.count < 2:
         raise ValueError(
@@ -316,7 +316,7 @@ def transmissibility(
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s].
+        Evenly spaced times [s]; the last step may be shorter, and its sample is then not used.
     base, response : (N,) array_like
         The same quantity at the base and at the point, both absolute, such as two accelerations.
     resolution

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .signals import FloatArray, finite, labelled, positive, sampled, step_of, units_of
+from .signals import FloatArray, evenly_sampled, finite, labelled, positive, step_of, units_of
 
 if TYPE_CHECKING:
     import xarray
@@ -34,7 +34,7 @@ def shock_response_spectrum(
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s].
+        Evenly spaced times [s]; the last step may be shorter, and its sample is then not used.
     acceleration : (N,) array_like
         Acceleration of the base, linear between samples and zero before and after; the unit of a DataArray is used.
     frequencies : (F,) array_like
@@ -78,7 +78,7 @@ def shock_response_spectrum(
     """
     import xarray
 
-    t, a = sampled(time, 4, acceleration=acceleration)
+    t, a = evenly_sampled(time, 4, acceleration=acceleration)
     step = step_of(t)
     zeta = float(damping_ratio)
     if not 0 <= zeta < 1:

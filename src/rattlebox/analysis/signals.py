@@ -42,17 +42,33 @@ def sampled(time: ArrayLike, least: int = 2, **signals: ArrayLike) -> tuple[Floa
     return t, *arrays
 
 
-def step_of(time: FloatArray) -> float:
-    """Return the sampling interval; raise if times are not evenly spaced."""
-    steps = np.diff(time)
-    step = float(time[-1] - time[0]) / steps.size
-    # The second term is for the rounding of times that are large compared with their step.
-    if np.max(np.abs(steps - step)) > 1e-6 * step + 4 * np.spacing(np.max(np.abs(time))):
+def evenly_sampled(time: ArrayLike, least: int = 2, **signals: ArrayLike) -> tuple[FloatArray, ...]:
+    """Return evenly spaced times and signals of the same length; a sample after a shorter last step is omitted.
+
+    A run with a sampling rate always records its end, which is rarely a multiple of the sampling interval.
+    """
+    t, *arrays = sampled(time, least, **signals)
+    if t.size > 2 and not is_even(t) and t[-1] - t[-2] < t[-2] - t[-3] and is_even(t[:-1]):
+        t, *arrays = sampled(t[:-1], least, **{name: array[:-1] for name, array in zip(signals, arrays, strict=True)})
+    if not is_even(t):
+        steps = np.diff(t)
         raise ValueError(
-            f"time must be evenly spaced, but its steps range from {steps.min():g} s to {steps.max():g} s; "
-            "try: a run with Output(rate=...), or interpolation"
+            f"time must be evenly spaced, but its steps range from {steps.min():g} s to {steps.max():g} s; only the last "
+            "one may be shorter; try: a run with Output(rate=...), or interpolation"
         )
-    return step
+    return t, *arrays
+
+
+def is_even(time: FloatArray) -> bool:
+    """Return whether times are evenly spaced."""
+    step = step_of(time)
+    # The second term is for the rounding of times that are large compared with their step.
+    return bool(np.max(np.abs(np.diff(time) - step)) <= 1e-6 * step + 4 * np.spacing(np.max(np.abs(time))))
+
+
+def step_of(time: FloatArray) -> float:
+    """Return the sampling interval of evenly spaced times."""
+    return float(time[-1] - time[0]) / (time.size - 1)
 
 
 def steps_inside(time: FloatArray, begin: float) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .signals import labelled, sampled, step_of, units_of
+from .signals import evenly_sampled, labelled, step_of, units_of
 
 if TYPE_CHECKING:
     import xarray
@@ -22,7 +22,7 @@ def amplitude_spectrum(
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s].
+        Evenly spaced times [s]; the last step may be shorter, and its sample is then not used.
     values : (N,) array_like
         Signal; the unit of a DataArray is used.
     window
@@ -67,7 +67,7 @@ def amplitude_spectrum(
     """
     from scipy.signal import periodogram
 
-    t, x = sampled(time, 4, values=values)
+    t, x = evenly_sampled(time, 4, values=values)
     if not (isinstance(padding, (int, float, np.number)) and math.isfinite(padding) and padding == int(padding) >= 1):
         raise ValueError(f"padding is {padding}, but it must be a whole number of at least 1")
     size = int(padding) * t.size

@@ -269,3 +269,28 @@ def test_a_design_counts_the_cycles_that_are_given() -> None:
     options: dict[str, Any] = {"way": "shaking", "cycles": (5, 10), "packings": 1}
     found = rb.design(case, {"damper.gap": ["0.5 mm"]}, "damping_ratio", amplitudes=levels, trials=1, **options)
     assert found["damping_ratio"].item() == rb.damping_curve(case, levels, **options).damping_ratio.min().item()
+
+
+@pytest.mark.parametrize("way", ["decay", "energy"])
+def test_any_frequency_and_duration(way: Any) -> None:
+    """The ratio of a linear structure is exact for any frequency and duration; earlier tests had 50 Hz and whole seconds."""
+    rng = np.random.default_rng(7)
+    for frequency in [51.3, 10.0658, 33.33, *10 ** rng.uniform(-0.5, 3.0, 12)]:
+        structure = rb.SDOF(mass=4.7, frequency=frequency, damping_ratio=0.012)
+        case = rb.Case(structure=structure, duration=rng.uniform(40, 60) / frequency)
+        result = rb.damping_curve(case, LEVELS, way=way, packings=1, progress=False)
+        np.testing.assert_allclose(result.damping_ratio, 0.012, rtol=1e-4 if way == "decay" else 6e-3)
+
+
+def test_a_ball_at_any_frequency() -> None:
+    """The ratio of a ball damper depends on frequency, gap and mass only through the amplitude over the gap."""
+    rng = np.random.default_rng(8)
+    found = []
+    for frequency in [40.0, *rng.uniform(7, 300, 6)]:
+        damper = rb.ImpactDamper(
+            ball=rb.Sphere(radius="9 mm", material="steel"), gap="0.37 mm", contact=rb.Tsuji(restitution=0.5)
+        )
+        structure = rb.SDOF(mass=2.1, frequency=frequency, damping_ratio=0.004)
+        case = rb.Case(structure=structure, damper=damper, duration=70.3 / frequency, method=rb.Newton())
+        found.append(rb.damping_curve(case, ["0.1 mm", "0.2 mm"], packings=2, progress=False).damping_ratio.values)
+    np.testing.assert_allclose(found, np.broadcast_to(found[0], np.shape(found)), rtol=2e-4)
