@@ -6,7 +6,12 @@ NumPy.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import Any, ClassVar
+
+
+_PUBLIC = "rattlebox"
 
 
 class RattleboxError(Exception):
@@ -22,6 +27,8 @@ class RattleboxError(Exception):
         Location of the value in the part that raises: names of fields, numbers in lists.
     """
 
+    _source: ClassVar[tuple[str, str]] = (__name__, "RattleboxError")  # module and name of the class, for pickles
+
     def __init__(self, complaint: str, suggestion: str = "", place: Sequence[str | int] = ()) -> None:
         where = named(place)
         super().__init__(message(where, complaint, suggestion) if where else message(complaint, suggestion))
@@ -29,8 +36,30 @@ class RattleboxError(Exception):
         self.suggestion = suggestion
         self.place = tuple(place)
 
+    def __init_subclass__(cls) -> None:
+        """Name a class in tracebacks as users know it: a class of the package outside of this module by its public base."""
+        super().__init_subclass__()
+        cls._source = cls.__module__, cls.__qualname__
+        if cls.__module__ == __name__:
+            cls.__module__ = _PUBLIC
+        elif cls.__module__.startswith(f"{_PUBLIC}."):
+            public = next(base for base in cls.__mro__[1:] if base.__module__ == _PUBLIC)
+            cls.__module__, cls.__name__, cls.__qualname__ = _PUBLIC, public.__name__, public.__qualname__
+
     def __str__(self) -> str:
         return str(self.args[0])  # OSError would add its number and file name
+
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]:
+        return _rebuilt, (*self._source, self.args), self.__dict__
+
+
+RattleboxError.__module__ = _PUBLIC
+
+
+def _rebuilt(module: str, name: str, arguments: tuple[Any, ...]) -> RattleboxError:
+    """Return an error of the class that a module defines under a name."""
+    error: RattleboxError = getattr(import_module(module), name)(*arguments)
+    return error
 
 
 class CaseError(RattleboxError, ValueError):
