@@ -357,6 +357,31 @@ def test_pairs_of_a_row() -> None:
     assert left.modulus == pytest.approx(200e9 / 0.91)
 
 
+def test_pairs_that_do_not_exist_are_refused() -> None:
+    """Cases without the impact damper are refused; the advice for particles returns their pairs. Only rows were tested."""
+    structure = rb.SDOF(mass=2.0, stiffness=1.0)
+    ball = rb.ImpactDamper(ball=BALL, gap="1 mm", contact=rb.Tsuji(restitution=0.9))
+    one = rb.Case(structure=structure, damper=ball, duration=1.0)
+    case = rb.Case(
+        structure=structure,
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="glass", diameter="3 mm", count=4),
+            cavity=rb.Box(size=("20 mm",) * 3),
+            contact=rb.Tsuji(restitution=0.9),
+        ),
+        duration=1.0,
+    )
+    assert rb.contact_pairs(one) == rb.contact_pairs(one, 0) == rb.contact_pairs(one, -1)
+    with pytest.raises(rb.CaseError, match="index = 1, but the case has 1 impact damper\n  try: index = 0"):
+        rb.contact_pairs(one, 1)
+    with pytest.raises(rb.CaseError, match="0 impact dampers"):
+        rb.contact_pairs(one.model_copy(update={"dampers": ()}))
+    with pytest.raises(rb.CaseError, match="the case has particle dampers") as caught:
+        rb.contact_pairs(case)
+    between, wall = eval(caught.value.suggestion, {"case": case})
+    assert (between.is_wall, wall.is_wall) == (False, True)
+
+
 def test_every_material_is_physical_and_has_a_source() -> None:
     """The library has the documented materials, each with a source; brittle materials have no yield stress."""
     library = rb.materials()
