@@ -32,6 +32,9 @@ from .units import (
 
 Ending = Literal["zero_force", "zero_overlap"]
 
+_SMALL_OVERLAP = 1e-6
+"""Overlap at which forces of power laws are limited [m]."""
+
 EXTRAPOLATED = 1000.0
 """Largest overlap in the restitution table of a measured contact, over the last measured one."""
 
@@ -282,13 +285,14 @@ class PowerLaw(Contact):
     Parameters
     ----------
     stiffness
-        k [N/m^n]; default that of a Hertz contact of the materials, which needs n = 3/2.
+        k [N/m^n], with k d^n of at most 1e30 N at an overlap d of 1 um; default that of a Hertz contact of the materials,
+        which needs n = 3/2.
     exponent
         n, from 0.5 to 10.
     damping_exponent
         p, from 0 to 10. 3/2: Hunt and Crossley, Lankarani and Nikravesh; 1/2: Kuwabara and Kono.
     damping
-        c [N s/m^(p+1)].
+        c [N s/m^(p+1)], with c d^p of at most 1e30 N s/m at an overlap d of 1 um.
     restitution, impact_speed
         Restitution of an impact at this speed [m/s], in place of c. With p = (n - 1)/2 the restitution is the same at every
         speed, and no speed is needed.
@@ -318,10 +322,10 @@ class PowerLaw(Contact):
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "damping"),)
     kind: Literal["power"] = "power"
-    stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] | None = None
+    stiffness: Annotated[Number, Field(gt=0)] | None = None
     exponent: Annotated[Number, Field(ge=0.5, le=10)] = 1.5
     damping_exponent: Annotated[Number, Field(ge=0, le=10)] = 0.5
-    damping: Annotated[Number, Field(ge=0, le=LARGEST)] | None = None
+    damping: Annotated[Number, Field(ge=0)] | None = None
     restitution: Annotated[Number, Field(ge=SMALLEST, le=1)] | None = None
     impact_speed: PositiveVelocity | None = None
     ending: Ending = "zero_force"
@@ -335,6 +339,16 @@ class PowerLaw(Contact):
                 "stiffness = 1e9",
                 ["stiffness"],
             )
+        # The unit of a coefficient depends on its exponent: a limit of the number itself would refuse ordinary contacts.
+        for name, power, unit in (("stiffness", self.exponent, "N"), ("damping", self.damping_exponent, "N s/m")):
+            value = getattr(self, name)
+            if value is not None and value * _SMALL_OVERLAP**power > LARGEST:
+                largest = LARGEST / _SMALL_OVERLAP**power
+                raise Hint(
+                    f"with the exponent {power:g} this is more than {LARGEST:g} {unit} at an overlap of 1 um",
+                    f"{name} = {largest:.3g} or less",
+                    [name],
+                )
         same_at_every_speed = 2 * self.damping_exponent == self.exponent - 1
         if self.restitution is not None and self.impact_speed is None and not same_at_every_speed:
             raise Hint(
