@@ -14,7 +14,7 @@ from rich.text import Text
 from rattlebox.cli.terminal import terminal
 from rattlebox.results.quantities import MISSING, PREFIXED_UNITS, quantity
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.design.trial_store import count_trials
+from rattlebox.studies.design.trial_store import count_trials, open_trials
 from rattlebox.studies.measures import INTERVAL
 from rattlebox.studies.outcomes import chunks, computed, status_lines
 from rattlebox.studies.stored import Progress, has_map, open_study, progress_of, report_damage
@@ -50,9 +50,12 @@ def show_study(path: Path) -> None:
         if study is not None and has_results:
             console.print(_result_table(study))
             if "front" in study.coords and study.front.size:
-                console.print(_trial_table(study))
+                console.print(_trial_table(study, "best trial", study.front.values[:_MAX_TRIALS], study.front.size))
             for line in status_lines(study):
                 console.print(Text(f"  {line}"), soft_wrap=True)
+        if trials and not complete and (found := open_trials(path)) is not None:
+            latest = found.trial.values[-_MAX_TRIALS:]
+            console.print(_trial_table(found, "trial", latest, found.trial.size))
     if not complete:
         console.print("  The study is not finished; repeat the command that started it to resume.", soft_wrap=True)
 
@@ -86,17 +89,18 @@ def _ends(values: np.ndarray[Any, Any]) -> tuple[Any, Any]:
     return values[0], values[-1]
 
 
-def _trial_table(study: xr.Dataset) -> Table:
-    """Return the Pareto-optimal trials of a design with their parameters and objectives."""
+def _trial_table(study: xr.Dataset, heading: str, trials: np.ndarray[Any, Any], total: int) -> Table:
+    """Return some trials of a design with their parameters and objectives, and the reasons of those without."""
     names = [str(name) for name, values in study.coords.items() if values.dims == ("trial",) and name != "trial"]
     names += [str(name) for name, values in study.data_vars.items() if "goal" in values.attrs]
+    names += ["reason"] if study.reason.sel(trial=trials).values.astype(bool).any() else []
     right: Any = {"justify": "right"}
-    table = Table(Column("best trial", **right), *(Column(name, **right) for name in names), box=SIMPLE_HEAD)
-    for trial in study.front.values[:_MAX_TRIALS]:
+    table = Table(Column(heading, **right), *(Column(name, **right) for name in names), box=SIMPLE_HEAD)
+    for trial in trials:
         row = study.sel(trial=trial)
         table.add_row(f"{trial}", *(_with_interval(row, name) for name in names))
-    if study.front.size > _MAX_TRIALS:
-        table.caption = f"and {study.front.size - _MAX_TRIALS} more"
+    if total > trials.size:
+        table.caption = f"and {total - trials.size} more"
     return table
 
 
@@ -124,7 +128,9 @@ def _result_table(study: xr.Dataset) -> Table:
 def _format(value: Any, variable: xr.DataArray) -> str:
     """Return a value of a variable as text with its unit."""
     if not isinstance(value, np.number):
-        return str(value)
+        return " ".join(str(value).split())
+    if np.isnan(value):
+        return MISSING
     unit = str(variable.attrs.get("units", ""))
     if unit in PREFIXED_UNITS:
         return quantity(float(value), unit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -43,7 +44,8 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     for note in plausibility_notes(study.case, signals=False):
         typer.echo(printable(f"{path}: {note}"), err=True)
     try:
-        with _cluster(dask) as client, _error_context(path, out):
+        with _cluster(dask) as client, _error_context(path, out), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "no trial is feasible")  # a line of the output below
             backend = {"backend": client, "workers": None} if client else {"workers": workers} if workers else {}
             result = study.run(store=out, **backend)
     except Stopped as stopped:

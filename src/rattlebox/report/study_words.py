@@ -266,7 +266,8 @@ def study_warnings(study: xr.Dataset) -> list[str]:
         what = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in failed.items())
         lines.insert(0, f"{sum(failed.values()):,} of {sum(counts.values()):,} runs have no result: {what}")
     given = study.attrs.get("warnings", [])
-    return lines + ([given] if isinstance(given, str) and given else [str(each) for each in given])
+    lines += [given] if isinstance(given, str) and given else [str(each) for each in given]
+    return list(dict.fromkeys(lines))
 
 
 def study_limits(study: xr.Dataset) -> Iterator[Limit]:

@@ -339,9 +339,13 @@ else:
         Discriminator(table_shape),
     ]
     Axes = Annotated[dict[str, _Axis], WrapValidator(_if_table)]
-    _Bound = Annotated[_List | Annotated[Range, Tag("spaced")] | _Other, Discriminator(_spaced_or_other)]
+    _Bound = Annotated[
+        _List | Annotated[Range, Tag("spaced")] | Annotated[dict[str, _List], Tag("linked")] | _Other,
+        Discriminator(table_shape),
+    ]
     Bounds = Annotated[
         dict[str, _Bound],
+        WrapValidator(_if_table),
         BeforeValidator(_check_bounds),
         Field(examples=[{"damper.gap": {"from": "0.1 mm", "to": "2 mm"}}]),
     ]

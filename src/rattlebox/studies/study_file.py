@@ -178,7 +178,7 @@ _NESTED = {
     "axes": _flat_axes,
     "levels": _flat_axes,
     "starts": _flat_axes,
-    "parameters": _flat_table,
+    "parameters": _flat_axes,
     "bounds": _flat_table,
     "design": _flat_inside("ranges"),
     "replicas": _flat_inside("reach"),

@@ -13,7 +13,9 @@ import pytest
 import rattlebox as rb
 from rattlebox.model.errors import Hint
 
-PUBLIC = {name for name in rb.__all__ if isinstance(getattr(rb, name), type) and issubclass(getattr(rb, name), Exception)}
+PUBLIC = {
+    name for name in rb.__all__ if isinstance(getattr(rb, name), type) and issubclass(getattr(rb, name), Exception)
+}
 
 
 def all_errors() -> list[type[rb.RattleboxError]]:

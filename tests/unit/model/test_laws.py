@@ -210,10 +210,14 @@ def test_a_power_law_of_any_documented_exponent(exponent: float) -> None:
 def test_limits_of_a_power_law_are_those_of_its_force() -> None:
     """Coefficients are limited by the force at 1 um; the number that the message advises is accepted."""
     largest = rb.PowerLaw(stiffness=1e48, exponent=3, damping=0.0)
-    with pytest.raises(rb.CaseError, match="more than 1e\\+30 N at an overlap of 1 um\n  try: stiffness = 1e\\+48 or less"):
+    with pytest.raises(
+        rb.CaseError, match="more than 1e\\+30 N at an overlap of 1 um\n  try: stiffness = 1e\\+48 or less"
+    ):
         rb.PowerLaw(stiffness=1.01 * largest.stiffness, exponent=3, damping=0.0)
     assert rb.PowerLaw(damping=1e42, damping_exponent=2).damping == 1e42
-    with pytest.raises(rb.CaseError, match="damping = 1.1e\\+42\n  with the exponent 2 this is more than 1e\\+30 N s/m"):
+    with pytest.raises(
+        rb.CaseError, match="damping = 1.1e\\+42\n  with the exponent 2 this is more than 1e\\+30 N s/m"
+    ):
         rb.PowerLaw(damping=1.1e42, damping_exponent=2)
     with pytest.raises(rb.CaseError, match="finite"):
         rb.PowerLaw(stiffness=math.inf, exponent=3, damping=0.0)

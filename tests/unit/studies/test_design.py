@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import re
 import runpy
 import signal
 import sys
 import time
+import tomllib
+import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 import xarray as xr
+from support.command import rattlebox
 
 import rattlebox as rb
+from rattlebox.report.kinds.design import KIND
+from rattlebox.results.quantities import quantity
 from rattlebox.studies.design.trial_store import count_trials
 from rattlebox.studies.runner import Stopped
+from rattlebox.studies.study_file import study_from_toml
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "design.py"
 GAP, RADIUS = "damper.gap", "damper.ball.radius"
@@ -123,10 +131,101 @@ def test_mass_limit_is_applied() -> None:
 
 def test_trials_with_missing_values_are_not_feasible() -> None:
     """A trial with runs that never settle is not feasible and has the share of such runs."""
-    result = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
+    with pytest.warns(UserWarning, match="no trial is feasible"):
+        result = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
     assert not result.feasible.any()
     assert (result.missing == 1).all()
     assert result.sizes["front"] == 0
+
+
+@pytest.mark.parametrize("frequency", [10.066, 51.3, 137.77])
+def test_a_design_by_decay_at_any_frequency(frequency: float) -> None:
+    """Each trial has a damping ratio at frequencies of machines; all tests had 10 or 50 Hz, where samples meet the end."""
+    structure = rb.SDOF(mass="20 kg", frequency=frequency, damping_ratio=0.008)
+    case = struck(structure=structure, load=None, duration=40.4 / frequency)
+    options: dict[str, Any] = {"amplitudes": ["0.7 mm", "1.4 mm"], "packings": 2, "progress": False}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = rb.design(case, {GAP: ["0.9 mm", "1.3 mm"]}, "damping_ratio", **options)
+    assert result.feasible.all()
+    assert (result.damping_ratio > 0.01).all()
+
+
+def test_a_search_without_a_feasible_trial_says_why(tmp_path: Path) -> None:
+    """The warning counts the reasons; before, only the variable `reason` had them, which no test of a search looked at."""
+    case = struck(load=None, duration="0.9 s")
+    with pytest.warns(UserWarning, match=r"no trial is feasible.*\(2 of 2: some decays do not pass all amplitudes"):
+        rb.design(case, {GAP: ["0.5 mm", "1 mm"]}, "damping_ratio", amplitudes=["0.2 mm", "2 mm"], progress=False)
+    case = struck(duration="0.5 s")
+    heavy = {"damper.ball.mass": ["0.1 kg", "3 kg", "4 kg"]}
+    with pytest.warns(UserWarning, match=r"2 of 3: heavier than 1 kg; 1 of 3: no settling_time in some runs"):
+        result = rb.design(case, heavy, max_added_mass=1.0, store=tmp_path / "out.zarr", progress=False)
+    assert result.attrs["warnings"] == rb.open_study(tmp_path / "out.zarr").attrs["warnings"]
+    shown = rattlebox("show", tmp_path / "out.zarr")
+    assert shown.stdout.count("no trial is feasible") == 1
+    rb.write_report(result, tmp_path / "report.html")
+    assert (tmp_path / "report.html").read_text(encoding="utf-8").count("no trial is feasible") == 1
+
+
+MATERIALS, RESTITUTIONS = ["steel", "brass", "steel"], [0.5, 0.6, 0.7]
+
+
+@pytest.mark.parametrize(
+    "together",
+    [
+        {("damper.ball.material", "damper.contact.restitution"): (MATERIALS, RESTITUTIONS)},
+        {"ball": {"damper.ball.material": MATERIALS, "damper.contact.restitution": RESTITUTIONS}},
+    ],
+    ids=["paths", "name"],
+)
+def test_parameters_that_vary_together(together: Any) -> None:
+    """Trials have the rows of linked lists, as a sweep has them; only the sweep had been tried with them."""
+    result = rb.design(struck(), together, "impact_share", progress=False)
+    assert result["damper.ball.material"].values.tolist() == MATERIALS
+    assert result["damper.contact.restitution"].values.tolist() == RESTITUTIONS
+    same = rb.sweep(struck(), together, "impact_share", progress=False)
+    np.testing.assert_array_equal(result.impact_share, same.impact_share)
+    best = rb.Case.from_toml(result.case.item(0))
+    assert best.dampers[0].contact.restitution.e == RESTITUTIONS[int(result.front[0])]
+    both = rb.design(struck(), {**together, GAP: ("0.5 mm", "2 mm")}, "impact_share", trials=6, progress=False)
+    rows = zip(both["damper.ball.material"].values, both["damper.contact.restitution"].values, strict=True)
+    assert set(rows) <= set(zip(MATERIALS, RESTITUTIONS, strict=True))
+    assert len(rb.plot_design(both).axes) == 4
+
+
+def test_the_report_repeats_parameters_that_vary_together(tmp_path: Path) -> None:
+    """The study file in a report starts the same trials."""
+    together = {("damper.ball.material", "damper.contact.restitution"): (MATERIALS, RESTITUTIONS)}
+    result = rb.design(struck(), together, "impact_share", progress=False)
+    call = KIND.call(result)
+    again = rb.design(struck(), call.arguments["parameters"], "impact_share", progress=False)
+    np.testing.assert_array_equal(again.impact_share, result.impact_share)
+    file = {"case": tomllib.loads(struck().to_toml()), "kind": "design", "objective": "impact_share"}
+    study = study_from_toml(tomli_w.dumps({**file, "parameters": call.arguments["parameters"]}))
+    np.testing.assert_array_equal(study.run(progress=False).impact_share, result.impact_share)
+
+
+def test_show_lists_the_trials_of_an_unfinished_design(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stopped design shows its trials with units and reasons; before, it showed their number only."""
+    monkeypatch.setenv("COLUMNS", "160")
+    store = tmp_path / "out.zarr"
+    parameters = {GAP: ("0.2 mm", "2 mm"), "damper.ball.material": ["steel", "lead"]}
+
+    def stop(done: int, total: int) -> bool:
+        return done < 5
+
+    options: dict[str, Any] = {"max_added_mass": "1 kg", "trials": 20, "store": store}
+    with pytest.raises(Stopped):
+        rb.design(struck(), parameters, "impact_share", progress=stop, **options)
+    with (store / "progress" / "trials.journal").open("ab") as file:
+        file.write(b'{"op_code":6,"half')  # as a process leaves it that is killed
+    shown = rattlebox("show", store).stdout
+    finished = rb.design(struck(), parameters, "impact_share", progress=False, **options)
+    assert "5 trials" in shown and "not finished" in shown
+    for trial in range(5):
+        (row,) = re.findall(rf"^ +{trial} +(\S+ mm) +(\S+) ", shown, re.MULTILINE)
+        assert row == (quantity(float(finished[GAP][trial]), "m"), str(finished["damper.ball.material"].values[trial]))
+    assert "heavier than 1 kg" in shown
 
 
 def test_choices_and_misfits() -> None:
@@ -265,6 +364,12 @@ def test_open_study_returns_the_result(tmp_path: Path) -> None:
         ({GAP: ("1 mm", "1 kg")}, {}, "a length"),
         ({GAP: (1e-4, 1e-3, 1e-2)}, {}, "a pair"),
         ({GAP: 1e-3}, {}, "a list is needed"),
+        ({(GAP, RADIUS): (["1 mm"], ["9 mm", "8 mm"])}, {}, "same number of values"),
+        ({(GAP, RADIUS): (["1 mm"],)}, {}, "number of lists"),
+        ({(GAP, RADIUS): (("1 mm", "2 mm"), ("9 mm", "8 mm"))}, {}, "bounds cannot vary together"),
+        ({(GAP, RADIUS): (["1 mm"], ["9 mm"]), GAP: ["2 mm"]}, {}, "varies twice"),
+        ({(GAP, "damper.start"): (["1 mm"], ["0.1 mm"])}, {}, "fractions of the gap"),
+        ({3: ["1 mm"]}, {}, "3 is not a path"),
         ({"damper.start": ("0.1 mm", "0.2 mm")}, {}, "fractions of the gap"),
         ({"damper.ball.material": ("steel", "brass")}, {}, "a list to choose from"),
         ({"damper.ball.material": ["steel", "bras"]}, {}, "brass"),
@@ -325,7 +430,8 @@ def test_plot(objective: Any, size: Any, tmp_path: Path) -> None:
 
 def test_plot_shows_why_a_trial_is_not_feasible() -> None:
     """The legend distinguishes trials without a value and too heavy ones, and ticks of trials are whole numbers."""
-    nothing = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
+    with pytest.warns(UserWarning, match="no trial is feasible"):
+        nothing = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
     limited = searched(objective="impact_share")
     for result, label in ((nothing, "no value (3)"), (limited, f"too heavy ({int((~limited.feasible).sum())})")):
         axes = rb.plot_design(result).axes[0]

@@ -63,7 +63,7 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
     if "stopped" in study.attrs:
         yield f"The search {study.attrs['stopped']}."
     if not study.front.size:
-        yield f"None of {counted(study.trial.size, 'trial')} is feasible: each lacks a value or exceeds a limit."
+        yield f"None of {counted(study.trial.size, 'trial')} is feasible: each lacks a value or exceeds a limit (see Warnings)."
         return
     if len(goals) == 1:
         best = study.sel(trial=int(study.front[0]))
@@ -172,12 +172,16 @@ def _call(study: xr.Dataset) -> Call | None:
     except (KeyError, TypeError, ValueError):
         return None
     # A pair in a list would be a choice of two values: bounds have a table of their own in study files.
-    bounds = {
-        path: {"from": each["bounds"][0], "to": each["bounds"][1], **({"spacing": "log"} if each["log"] else {})}
-        if each["bounds"]
-        else each["choices"]
-        for path, each in parameters.items()
-    }
+    bounds: dict[str, Any] = {}
+    for path, each in parameters.items():
+        if each["bounds"]:
+            low, high = each["bounds"]
+            bounds[path] = {"from": low, "to": high, **({"spacing": "log"} if each["log"] else {})}
+        elif "together" in each:
+            # A path is no name of parameters that vary together in a study file.
+            bounds.setdefault(each["together"].replace(".", "_"), {})[path] = each["choices"]
+        else:
+            bounds[path] = each["choices"]
     varied = [path for path, column in trial["columns"].items() if column["varies_along"] not in ([], ["packing"])]
     remarks = (f"levels and starts: add those of {joined(varied)}",) if varied else ()
     if not all(name in MEASURES or name in (ADDED_MASS, DAMPING_RATIO) for name in objective):

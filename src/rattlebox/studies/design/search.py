@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -59,6 +60,8 @@ _SAMPLED = 16
 """Number of designs from which the cost of all trials is predicted."""
 _PROBED = 64
 """Number of designs of which at least one must be valid."""
+_REASONS = 3
+"""Number of reasons that the warning about a search without a feasible trial lists."""
 _REDUCTIONS: dict[str, Any] = {"worst": np.max, "mean": np.mean, "median": np.median}
 
 
@@ -189,7 +192,7 @@ class DesignSearch:
 
     def validate(self, log: Sequence[str]) -> None:
         """Raise if the arguments are not valid for the case."""
-        paths = [variable.path for variable in self.variables]
+        paths = [path for variable in self.variables for path in variable.paths]
         for path in log:
             if path not in paths:
                 raise Hint(f"log = {path!r} is not one of the parameters", nearest(path, paths))
@@ -206,7 +209,7 @@ class DesignSearch:
         self._check_designs("no design", {})
         for variable in self.variables:
             for label in variable.choices:
-                self._check_designs(f"no design with {variable.path} = {label}", {variable.path: label})
+                self._check_designs(f"no design with {variable.name} = {label}", {variable.name: label})
 
     def _check_designs(self, none: str, chosen: Values) -> None:
         """Raise if none of some designs with some chosen values is valid; `none` names them in the message."""
@@ -228,7 +231,7 @@ class DesignSearch:
         curve = {} if self.curve is None else {"curve": vars(self.curve)}
         return {
             **describe_case(self.case, self.grid.columns),
-            "parameters": {variable.path: variable.describe() for variable in self.variables},
+            "parameters": {path: about for each in self.variables for path, about in each.describe().items()},
             "objective": {each.name: "max" if each.maximise else "min" for each in self.objectives},
             **({"functions": functions} if functions else {}),
             "trial": self.grid.describe(),
@@ -237,6 +240,13 @@ class DesignSearch:
             "robust": self.robust,
             "max_added_mass": self.limit,
             "options": self.options,
+        }
+
+    def layout(self) -> dict[str, Any]:
+        """Return in JSON types what `open_trials` needs: the variables, and the attributes of the objectives."""
+        return {
+            "variables": [each.to_json() for each in self.variables],
+            "objectives": {each.name: _with_goal(each) for each in self.objectives},
         }
 
     # ---- designs
@@ -248,8 +258,8 @@ class DesignSearch:
             return None
         if math.prod(len(each.choices) for each in self.variables) > MOST_COMBINATIONS:
             return None
-        paths = [each.path for each in self.variables]
-        return [dict(zip(paths, labels, strict=True)) for labels in product(*(v.choices for v in self.variables))]
+        names = [each.name for each in self.variables]
+        return [dict(zip(names, labels, strict=True)) for labels in product(*(v.choices for v in self.variables))]
 
     def sample(self, count: int) -> list[Values]:
         """Return random designs, or some or all of the combinations."""
@@ -257,7 +267,7 @@ class DesignSearch:
             step = max(1, math.ceil(len(self.combinations) / count))
             return self.combinations[::step]
         generator = np.random.default_rng(0)
-        return [{each.path: each.sample(generator) for each in self.variables} for _ in range(count)]
+        return [{each.name: each.sample(generator) for each in self.variables} for _ in range(count)]
 
     def case_of(self, values: Values) -> Case:
         """Return the case of a design.
@@ -267,7 +277,8 @@ class DesignSearch:
         CaseError
             If the values are not valid together, or with the levels.
         """
-        case = replaced(self.case, {each.path: each.in_case(values[each.path]) for each in self.variables})
+        changes = [each.in_case(values[each.name]) for each in self.variables]
+        case = replaced(self.case, {path: value for change in changes for path, value in change.items()})
         self.grid_of(case)  # raises if a level is not valid for the case
         return case
 
@@ -452,14 +463,14 @@ class DesignSearch:
         }
         found = xr.Dataset(attrs={"title": "Rattlebox design", **about})
         for variable in self.variables:
-            column = [trial.params[variable.path] for trial in trials]
-            found = found.assign_coords({variable.path: ("trial", column, variable.attrs)})
+            own = variable.coordinates([trial.params[variable.name] for trial in trials])
+            found = found.assign_coords({path: ("trial", *column) for path, column in own.items()})
         values = _rows([trial.values for trial in trials], len(self.objectives))
         halves = _rows([trial.user_attrs["intervals"] for trial in trials], len(self.computed))
         packings = _rows([trial.user_attrs["packings"] for trial in trials], len(self.computed), self.count)
         for number, each in enumerate(self.objectives):
             attrs = _attributes(each)
-            found[each.name] = ("trial", values[:, number], attrs | {"goal": "max" if each.maximise else "min"})
+            found[each.name] = ("trial", values[:, number], _with_goal(each))
             if each.name == ADDED_MASS:
                 continue
             own = self.computed.index(each)
@@ -487,6 +498,8 @@ class DesignSearch:
         found["warnings"] = ("trial", exceeded, flags)
         reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)
         found["reason"] = ("trial", reasons, {"long_name": "why a trial is not feasible"})
+        if not feasible.any():
+            found.attrs["warnings"] = [_none_feasible([str(reason) for reason in reasons])]
         front = pareto_front(values * np.array([each.sign for each in self.objectives]), feasible)
         if notes := [_exceeded(number, exceeded[number]) for number in front if exceeded[number]]:
             found.attrs["flagged"] = "; ".join(notes)
@@ -515,6 +528,16 @@ def _reason(tables: dict[str, tuple[Vector, Vector | None]]) -> str:
     return f"no {' and no '.join(names)} in some runs" if names else "some runs did not finish"
 
 
+def _none_feasible(reasons: Sequence[str]) -> str:
+    """Return a warning about a search without a feasible trial, with the most frequent reasons."""
+    counts = Counter(reason.replace("\n", " ") for reason in reasons).most_common()
+    shown = "; ".join(
+        f"{count:,} of {len(reasons):,}: {' '.join(reason.split())}" for reason, count in counts[:_REASONS]
+    )
+    more = f"; and {len(counts) - _REASONS} more reasons" if len(counts) > _REASONS else ""
+    return f"warning: no trial is feasible, and the result has no design ({shown}{more})"
+
+
 def _exceeded(trial: int, warnings: int) -> str:
     """Return the validity limits that a trial exceeds."""
     return f"trial {trial}: {', '.join(text for bit, text in enumerate(FLAGS.values()) if warnings & 2**bit)}"
@@ -526,6 +549,11 @@ def _rows(rows: Sequence[Any], *shape: int) -> Vector:
     return np.array([nothing if row is None else np.asarray(row, float).reshape(shape) for row in rows]).reshape(
         len(rows), *shape
     )
+
+
+def _with_goal(objective: Objective) -> dict[str, str]:
+    """Return the attributes of an objective in the result."""
+    return _attributes(objective) | {"goal": "max" if objective.maximise else "min"}
 
 
 def _attributes(objective: Objective) -> dict[str, str]:

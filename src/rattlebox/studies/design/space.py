@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint
-from rattlebox.studies.axes import materials_in
+from rattlebox.studies.axes import materials_in, parse_axes
 from rattlebox.studies.grid import labels
 from rattlebox.studies.parameter import Parameter
+from rattlebox.studies.parameter import Values as Column
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -27,89 +28,109 @@ DAMPING_RATIO = "damping_ratio"
 
 @dataclass(frozen=True)
 class DesignVariable:
-    """A parameter of a design search: numbers between two bounds, or one of several choices.
+    """A variable of a design search: numbers between two bounds, or one of several choices.
 
-    Values are those that Optuna handles: numbers, and labels of choices.
+    Values are those that Optuna handles: numbers, and labels of choices. A choice sets one parameter, or several that vary
+    together.
 
     Attributes
     ----------
-    path
-        Path of the parameter.
+    name
+        Path of the parameter, or name of the parameters that vary together.
     bounds
         Smallest and largest value in SI units; None for choices.
     choices
-        Values by label; empty for bounds.
+        Values by path, by label; empty for bounds.
+    shown
+        Values of the coordinates of the result by path, by label; empty for bounds.
     log
         Whether the search is uniform in the logarithm.
     whole
         Whether values between the bounds are whole numbers.
     attrs
-        Attributes of the coordinate in the result.
+        Attributes of the coordinates in the result, by path.
     """
 
-    path: str
+    name: str
     bounds: tuple[float, float] | None
-    choices: dict[Any, Any]
+    choices: dict[Any, dict[str, Any]]
+    shown: dict[Any, dict[str, Any]]
     log: bool
     whole: bool
-    attrs: dict[str, str]
+    attrs: dict[str, dict[str, str]]
+
+    @property
+    def paths(self) -> list[str]:
+        """Paths of the parameters."""
+        return list(self.attrs)
 
     @classmethod
-    def read(cls, case: Case, path: Any, values: Any, log: bool) -> DesignVariable:
-        """Read a pair of bounds, or a list of choices.
+    def read(cls, case: Case, key: Any, values: Any, log: Sequence[str]) -> DesignVariable:
+        """Read a pair of bounds, a list of choices, or lists of parameters that vary together.
 
         Parameters
         ----------
         case
-            Case with the parameter.
-        path
-            Path of the parameter.
+            Case with the parameters.
+        key
+            Path of the parameter, or several paths or a name of parameters that vary together (see `rb.sweep`).
         values
-            A tuple of two values, or a list to choose from.
+            A tuple of two values, a list to choose from, or several lists.
         log
-            Whether the search is uniform in the logarithm.
+            Paths of parameters whose search is uniform in the logarithm.
 
         Raises
         ------
         CaseError
-            If a value is not valid for the parameter.
+            If a value is not valid for its parameter.
         """
-        parameter = Parameter(case, path, "parameters", materials_in(case))
+        if isinstance(key, tuple) or isinstance(values, Mapping):
+            lists = values.values() if isinstance(values, Mapping) else values
+            if any(isinstance(each, tuple) for each in lists):
+                raise Hint(f"parameters: {key}: bounds cannot vary together", "lists in square brackets to choose from")
+            (direction,) = parse_axes(case, {key: values}, source="parameters").directions
+            return cls._of_choices(direction.name, direction.values, together=True)
+        parameter = Parameter(case, key, "parameters", materials_in(case))
         is_range = isinstance(values, tuple)
         if is_range and len(values) != 2:
             raise parameter.wrong("bounds must be a pair (smallest, largest)", "a list to choose from", None, values)
         column = parameter.values(list(values) if is_range else values)
-        if parameter.is_start and column.unit == "m":
-            raise parameter.wrong(
-                "a start position must not be a length",
-                "fractions of the gap, -1 to 1",
-                None,
-                values,
-            )
-        attrs = {"long_name": parameter.path.replace(".", " ").replace("_", " ")}
-        if column.unit is not None:
-            attrs["units"] = column.unit
         if not is_range:
-            array = column.array.astype(int) if parameter.is_whole else column.array
-            names = labels(array) if column.unit is None else array
-            choices = dict(zip(names.tolist(), array.tolist(), strict=True))
-            return cls(parameter.path, None, choices, False, False, attrs)
+            return cls._of_choices(parameter.path, [column], together=False)
+        _check_start(column)
         if column.unit is None:
             raise parameter.wrong("its values are not numbers and have no bounds", "a list to choose from")
         low, high = column.array.tolist()
-        if not low < high or (log and low <= 0):
-            least = " and greater than zero" if log else ""
+        is_log = parameter.path in log
+        if not low < high or (is_log and low <= 0):
+            least = " and greater than zero" if is_log else ""
             raise parameter.wrong(f"the first bound must be smaller than the second{least}", "", None, values)
-        return cls(parameter.path, (low, high), {}, log, parameter.is_whole, attrs)
+        return cls(parameter.path, (low, high), {}, {}, is_log, parameter.is_whole, _attributes([column]))
+
+    @classmethod
+    def _of_choices(cls, name: str, columns: Sequence[Column], *, together: bool) -> DesignVariable:
+        """Return the variable of choices, one for each row of the columns."""
+        paths, values, texts = [column.parameter.path for column in columns], [], []
+        for column in columns:
+            _check_start(column)
+            array = column.array.astype(int) if column.parameter.is_whole else column.array
+            values.append(array.tolist())
+            texts.append((labels(array) if column.unit is None else array).tolist())
+        choices, shown = {}, {}
+        for row, text in zip(zip(*values, strict=True), zip(*texts, strict=True), strict=True):
+            label = ", ".join(map(str, text)) if together else text[0]
+            choices[label] = dict(zip(paths, row, strict=True))
+            shown[label] = dict(zip(paths, text, strict=True))
+        return cls(name, None, choices, shown, False, False, _attributes(columns))
 
     def suggest(self, trial: Any) -> None:
         """Let Optuna suggest a value for a trial."""
         if not self.bounds:
-            trial.suggest_categorical(self.path, list(self.choices))
+            trial.suggest_categorical(self.name, list(self.choices))
         elif self.whole:
-            trial.suggest_int(self.path, *map(int, self.bounds), log=self.log)
+            trial.suggest_int(self.name, *map(int, self.bounds), log=self.log)
         else:
-            trial.suggest_float(self.path, *self.bounds, log=self.log)
+            trial.suggest_float(self.name, *self.bounds, log=self.log)
 
     def sample(self, generator: np.random.Generator) -> Any:
         """Return a random value."""
@@ -121,14 +142,53 @@ class DesignVariable:
         share = generator.random()
         return low * (high / low) ** share if self.log else low + (high - low) * share
 
-    def in_case(self, value: Any) -> Any:
-        """Return a value as a case takes it."""
-        return value if self.bounds else self.choices[value]
+    def in_case(self, value: Any) -> dict[str, Any]:
+        """Return the values of a case by path."""
+        return {self.name: value} if self.bounds else self.choices[value]
 
-    def describe(self) -> dict[str, Any]:
-        """Return a description in JSON types."""
-        choices = [name if isinstance(name, (int, float)) else str(name) for name in self.choices]
-        return {"bounds": self.bounds, "choices": choices, "log": self.log}
+    def coordinates(self, values: Sequence[Any]) -> dict[str, tuple[list[Any], dict[str, str]]]:
+        """Return the values of each parameter in several trials, and the attributes of the coordinate, by path."""
+        if self.bounds:
+            return {self.name: (list(values), self.attrs[self.name])}
+        return {path: ([self.shown[value][path] for value in values], attrs) for path, attrs in self.attrs.items()}
+
+    def to_json(self) -> dict[str, Any]:
+        """Return in JSON types what `coordinates` needs."""
+        shown = [[label, row] for label, row in self.shown.items()]
+        return {"name": self.name, "bounds": self.bounds, "shown": shown, "attrs": self.attrs}
+
+    @classmethod
+    def from_json(cls, about: Mapping[str, Any]) -> DesignVariable:
+        """Return a variable that has coordinates, from the result of `to_json`."""
+        return cls(about["name"], about["bounds"], {}, dict(about["shown"]), False, False, about["attrs"])
+
+    def describe(self) -> dict[str, dict[str, Any]]:
+        """Return a description of each parameter in JSON types, by path."""
+        together = {"together": self.name} if len(self.attrs) > 1 else {}
+
+        def plain(value: Any) -> Any:
+            return value if isinstance(value, (int, float)) else str(value)
+
+        return {
+            path: {"bounds": self.bounds, "choices": [plain(row[path]) for row in self.shown.values()], "log": self.log}
+            | together
+            for path in self.attrs
+        }
+
+
+def _attributes(columns: Sequence[Column]) -> dict[str, dict[str, str]]:
+    """Return the attributes of coordinates by path."""
+    return {
+        column.parameter.path: {"long_name": column.parameter.path.replace(".", " ").replace("_", " ")}
+        | ({} if column.unit is None else {"units": column.unit})
+        for column in columns
+    }
+
+
+def _check_start(column: Column) -> None:
+    """Raise if start positions are lengths, whose limits depend on the gap of each trial."""
+    if column.parameter.is_start and column.unit == "m":
+        raise column.parameter.wrong("a start position must not be a length", "fractions of the gap, -1 to 1")
 
 
 @dataclass(frozen=True)

@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox._util.exceptions import StoreError
 from rattlebox._util.owned_folder import read_marker
 from rattlebox.studies.store import JOURNAL, exclusive_writer
+
+from .space import DesignVariable
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_NAME = "rattlebox"
+"""Name of the study in its journal."""
+LAYOUT = "layout"
+"""Attribute with the variables and objectives of a design, in the study of its trials."""
 
 
 @contextmanager
@@ -88,6 +99,44 @@ def count_trials(path: str | os.PathLike[str]) -> int | None:
     return len(re.findall(r'^{"op_code":6,.*"state":[12],', journal.read_text(), re.MULTILINE))  # complete or pruned
 
 
+def open_trials(path: str | os.PathLike[str]) -> xr.Dataset | None:
+    """Return the finished trials of a design that is not finished; None without Optuna.
+
+    Parameters
+    ----------
+    path
+        Folder of the design.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `trial`: the parameters, the objectives, and the `reason` why a trial is not feasible.
+    """
+    import xarray as xr
+
+    try:
+        import optuna
+    except ImportError:
+        return None
+    journal = Path(path) / "progress" / JOURNAL
+    with quiet(optuna):
+        backend = optuna.storages.journal.JournalFileBackend(str(journal), lock_obj=_NoLock())
+        study = optuna.load_study(study_name=_NAME, storage=optuna.storages.JournalStorage(backend))
+    trials = finished_trials(optuna, study)
+    layout = study.user_attrs.get(LAYOUT)
+    if layout is None or not trials:
+        return None
+    found = xr.Dataset(coords={"trial": np.arange(len(trials))})
+    for about in layout["variables"]:
+        variable = DesignVariable.from_json(about)
+        own = variable.coordinates([trial.params[variable.name] for trial in trials])
+        found = found.assign_coords({name: ("trial", *column) for name, column in own.items()})
+    for number, (name, attrs) in enumerate(layout["objectives"].items()):
+        found[name] = ("trial", [math.nan if trial.values is None else trial.values[number] for trial in trials], attrs)
+    reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)
+    return found.assign(reason=("trial", reasons))
+
+
 def load_study(optuna: Any, storage: Any, directions: Sequence[str], description: Mapping[str, Any], store: Any) -> Any:
     """Return an Optuna study with the earlier trials of its storage.
 
@@ -112,7 +161,7 @@ def load_study(optuna: Any, storage: Any, directions: Sequence[str], description
     about = json.loads(json.dumps(description))
     study = optuna.create_study(
         storage=storage,
-        study_name="rattlebox",
+        study_name=_NAME,
         load_if_exists=True,
         directions=list(directions),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import time
+import warnings
 from dataclasses import KW_ONLY
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -20,7 +21,7 @@ from rattlebox.studies.budget import duration
 from rattlebox.studies.damping_curve import Way, read_amplitudes
 from rattlebox.studies.design.search import Curve, DesignSearch, Robust
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
-from rattlebox.studies.design.trial_store import load_study, quiet, trial_storage
+from rattlebox.studies.design.trial_store import LAYOUT, load_study, quiet, trial_storage
 from rattlebox.studies.design.trials import Trials
 from rattlebox.studies.robust import packing_axis, robust_axes
 from rattlebox.studies.runner import Stopped
@@ -64,7 +65,8 @@ class Design(Study):
         Case with the values that do not vary, with impact dampers or particle dampers.
     parameters
         By path: a pair (smallest, largest) in round brackets, {"damper.gap": ("0.1 mm", "2 mm")}; or a list to choose from,
-        {"damper.particles.diameter": ["4 mm", "6 mm"], "damper.number": [1, 2, 4]}.
+        {"damper.particles.diameter": ["4 mm", "6 mm"], "damper.number": [1, 2, 4]}; or a tuple of paths with a list for
+        each, or a name with a mapping of paths to lists, for parameters that vary together, as for `rb.sweep`.
     objective
         Quantity to minimise: name of a measure (`rb.MEASURES`), "added_mass" (of all balls or particles), or a function of a
         Run. {"reduced_loss": "max"} maximises a measure. "damping_ratio" is that of a mode with its dampers over the
@@ -109,7 +111,8 @@ class Design(Study):
         `packing`, its value for each one (`..._packings`); `added_mass` [kg]; `missing`, the share of runs without a value
         (because they did not finish or never settled); `feasible`, whether no value is missing and the mass is within
         its limit, otherwise the `reason`; `warnings`, the exceeded validity limits of all runs (`flag_meanings`). Over
-        `front`: the numbers of the Pareto-optimal trials (of the best trial for one objective) and their case files.
+        `front`: the numbers of the Pareto-optimal trials (of the best trial for one objective) and their case files; if no
+        trial is feasible it is empty, and a warning, also in the attribute `warnings`, lists the reasons.
         Attributes: `predicted_wall_time` and `predicted_cpu_time` [s] of all trials before the first one, `wall_time`
         and, on threads, `cpu_time` [s] that they took; `flagged`, if a trial on the front exceeds validity limits; and
         `stopped`, if the budget ended the search.
@@ -191,7 +194,7 @@ class Design(Study):
         count, packings = self._packings(bool(measured))
         return DesignSearch(
             case=self.case,
-            variables=[DesignVariable.read(self.case, path, each, path in log) for path, each in parameters.items()],
+            variables=[DesignVariable.read(self.case, key, each, log) for key, each in parameters.items()],
             objectives=objectives,
             levels=parse_axes(self.case, levels, source="levels") if levels else None,
             packings=packings,
@@ -232,6 +235,7 @@ class Design(Study):
         about = {"version": __version__, "seed": self.seed, **search.describe()}
         with quiet(optuna), trial_storage(optuna, store) as storage:
             study = load_study(optuna, storage, search.directions, about, store)
+            study.set_user_attr(LAYOUT, search.layout())
             trials = Trials(optuna, study, search, self.seed, self.trials)
             try:
                 with deadline(end):
@@ -246,6 +250,8 @@ class Design(Study):
                     raise _stopped(trials, store) from None
                 stopped = self._out_of_time(trials)
             found = search.result(trials.finished)
+        for line in found.attrs.get("warnings", ()):
+            warnings.warn(line.removeprefix("warning: "), stacklevel=4)
         return save_result(
             found.assign_attrs({"version": __version__, "seed": self.seed} | trials.times | stopped), self.kind, store
         )
