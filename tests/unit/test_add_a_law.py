@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import math
 import os
@@ -18,6 +19,8 @@ import ninja
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+
+from .test_docs import section
 
 ROOT = Path(__file__).parents[2]
 COMPILER = shutil.which(os.environ.get("CXX", "c++")) or shutil.which("g++") or shutil.which("clang++")
@@ -55,6 +58,8 @@ def carry_out(folder: Path) -> None:
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a copy of the sources to which the page's steps were applied."""
+    if any((ROOT / file).exists() for file, _, language, _ in steps() if language == "cpp"):
+        pytest.skip("this tree already has the laws of the page")
     folder = tmp_path_factory.mktemp("copy")
     for name in ("core", "src"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
@@ -70,6 +75,15 @@ def compiled(folder: Path, program: str, *options: str) -> subprocess.CompletedP
     (folder / "main.cpp").write_text(program, encoding="utf-8")
     command = [str(COMPILER), *FLAGS, "-I", str(folder / "core"), "main.cpp", *options]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("block", [block for _, _, language, block in steps() if language == "python"])
+def test_the_classes_of_the_page_are_documented_as_laws_must_be(block: str) -> None:
+    """A law by the page has the notes and the source that other tests demand; only its numbers had been tested."""
+    (law,) = [node for node in ast.parse(block).body if isinstance(node, ast.ClassDef)]
+    text = ast.get_docstring(law) or ""
+    assert re.search(r"\S [=+<] \S", section(text, "Notes"))
+    assert re.search(r"doi:10\.\d{4,}/\S|ISBN \d", section(text, "References"))
 
 
 @needs_compiler

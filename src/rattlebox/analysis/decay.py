@@ -24,8 +24,8 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles; the last step may be shorter, and its sample is
-        then not used.
+        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles; the last step may be shorter, and its
+        sample is then not used.
     values : (N,) array_like
         Oscillation about zero with one dominant frequency; subtract the rest position first. A DataArray passes its
         unit on.
@@ -76,8 +76,8 @@ def damping_ratio(
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles; the last step may be shorter, and its sample is
-        then not used.
+        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles; the last step may be shorter, and its
+        sample is then not used.
     values : (N,) array_like
         Free decay about zero of one mode. The unit of a DataArray is used.
     method

@@ -290,8 +290,10 @@ def _no_impacts(damper: ImpactDamper, name: str, offsets: NDArray[np.float64]) -
     half = 0.5 * damper.clearance
     gaps = np.column_stack([half + offsets[:, 0], np.diff(offsets, axis=1), half - offsets[:, -1]])
     if gaps.min() > _CONTACT_GAP * damper.clearance:
-        moved = float(np.ptp(offsets, axis=0).max())
-        yield _no_contact_note(f"no ball of {name}", f"gap {_length(half)}", moved)
+        yield _no_contact_note(
+            f"no ball of {name}",
+            f"smallest distance between surfaces {_length(float(gaps.min()))}, gap {_length(half)}",
+        )
 
 
 def particle_notes(
@@ -321,8 +323,10 @@ def particle_notes(
         yield from _beyond_measurement(name, _deepest_measured(damper, overlaps[index]))
         if not first_touches[index].any() and not contacts[:, index].any():
             room = float(damper.cavity.room(damper.start.position, damper.contents.radius).min())
-            moved = float(np.ptp(centre_of_mass[:, index], axis=0).max())
-            yield _no_contact_note(f"no particle of {name}", f"smallest distance to a wall {_length(room)}", moved)
+            centre = centre_of_mass[:, index]
+            moved = float(np.linalg.norm(centre - centre[0], axis=1).max())
+            distances = f"smallest distance to a wall at the start {_length(room)}, largest displacement from there"
+            yield _no_contact_note(f"no particle of {name}", f"{distances} {_length(moved)}")
 
 
 def _deepest_measured(damper: ParticleDamper, ratio: float) -> Iterator[tuple[float, TabulatedNormal]]:
@@ -334,11 +338,8 @@ def _deepest_measured(damper: ParticleDamper, ratio: float) -> Iterator[tuple[fl
             yield ratio * float(min(radii.get(name, np.inf) for name in entry.names)), entry.contact
 
 
-def _no_contact_note(what: str, gap: str, moved: float) -> str:
-    return (
-        f"warning: {what} touched anything ({gap}, relative motion {_length(moved)}): check the units of lengths, "
-        "the load and the duration"
-    )
+def _no_contact_note(what: str, distances: str) -> str:
+    return f"warning: {what} touched anything ({distances}): check the units of lengths, the load and the duration"
 
 
 def _length(value: float) -> str:

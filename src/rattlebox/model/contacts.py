@@ -340,12 +340,12 @@ class PowerLaw(Contact):
                 ["stiffness"],
             )
         # The unit of a coefficient depends on its exponent: a limit of the number itself would refuse ordinary contacts.
-        for name, power, unit in (("stiffness", self.exponent, "N"), ("damping", self.damping_exponent, "N s/m")):
+        for name, exponent, unit in (("stiffness", self.exponent, "N"), ("damping", self.damping_exponent, "N s/m")):
             value = getattr(self, name)
-            if value is not None and value * _SMALL_OVERLAP**power > LARGEST:
-                largest = LARGEST / _SMALL_OVERLAP**power
+            if value is not None and value * _SMALL_OVERLAP**exponent > LARGEST:
+                largest = LARGEST / _SMALL_OVERLAP**exponent
                 raise Hint(
-                    f"with the exponent {power:g} this is more than {LARGEST:g} {unit} at an overlap of 1 um",
+                    f"with the exponent {exponent:g} this is more than {LARGEST:g} {unit} at an overlap of 1 um",
                     f"{name} = {largest:.3g} or less",
                     [name],
                 )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError, message
 
-from .synonyms import MEANT
+from .synonyms import ABSENT, MEANT
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -66,13 +66,14 @@ def nearest(name: str, known: Iterable[str], *, listed: bool = False) -> str:
     return " ".join(parts)
 
 
+def _folded(name: Any) -> str:
+    """Return a name as synonyms are written."""
+    return str(name).lower().replace("-", "_").replace(" ", "_")
+
+
 def _close(name: str, known: Sequence[str]) -> list[str]:
     """Return the known names of which a name is a synonym, or else those with a similar spelling."""
-    meant = [
-        word
-        for word in (*MEANT.get(name, ()), *MEANT.get(name.lower().replace("-", "_"), ()))
-        if word.split(".")[0] in known
-    ]
+    meant = [word for word in (*MEANT.get(name, ()), *MEANT.get(_folded(name), ())) if word.split(".")[0] in known]
     same = [word for word in known if word.lower() == name.lower()]  # Kg is closer to kg than to g.
     similar = list(dict.fromkeys(meant)) or same or difflib.get_close_matches(name, known, n=2, cutoff=0.6)
     folded = {} if similar else {word.lower(): word for word in known}
@@ -218,6 +219,28 @@ def _fields(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> set
     return set().union(*_kinds(location, source, vocabulary).values())
 
 
+def _absent(name: Any, known: set[str], vocabulary: Vocabulary) -> tuple[str, str] | None:
+    """Return that a property of particles, contacts or cavities does not exist, and what to do; None for other names."""
+    holders = [set().union(*vocabulary.get(holder, {}).values()) for holder in _DAMPER_FIELDS]
+    if not any(known <= fields for fields in holders):
+        return None
+    what, instead = ABSENT.get(_folded(name).removeprefix("wall_").removeprefix("particle_"), ("", ""))
+    return (f"there is no such property: {what}", instead) if what else None
+
+
+_DAMPER_FIELDS = (
+    "damper",
+    "dampers",
+    "particles",
+    "ball",
+    "balls",
+    "cavity",
+    "contact",
+    "friction",
+    "rolling",
+    "packing",
+)
+"""Fields that hold dampers and their parts."""
 _PLAIN = {
     "missing": "this field is needed",
     "float_type": "a number is needed",
@@ -264,7 +287,9 @@ def _complaint_and_suggestion(
         return str(raised), ""
     location = finding["loc"]
     if what == "extra_forbidden":
-        return "there is no such field here", nearest(str(location[-1]), _fields(location[:-1], source, vocabulary))
+        known = _fields(location[:-1], source, vocabulary)
+        absent = _absent(location[-1], known, vocabulary)
+        return absent or ("there is no such field here", nearest(str(location[-1]), known))
     kinds = [kind for kind in _kinds(location, source, vocabulary) if kind]
     if what in (*_TAGS, *_TABLES) and _is_table(value) and not isinstance(value, Mapping):
         return f"{type(value).__name__} does not belong here", f"one of kind {' or '.join(kinds)}" if kinds else ""
@@ -276,7 +301,8 @@ def _complaint_and_suggestion(
             return f"laws at walls have a separate field, {apart}", f"{location[-1]} = ... and {apart} = ..."
         if what == "union_tag_not_found":
             return f"'kind' is needed: {', '.join(kinds)}", f'kind = "{kinds[0]}"' if kinds else ""
-        return "there is no such kind here", nearest(str(value), kinds, listed=True)
+        absent = _absent(value, _fields(location, source, vocabulary), vocabulary)
+        return absent or ("there is no such kind here", nearest(str(value), kinds, listed=True))
     if what in _TABLES:
         kind = value if isinstance(value, str) and value in kinds else next(iter(kinds), None)
         name = place.rpartition(".")[2].partition("[")[0]

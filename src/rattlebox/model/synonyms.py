@@ -1,4 +1,4 @@
-"""Synonyms of names in other programs and books, for suggestions."""
+"""Synonyms of names in other programs and books, for suggestions, and names of what does not exist."""
 
 _OTHERS = {  # ours: others'
     # fields
@@ -76,3 +76,24 @@ MEANT: dict[str, tuple[str, ...]] = {}
 for _names, _others in _OTHERS.items():
     for _other in _others.split():
         MEANT[_other] = (*MEANT.get(_other, ()), *_names.split())
+
+_ABSENT = {  # what does not exist, and what to do instead: others' names
+    ("contacts are dry, without cohesion, adhesion or liquid", "restitution, friction and rolling"): (
+        "cohesion cohesive adhesion adhesive jkr dmt surface_energy work_of_adhesion liquid liquid_bridge capillary moisture "
+        "wet van_der_waals hamaker surface_tension cohesion_energy_density bond bonds"
+    ),
+    ("all particles are round spheres", "rolling = 0.1, a resistance in place of corners"): (
+        "shape shapes aspect_ratio sphericity roundness angularity blockiness cube cubes polyhedron polyhedra ellipsoid "
+        "superquadric clump clumps multisphere half_axes fibre fiber"
+    ),
+    ("no air or liquid is between balls, particles and walls", "remove it, and compare a lower restitution"): (
+        "drag drag_coefficient fluid air viscosity fluid_density buoyancy gas lubrication"
+    ),
+    ("cavities move without turning", "remove it, and give the base a motion in two directions"): (
+        "rotation rotating rotation_speed rotational_speed rotation_rate rotation_axis rotation_frequency angular_velocity "
+        "angular_speed rpm omega tilt spin_rate axis_of_rotation centrifugal"
+    ),
+}
+
+ABSENT: dict[str, tuple[str, str]] = {name: statement for statement, names in _ABSENT.items() for name in names.split()}
+"""What does not exist, and what to do instead, by names of fields and kinds that others use for it."""

@@ -107,7 +107,8 @@ def damping_curve(
     case
         Structure, dampers and tuned masses; `case.duration` is the length of a decay.
     amplitudes
-        Two or more rising displacement amplitudes: numbers [m], text with a unit, or `rb.geomspace`.
+        Two or more rising displacement amplitudes: numbers [m], text with a unit, or `rb.geomspace`. Accelerations, such as
+        "2 g", are divided by (2 pi f)^2 with the frequency f of the mode.
     way
         "decay": decay of the envelope in free vibration, which starts with the velocity of the mode. "energy": energy lost
         in the same decay over the energy of the mode. "shaking": energy lost per cycle in steady motion, where each
@@ -228,8 +229,8 @@ def _prepared(
     """Return the amplitudes, the mode and the case with each random start."""
     if way not in WAYS:
         raise Hint(f"way = {way!r} is not a method of this function", nearest(str(way), WAYS))
-    count = whole_number(packings, "packings", 1)
-    return read_amplitudes(amplitudes), mode_of(case, mode, point), random_starts(case, count)
+    count, about = whole_number(packings, "packings", 1), mode_of(case, mode, point)
+    return read_amplitudes(amplitudes, about.omega), about, random_starts(case, count)
 
 
 @dataclass
@@ -247,25 +248,40 @@ class Remarks:
             raise Hint(f"the run of start {number + 1} failed: {row.failure}", "rb.simulate(case), to see where")
 
 
-def read_amplitudes(amplitudes: Sequence[Any] | Spaced) -> FloatArray:
+def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = None) -> FloatArray:
     """Return the amplitudes of a damping curve [m].
 
     Parameters
     ----------
     amplitudes
         See `damping_curve`.
+    omega
+        Angular frequency at which accelerations are converted [rad/s]; None if only displacements are allowed.
 
     Raises
     ------
     CaseError
         If there are fewer than two, or they do not rise.
     """
+
+    def displacement(amplitude: Any) -> float:
+        number, unit = parse(amplitude, ("m", "m/s^2"))
+        if unit != "m/s^2":
+            return number
+        if omega is None:
+            raise Hint(
+                f"{amplitude!r} is an acceleration, but the frequency of a design may vary: displacements (m) are needed",
+                f"a / (2 pi f)^2, such as {quantity(number / (2 * math.pi * 50) ** 2, 'm', 3)!r} at 50 Hz",
+                ["amplitudes"],
+            )
+        return number / omega**2
+
     if isinstance(amplitudes, Spaced):
-        first, last = (parse(end, ("m",))[0] for end in (amplitudes.start, amplitudes.stop))
+        first, last = (displacement(end) for end in (amplitudes.start, amplitudes.stop))
         return read_amplitudes(amplitudes.values(first, last).tolist())
     if isinstance(amplitudes, str) or not np.ndim(np.asarray(amplitudes, dtype=object)):
         raise Hint("at least two amplitudes are required", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]')
-    levels = np.array([parse(amplitude, ("m",))[0] for amplitude in amplitudes])
+    levels = np.array([displacement(amplitude) for amplitude in amplitudes])
     if levels.size < 2 or levels[0] <= 0 or np.any(np.diff(levels) <= 0):
         raise Hint(
             "amplitudes must be at least two, above zero and rising", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]'

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 import rattlebox as rb
@@ -28,9 +29,9 @@ def notes(structure: Any = None, load: Any = PULSE, method: Any = None, **change
 
 @pytest.mark.parametrize("method", [rb.EventDriven(), rb.Newton(), rb.TwoStep()], ids=lambda method: method.kind)
 def test_balls_that_never_touch_are_noted(method: Any) -> None:
-    """A gap of 0.4 m, meant as 0.4 mm, is noted with the motion in it; a gap that is crossed is not."""
+    """A gap of 0.4 m, meant as 0.4 mm, is noted with the distance that remains; a gap that is crossed is not."""
     (note,) = notes(gap=0.4, method=method)
-    assert "400 mm" in note and "5.03 mm" in note
+    assert "distance between surfaces 397 mm, gap 400 mm" in note
     assert notes(method=method) == ()
 
 
@@ -103,7 +104,19 @@ def test_particles_that_never_touch_are_noted(size: Any, noted: int) -> None:
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="10 ms"))
     result = [note for note in run.notes if "touched anything" in note]
     assert len(result) == noted
-    assert all("relative motion 10.0 mm" in note for note in result)
+    assert all("to a wall at the start 4.04 m, largest displacement from there 10.0 mm" in note for note in result)
+
+
+def test_a_ball_that_nearly_touches_is_noted_with_its_distance() -> None:
+    """The note compares distances with distances: it had a motion from peak to peak above a gap that no ball crossed."""
+    structure = rb.SDOF(mass="2 kg", frequency="5 Hz", velocity="0.3 m/s")
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="4 mm", material="steel"), gap="10 mm", contact=rb.Tsuji(restitution=0.7)
+    )
+    run = rb.simulate(rb.Case(structure=structure, damper=damper, duration="1 s", output=rb.Output(rate="2 kHz")))
+    (note,) = [note for note in run.notes if "touched anything" in note]
+    nearest = 10e-3 - 0.3 / (10 * np.pi)
+    assert f"smallest distance between surfaces {1e6 * nearest:.0f} µm, gap 10.0 mm" in note
 
 
 @pytest.mark.parametrize(("last", "noted"), [("50 m/s", 0), ("0.5 m/s", 1)])

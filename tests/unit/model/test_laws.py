@@ -193,7 +193,7 @@ def test_stiffness_of_a_contact_time() -> None:
 
 @pytest.mark.parametrize("exponent", [0.5, 1.5, 4.3, 6.7, 8.0, 10.0])
 def test_a_power_law_of_any_documented_exponent(exponent: float) -> None:
-    """An ordinary contact, of 90 N at 40 um, is accepted at each exponent; tests had stopped where 1e30 in SI units begins."""
+    """An ordinary contact, of 90 N at 40 um, is accepted at each exponent; tests had stopped at 3, below the limit."""
     stiffness, mass, speed = 90 / 40e-6**exponent, 0.02, 0.7
     law = rb.PowerLaw(stiffness=stiffness, exponent=exponent, damping=0.0)
     ball = rb.Sphere(radius="6 mm", material="steel", mass=mass)
@@ -211,12 +211,12 @@ def test_limits_of_a_power_law_are_those_of_its_force() -> None:
     """Coefficients are limited by the force at 1 um; the number that the message advises is accepted."""
     largest = rb.PowerLaw(stiffness=1e48, exponent=3, damping=0.0)
     with pytest.raises(
-        rb.CaseError, match="more than 1e\\+30 N at an overlap of 1 um\n  try: stiffness = 1e\\+48 or less"
+        rb.CaseError, match=r"more than 1e\+30 N at an overlap of 1 um\n  try: stiffness = 1e\+48 or less"
     ):
         rb.PowerLaw(stiffness=1.01 * largest.stiffness, exponent=3, damping=0.0)
     assert rb.PowerLaw(damping=1e42, damping_exponent=2).damping == 1e42
     with pytest.raises(
-        rb.CaseError, match="damping = 1.1e\\+42\n  with the exponent 2 this is more than 1e\\+30 N s/m"
+        rb.CaseError, match=r"damping = 1\.1e\+42\n  with the exponent 2 this is more than 1e\+30 N s/m"
     ):
         rb.PowerLaw(damping=1.1e42, damping_exponent=2)
     with pytest.raises(rb.CaseError, match="finite"):

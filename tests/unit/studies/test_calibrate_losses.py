@@ -75,7 +75,7 @@ def test_a_ring_down_gives_the_restitution_of_its_damper() -> None:
 
 @pytest.mark.parametrize("frequency", [51.7, 10.0658, 217.3])
 def test_a_ring_down_of_any_frequency(frequency: float) -> None:
-    """The planted restitution is found at frequencies with no whole number of samples in a run; 50 Hz had hidden a refusal."""
+    """The planted restitution is found also if a run has no whole number of samples; 50 Hz had hidden a refusal."""
     structure = rb.SDOF(mass="1 kg", frequency=frequency, damping_ratio=0.005)
     own = case(0.7, structure=structure, duration=50 / frequency, seed=100)
     ratios = rb.damping_curve(own, DECAYS, packings=2, progress=False).damping_ratios.values[1]

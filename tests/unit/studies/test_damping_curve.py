@@ -294,3 +294,21 @@ def test_a_ball_at_any_frequency() -> None:
         case = rb.Case(structure=structure, damper=damper, duration=70.3 / frequency, method=rb.Newton())
         found.append(rb.damping_curve(case, ["0.1 mm", "0.2 mm"], packings=2, progress=False).damping_ratio.values)
     np.testing.assert_allclose(found, np.broadcast_to(found[0], np.shape(found)), rtol=2e-4)
+
+
+def test_amplitudes_may_be_accelerations() -> None:
+    """Accelerations are those at the frequency of the mode, as in a ring-down; "1 g" was refused as a mass."""
+    levels = ["3 g", "3.3 g", "36 m/s^2"]
+    place = [each * 9.80665 / (100 * math.pi) ** 2 for each in (3, 3.3, 36 / 9.80665)]
+    options: dict[str, Any] = {"packings": 2, "progress": False}
+    found, same = (rb.damping_curve(ball_case(), each, **options) for each in (levels, place))
+    np.testing.assert_allclose(found.amplitude, place, rtol=1e-12)
+    np.testing.assert_allclose(found.damping_ratios, same.damping_ratios, rtol=1e-6)
+    spaced = rb.damping_curve(ball_case(), rb.geomspace("3 g", "36 m/s^2", 3), **options)
+    np.testing.assert_allclose(spaced.amplitude[[0, 2]], [place[0], place[2]], rtol=1e-12)
+    with pytest.raises(rb.CaseError, match=r"a length \(m\) or an acceleration .* is needed, not a mass"):
+        rb.damping_curve(ball_case(), ["1 kg", "2 kg"])
+    with pytest.raises(rb.CaseError, match="'2 g' is an acceleration") as caught:
+        rb.design(ball_case(), {"damper.gap": ["0.4 mm", "0.5 mm"]}, "damping_ratio", amplitudes=["2 g", "3 g"])
+    assert "'199 µm' at 50 Hz" in caught.value.suggestion
+    assert (100 * math.pi) ** 2 * 199e-6 == pytest.approx(2 * 9.80665, rel=5e-3)

@@ -188,7 +188,8 @@ def test_trials_that_are_not_feasible_have_a_reason() -> None:
     assert sizes.reason.values[:2].tolist() == ["", ""] and high == "heavier than 0.009 kg"
     assert "is larger than the cavity" in flat
     assert sizes.feasible.values.tolist() == [not reason for reason in sizes.reason.values]
-    short = searched({COUNT: [4]}, "damping_ratio", amplitudes=["1 um", "1 mm"])
+    with pytest.warns(UserWarning, match="1 of 1: some decays do not pass"):
+        short = searched({COUNT: [4]}, "damping_ratio", amplitudes=["1 um", "1 mm"])
     assert short.reason.item() == "some decays do not pass all amplitudes within the duration"
     assert float(short.missing.item()) > 0
     coarse = struck(method=rb.Dem(dt="40 us"))

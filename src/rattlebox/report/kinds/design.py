@@ -63,7 +63,7 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
     if "stopped" in study.attrs:
         yield f"The search {study.attrs['stopped']}."
     if not study.front.size:
-        yield f"None of {counted(study.trial.size, 'trial')} is feasible: each lacks a value or exceeds a limit (see Warnings)."
+        yield f"None of {counted(study.trial.size, 'trial')} is feasible: each lacks a value or exceeds a limit."
         return
     if len(goals) == 1:
         best = study.sel(trial=int(study.front[0]))
