@@ -79,8 +79,8 @@ for _names, _others in _OTHERS.items():
 
 _ABSENT = {  # what does not exist, and what to do instead: others' names
     ("contacts are dry, without cohesion, adhesion or liquid", "restitution, friction and rolling"): (
-        "cohesion cohesive adhesion adhesive jkr dmt surface_energy work_of_adhesion liquid liquid_bridge capillary moisture "
-        "wet van_der_waals hamaker surface_tension cohesion_energy_density bond bonds"
+        "cohesion cohesive adhesion adhesive jkr dmt surface_energy work_of_adhesion liquid liquid_bridge capillary "
+        "moisture humidity wet van_der_waals hamaker surface_tension cohesion_energy_density bond bonds"
     ),
     ("all particles are round spheres", "rolling = 0.1, a resistance in place of corners"): (
         "shape shapes aspect_ratio sphericity roundness angularity blockiness cube cubes polyhedron polyhedra ellipsoid "

@@ -463,8 +463,8 @@ class DesignSearch:
         }
         found = xr.Dataset(attrs={"title": "Rattlebox design", **about})
         for variable in self.variables:
-            own = variable.coordinates([trial.params[variable.name] for trial in trials])
-            found = found.assign_coords({path: ("trial", *column) for path, column in own.items()})
+            columns = variable.coordinates([trial.params[variable.name] for trial in trials])
+            found = found.assign_coords({path: ("trial", *column) for path, column in columns.items()})
         values = _rows([trial.values for trial in trials], len(self.objectives))
         halves = _rows([trial.user_attrs["intervals"] for trial in trials], len(self.computed))
         packings = _rows([trial.user_attrs["packings"] for trial in trials], len(self.computed), self.count)

@@ -8,6 +8,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -115,7 +116,7 @@ def open_trials(path: str | os.PathLike[str]) -> xr.Dataset | None:
     import xarray as xr
 
     try:
-        import optuna
+        optuna: Any = import_module("optuna")
     except ImportError:
         return None
     journal = Path(path) / "progress" / JOURNAL
