@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
 
+from .cycle_loss import cycle_loss
 from .signals import FloatArray, first_harmonic, positive, steps_inside, trapezoid_weights
 
 if TYPE_CHECKING:
@@ -32,8 +34,9 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     """Compute the loss and the effective mass of the particles in a cavity that moves harmonically, in two ways.
 
     Both evaluate the last whole number of cycles. "complex power" uses the force that drives the particles and the
-    velocity of the cavity. "energy" uses the energy lost in contacts, and the momentum of the particles in phase with
-    the cavity.
+    velocity of the cavity. "energy" uses the work of the walls from the energy balance of the particles, and the momentum of
+    the particles in phase with the cavity. Both are the loss of the structure: the weight of a bed that sinks dissipates
+    energy, too, which is not in them.
 
     Parameters
     ----------
@@ -52,8 +55,10 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
         Over `way`: `active_power` [W], `loss_per_cycle` [J], `effective_mass` [kg], `loss_factor` (active power over the
         magnitude of the reactive power, which is the energy of a cycle over 2 pi times the largest kinetic energy of the
         effective mass) and `reduced_loss` (energy of a cycle over m V^2, with the mass m of all particles and the velocity
-        amplitude V). Also `stored_power` [W], the mean rate of change of the energy of the particles, which is included in
-        complex power but not in the energy lost. Attributes: frequency, cycles, velocity amplitude, damper.
+        amplitude V). Also `dissipated_power` [W], lost in contacts; `stored_power` [W], the mean rate of change of the
+        energy of the particles, potential of gravity included; `raised_power` [W], that of the potential alone; and
+        `steady`, whether these and the loss have no trend (see Notes). Attributes: frequency, cycles, velocity amplitude,
+        damper, and `warnings`, empty for a steady motion.
 
     Raises
     ------
@@ -63,8 +68,17 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
         If less than one cycle is covered, there are fewer than eight samples in a cycle, the cavity does not move at this
         frequency, or there is no such damper.
 
+    Warns
+    -----
+    UserWarning
+        If the motion is not steady.
+
     Notes
     -----
+    The energy balance is work of the walls = dissipated + stored. A motion is steady if the stored energy and the potential
+    change by less than 5 % of the work or 2 % of m V^2 in a cycle, and the work by less than 20 % from the first to the
+    second half of the cycles. Larger changes count if they are a trend (Mann-Kendall, 1 %) or ten times as large.
+
     With the complex amplitudes F of the force and V of the velocity, P = F* V / 2; the real part is the absorbed power, and
     the effective mass is -Im P / (pi f abs(V)^2). The samples give the mean force of each sampling step h, the change of the
     momentum over h. The mean over a step has the amplitude sinc(f h) = sin(pi f h) / (pi f h) of a harmonic, by which the
@@ -77,6 +91,14 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     N. Meyer, R. Seifried (2021), Toward a design methodology for particle dampers by analyzing their energy dissipation,
     Computational Particle Mechanics 8, 681-699, doi:10.1007/s40571-020-00363-0.
     """
+    found = harmonic_loss(run, frequency=frequency, damper=damper, after=after)
+    for text in found.attrs["warnings"]:
+        warnings.warn(text.removeprefix("warning: "), stacklevel=2)
+    return found
+
+
+def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, after: float = 0.0) -> xarray.Dataset:
+    """Return the result of `shaken_cavity`, without a Python warning."""
     import xarray
 
     arrays, particle_mass = run.arrays, run.arrays.particle_mass
@@ -121,10 +143,9 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     force = first_harmonic(middle, mean_force, inside, frequency, gain=np.sinc(frequency * step))
     power = complex(force.conjugate() @ v) / 2
     carried = first_harmonic(times, momentum, weights, frequency)
-    lost = float(_rise(begin, times, _losses(run, number))) / span
-    stored = float(_rise(begin, times, _energy(run, number))) / span
+    balance = cycle_loss(run, frequency, cycles, [number])
     masses = np.array([-2 * power.imag / (omega * size**2), float((carried @ v.conjugate()).real) / size**2])
-    powers = np.array([power.real, lost])
+    powers = np.array([power.real, balance.work * frequency])
     reactive = 0.5 * omega * np.abs(masses) * size**2
 
     def over(values: Any, units: str, long_name: str) -> Any:
@@ -137,10 +158,27 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
             "effective_mass": over(masses, "kg", "effective mass"),
             "loss_factor": over(powers / reactive, "1", "loss factor"),
             "reduced_loss": over(powers / (frequency * mass * size**2), "1", "energy of a cycle over m v^2"),
-            "stored_power": ((), stored, {"units": "W", "long_name": "rise of the particles' energy"}),
+            "dissipated_power": ((), balance.dissipated * frequency, {"units": "W", "long_name": "loss in contacts"}),
+            "stored_power": (
+                (),
+                balance.stored * frequency,
+                {"units": "W", "long_name": "rise of the particles' energy"},
+            ),
+            "raised_power": (
+                (),
+                balance.raised * frequency,
+                {"units": "W", "long_name": "rise of the gravity potential"},
+            ),
+            "steady": ((), balance.is_steady, {"long_name": "whether the motion is steady"}),
         },
         {"way": ("way", list(WAYS), {"long_name": "method"})},
-        {"frequency": frequency, "cycles": cycles, "velocity_amplitude": size, "damper": damper},
+        {
+            "frequency": frequency,
+            "cycles": cycles,
+            "velocity_amplitude": size,
+            "damper": damper,
+            "warnings": [text] if (text := balance.warning()) else [],
+        },
     )
 
 
@@ -185,26 +223,3 @@ def force_harmonics(
     each = np.add.reduceat(first, np.flatnonzero(np.diff(cycle, prepend=-1)), axis=-1)
     variation = np.sqrt(np.mean(np.abs(each - each.mean(axis=-1, keepdims=True)) ** 2, axis=-1))
     return harmonics, np.asarray(variation)
-
-
-def _losses(run: Run, damper: int) -> FloatArray:
-    """Return the energy lost in the contacts of a damper, (T,) [J]."""
-    arrays = run.arrays
-    parts = (arrays.normal_loss, arrays.plastic_loss, arrays.sliding_loss, arrays.rolling_loss)
-    return np.asarray(sum(part[:, damper].sum(axis=1) for part in parts))
-
-
-def _energy(run: Run, damper: int) -> FloatArray:
-    """Return the energy of the particles of a damper in the inertial frame, (T,) [J].
-
-    The potential energy of gravity is relative to the base.
-    """
-    arrays = run.arrays
-    mass, base = arrays.particle_mass[damper], arrays.base_velocity
-    own = arrays.kinetic_energy + arrays.rotation_energy + arrays.contact_energy + arrays.gravity_energy
-    carried = np.einsum("ti,ti->t", arrays.momentum[:, damper] + 0.5 * mass * base, base)
-    return np.asarray(own[:, damper] + carried)
-
-
-def _rise(begin: float, times: FloatArray, values: FloatArray) -> float:
-    return float(values[-1] - np.interp(begin, times, values))

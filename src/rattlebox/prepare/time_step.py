@@ -48,8 +48,10 @@ WARNINGS = {
     "deep_overlap": f"overlaps above {100 * MAX_OVERLAP:g} % of the radius",
     "soft_bed": "softening that lowers the resonance of the bed too close to the excitation",
     "enduring_contacts": f"over {100 * MAX_ENDURING_SHARE:g} % of the loss in enduring contacts, which grows with softening",
+    "unsteady": "motion that is not steady, as of a bed that still sinks; try: more cycles to skip",
 }
-"""Validity limits that a run can exceed: name and description."""
+"""Validity limits that a run can exceed: name and description. Studies test whether a motion is steady, as they know its
+cycles; the others follow from the diagnostics of the run."""
 
 HERTZ_TIME = 2.9432752
 """Duration of a Hertz contact times the approach speed over the largest overlap, 4/5 pi^(1/2) Gamma(2/5) / Gamma(9/10).
@@ -505,13 +507,13 @@ def exceeded_limits(diagnostics: Mapping[str, float]) -> list[str]:
         Keys of `WARNINGS`.
     """
     steps = diagnostics["steps_per_contact"]
-    exceeded = (
-        math.isfinite(steps) and steps < MIN_STEPS_PER_CONTACT,
-        diagnostics["largest_overlap"] > MAX_OVERLAP,
-        diagnostics.get("softening_change", 0.0) > MAX_CHANGE,
-        diagnostics.get("softened_enduring_share", 0.0) > MAX_ENDURING_SHARE,
-    )
-    return [name for name, is_exceeded in zip(WARNINGS, exceeded, strict=True) if is_exceeded]
+    exceeded = {
+        "few_steps": math.isfinite(steps) and steps < MIN_STEPS_PER_CONTACT,
+        "deep_overlap": diagnostics["largest_overlap"] > MAX_OVERLAP,
+        "soft_bed": diagnostics.get("softening_change", 0.0) > MAX_CHANGE,
+        "enduring_contacts": diagnostics.get("softened_enduring_share", 0.0) > MAX_ENDURING_SHARE,
+    }
+    return [name for name, is_exceeded in exceeded.items() if is_exceeded]
 
 
 def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float:

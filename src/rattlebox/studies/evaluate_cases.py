@@ -24,6 +24,7 @@ def evaluate_cases(
     cases: Sequence[Case],
     evaluate: Callable[[Run], Any],
     *,
+    simulate: Callable[..., Run] | None = None,
     backend: Any = "threads",
     workers: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
@@ -36,6 +37,8 @@ def evaluate_cases(
         The cases.
     evaluate
         Function of a Run; processes and clusters receive it, and send back its value.
+    simulate
+        Function of a case, `threads` and `progress` that returns its run; default `simulate_many`.
     backend, workers
         Backend that runs the cases, see `make_backend`.
     progress
@@ -48,7 +51,7 @@ def evaluate_cases(
     ResourceError
         If workers fail.
     """
-    work = _Cases(cases, evaluate)
+    work = _Cases(cases, evaluate, simulate or _simulate)
     chains = [Chain([Block(number, number, number + 1)]) for number in range(len(cases))]
     found: dict[int, Any] = {}
     # Work on cases has neither a grid nor outputs, which backends do not use.
@@ -64,13 +67,20 @@ def evaluate_cases(
 class _Cases:
     cases: Sequence[Case]
     evaluate: Callable[[Run], Any]
+    simulate: Callable[..., Run]
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
         proceed = proceed_unless(cancelled)
         found = np.empty(stop - start, object)
         for number in range(start, stop):
-            (run,) = simulate_many([self.cases[number]], threads=threads, progress=proceed)
+            run = self.simulate(self.cases[number], threads=threads, progress=proceed)
             if not proceed():
                 return None
             found[number - start] = self.evaluate(run)
         return {"found": found}
+
+
+def _simulate(case: Case, *, threads: int, progress: Callable[..., bool]) -> Run:
+    """Return the run of one case."""
+    (run,) = simulate_many([case], threads=threads, progress=progress)
+    return run

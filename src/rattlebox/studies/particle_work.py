@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
+from rattlebox._util.batch_means import FEWEST_BATCHES
 from rattlebox._util.exceptions import RattleboxError
-from rattlebox.analysis import settling_time, shaken_cavity
-from rattlebox.analysis.shaken import MIN_SAMPLES, StillCavity
+from rattlebox.analysis import settling_time
+from rattlebox.analysis.cycle_loss import UNSTEADY, CycleLoss, cycle_loss
+from rattlebox.analysis.shaken import MIN_SAMPLES, StillCavity, harmonic_loss
 from rattlebox.core._core import Status
-from rattlebox.engines.dem import simulate_dem
+from rattlebox.engines.dem import continue_dem, simulate_dem
 from rattlebox.engines.responses import base_at_points
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
@@ -74,6 +76,16 @@ class Window:
         except StillCavity:
             return math.nan
 
+    def part(self, name: str) -> float:
+        """Return the value of a part of a steady motion, for the interval of a measure.
+
+        Losses are those in contacts, whose mean is that of the work: particles store and return much of the work of a part.
+        """
+        if name not in _STORED:
+            return self.value(name)
+        work, lost = self.work_per_cycle, self.loss / (self.length * self.frequency)
+        return self.value(name) * lost / work if work else math.nan
+
     @property
     def length(self) -> float:
         """Length of the window [s]."""
@@ -119,7 +131,18 @@ class Window:
     def first_harmonic(self, damper: str) -> xarray.Dataset:
         """Return loss and effective mass of a damper at the frequency of the load."""
         after = self.start - 1e-9 / self.frequency  # rounding must not remove a cycle
-        return shaken_cavity(self.full_run, frequency=self.frequency, damper=damper, after=after)
+        return harmonic_loss(self.full_run, frequency=self.frequency, damper=damper, after=after)
+
+    @cached_property
+    def cycle(self) -> CycleLoss | None:
+        """Energies of all dampers in a cycle; None without a whole cycle."""
+        cycles = 0 if math.isnan(self.frequency) else math.floor(self.length * self.frequency + 1e-9)
+        return cycle_loss(self.run, self.frequency, cycles) if cycles else None
+
+    @property
+    def work_per_cycle(self) -> float:
+        """Work of the walls of all cavities on their particles in a cycle [J]."""
+        return math.nan if self.cycle is None else self.cycle.work
 
     @property
     def cavity_velocity(self) -> float:
@@ -158,15 +181,19 @@ _FORMULAS: dict[str, Callable[[Window], float]] = {
     "peak_interface_force": lambda w: w.interface_force.max(),
     "rms_interface_force": lambda w: w.rms(w.interface_force),
     "settling_time": lambda w: w.settling_time,
-    "loss_per_cycle": lambda w: w.loss / (w.length * w.frequency),
-    "reduced_loss": lambda w: (
-        w.loss / (w.length * w.frequency * w.run.arrays.particle_mass.sum() * w.cavity_velocity**2)
-    ),
+    "loss_per_cycle": lambda w: w.work_per_cycle,
+    "reduced_loss": lambda w: w.work_per_cycle / (w.run.arrays.particle_mass.sum() * w.cavity_velocity**2),
     "effective_mass": lambda w: w.apparent_mass.real,
     "damping_mass": lambda w: -w.apparent_mass.imag,
     "loss_factor": lambda w: -w.apparent_mass.imag / abs(w.apparent_mass.real),
 }
 """Measures of particle runs: those of `rattlebox.MEASURES` that do not refer to single impacts."""
+
+_STORED = ("loss_per_cycle", "reduced_loss")
+"""Measures of the work of the walls."""
+
+_UNSTEADY = 2 ** list(WARNINGS).index(UNSTEADY)
+"""Bit of a motion that is not steady in the `warnings` of a variant."""
 
 _HARMONIC_MEASURES = ("reduced_loss", "effective_mass", "damping_mass", "loss_factor")
 
@@ -177,7 +204,14 @@ class ParticleWork(CaseWork):
 
     Functions of a Run get the run from which the measures are evaluated. Its samples are those of the output of the case,
     unless `samples` or `cycles` is given.
+
+    Attributes
+    ----------
+    extensions
+        How often the evaluated cycles are repeated from the end of the run, at most, until the motion is steady.
     """
+
+    extensions: int = 0
 
     @cached_property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, Any]]]:
@@ -185,7 +219,15 @@ class ParticleWork(CaseWork):
         outputs = dict(super().outputs)
         masks, names = [2**bit for bit in range(len(WARNINGS))], " ".join(WARNINGS)
         attributes = {"long_name": "exceeded validity limits", "flag_masks": masks, "flag_meanings": names}
-        return {"status": outputs.pop("status"), "warnings": ((), "int8", attributes), **outputs}
+        flags = {"status": outputs.pop("status"), "warnings": ((), "int8", attributes)}
+        if self.extensions:
+            skipped = {"units": "1", "long_name": "cycles before the evaluated ones"}
+            outputs["skipped_cycles"] = (), "int32", skipped
+        return {**flags, **outputs}
+
+    def describe(self) -> dict[str, Any]:
+        """Return a description of everything except the grid, in JSON types."""
+        return super().describe() | ({"extensions": self.extensions} if self.extensions else {})
 
     def validate(self) -> None:
         """Raise if the arguments do not fit the case or each other.
@@ -232,14 +274,37 @@ class ParticleWork(CaseWork):
         rows = {}
         for index in range(start, stop):
             try:
-                case = self.variant(index)
-                run = simulate_dem(case, threads=threads, progress=proceed) if settle_all(case, proceed) else None
+                row = self._row_of(index, threads, proceed)
             except RattleboxError:  # the variant gets the status "refused"; see `refusal_reason`
                 continue
-            if run is None or run.status == "interrupted":
+            if row is None:
                 return None
-            rows[index] = self.row(case, run, index)
+            rows[index] = row
         return self.columns(rows, start, stop)
+
+    def _row_of(self, index: int, threads: int, proceed: Callable[..., bool]) -> dict[str, Any] | None:
+        """Run a variant, repeatedly until its motion is steady if allowed; return its outputs, None if it was stopped."""
+        case = self.variant(index)
+        if not settle_all(case, proceed):
+            return None
+        if not self.extensions or self.cycles is None:
+            run = simulate_dem(case, threads=threads, progress=proceed)
+            return None if run.status == "interrupted" else self.row(case, run, index)
+        skip, kept = self.cycles
+        driver = _driver(case)
+        repeats = self.extensions if driver and driver.start == 0 and driver.stop is None else 0
+        run, end = continue_dem(case, None, threads=threads, progress=proceed)
+        row, later = self.row(case, run, index), replace(self, cycles=(0, kept))
+        for repeated in range(repeats):
+            row["skipped_cycles"] = skip + repeated * kept
+            if run.status == "interrupted":
+                return None
+            if not row["warnings"] & _UNSTEADY:
+                break
+            case = later.variant(index)
+            run, end = continue_dem(case, end, threads=threads, progress=proceed)
+            row = later.row(case, run, index) | {"skipped_cycles": skip + (repeated + 1) * kept}
+        return None if run.status == "interrupted" else row
 
     def row(self, case: Case, run: Run, index: int) -> dict[str, Any]:
         """Return the outputs of one variant by name."""
@@ -252,10 +317,17 @@ class ParticleWork(CaseWork):
             row["energy_residual"] = self.window(run, case).value("energy_residual")
         if run.ok:
             window = self.window(run, case)
+            if self._is_tested and window.cycle is not None and not window.cycle.is_steady:
+                row["warnings"] |= _UNSTEADY
             row |= {name: window.value(name) for name in self.measure_names}
             row |= self._intervals(run, case, row)
             row |= self.call_functions(run, index)
         return row
+
+    @property
+    def _is_tested(self) -> bool:
+        """Whether the motion should be steady: in whole cycles, or for measures of a cycle."""
+        return self.cycles is not None or any(MEASURES[name].cyclic for name in self.measure_names)
 
     def columns(self, rows: Mapping[int, Mapping[str, Any]], start: int, stop: int) -> Values:
         """Return each output of a range of variants; those without a row have the status "refused"."""
@@ -324,7 +396,7 @@ class ParticleWork(CaseWork):
         parts = [self.window(cut_after(run, end), case, start) for start, end in pairwise(limits)]
         return {
             name + INTERVAL: float(
-                interval_of(name, [row[name]], np.array([[part.value(name) for part in parts]]), lengths)[0]
+                interval_of(name, [row[name]], np.array([[part.part(name) for part in parts]]), lengths)[0]
             )
             for name in self.averages
         }
@@ -418,7 +490,9 @@ def _batch_limits(start: float, end: float, frequency: float, times: NDArray[np.
         whole = math.floor((end - start) * frequency + 1e-9)
         if whole < 1:
             return np.zeros(1)
-        each = math.ceil(whole / MOST_BATCHES)
+        # Beds often repeat after two cycles, whose losses alternate: batches of two cycles do not count that as scatter.
+        least = 2 if whole >= 4 * FEWEST_BATCHES else 1
+        each = max(least, math.ceil(whole / MOST_BATCHES))
         limits = end - np.arange(whole // each, -1, -1) * each / frequency
     return limits if np.count_nonzero(times >= start) > limits.size else np.zeros(1)
 

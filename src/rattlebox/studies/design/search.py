@@ -72,7 +72,7 @@ class Curve:
     amplitudes: Sequence[Any]
     way: Way
     mode: int
-    cycles: tuple[int, int]
+    cycles: tuple[int, int] | None
 
 
 @dataclass

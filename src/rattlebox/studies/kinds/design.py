@@ -183,7 +183,7 @@ class Design(Study):
         curve = None
         if self.amplitudes is not None:
             amplitudes = tuple(read_amplitudes(self.amplitudes).tolist())
-            curve = Curve(amplitudes, self.way, self.mode, self.cycles or (20, 40))
+            curve = Curve(amplitudes, self.way, self.mode, self.cycles)
         if (curve is None) == (DAMPING_RATIO in names):
             raise (
                 Hint("the damping ratio requires amplitudes", 'amplitudes = ["20 um", "40 um", "80 um"]')

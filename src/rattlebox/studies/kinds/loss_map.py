@@ -16,6 +16,7 @@ from rattlebox.model.structures import Shaker
 from rattlebox.studies.axes import ParsedAxes, parse_axes, read_axes
 from rattlebox.studies.kinds.sweep import result_notes
 from rattlebox.studies.map_work import AMPLITUDE, FREQUENCY, ImpactMapWork, ParticleMapWork
+from rattlebox.studies.steady import EXTENSIONS
 from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
 
 MEASURES = ("loss_factor", "effective_mass", "damping_mass", "reduced_loss", "loss_per_cycle", "impacts_per_cycle")
 """Measures of a loss map."""
+
+CYCLES = (50, 50)
+"""Default numbers of cycles to skip and to average over."""
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -51,7 +55,8 @@ class LossMap(Study):
     frequencies
         Frequencies of the motion [Hz].
     cycles
-        Numbers of cycles to skip until the motion is steady, and to average over.
+        Numbers of cycles to skip until the motion is steady, and to average over. By default 50 and 50; runs of particles
+        whose motion is not steady then continue by 50 cycles, up to four times.
     samples
         Number of equally spaced samples in the averaged cycles, for the masses; default 64 per cycle.
     workers, backend, store, progress
@@ -64,7 +69,8 @@ class LossMap(Study):
         `reduced_loss` (loss per cycle over m V^2), `loss_per_cycle` [J], `impacts_per_cycle` (impact dampers only),
         `force_harmonics` [N] (over `harmonic`, too: amplitudes of the force on the particles), `force_variation` [N] (of
         the complex amplitude of the first harmonic from cycle to cycle, root mean square), `status`; `particle_mass` m [kg].
-        For particle dampers also `warnings`, the `softening` of each run, and `softening_change`, its estimated effect on
+        For particle dampers also `warnings`, with the flag "unsteady" of motions that are not steady, `skipped_cycles` (with
+        the default cycles), the `softening` of each run, and `softening_change`, its estimated effect on
         the reduced loss, NaN where it cannot be estimated (without gravity; see `rb.check_softening`). See `rb.sweep` for
         intervals and attributes.
 
@@ -79,7 +85,8 @@ class LossMap(Study):
 
         m' - i m'' = F / a,   loss factor m'' / abs(m'),   reduced loss W / (m V^2)
 
-    where W is the energy lost in a cycle.
+    where W is the energy that the damper takes from the shaker in a cycle. For particles it is the work of the walls, in
+    which the potential energy of a bed that sinks is not included; `rb.analysis.shaken_cavity` has the test of steadiness.
 
     References
     ----------
@@ -107,17 +114,18 @@ class LossMap(Study):
     amplitudes: Annotated[Values, Field(examples=[["1 mm", "2 mm"]])]
     frequencies: Annotated[Values, Field(examples=[{"from": "9 Hz", "to": "11 Hz", "count": 50}])]
     _: KW_ONLY
-    cycles: Cycles = (50, 50)
+    cycles: Cycles | None = None
     samples: Samples | None = None
 
     @cached_property
     def work(self) -> ImpactMapWork | ParticleMapWork:
         """Runs at all amplitudes and frequencies."""
-        options: dict[str, Any] = {"cycles": self.cycles, "samples": self.samples, "intervals": True}
+        options: dict[str, Any] = {"cycles": self.cycles or CYCLES, "samples": self.samples, "intervals": True}
         grid = read_axes(self.case, list(self._axes.values()))
         if self.case.particle_dampers:
             names = [name for name in MEASURES if name != "impacts_per_cycle"]
-            return ParticleMapWork(self.case, grid, names, **options)
+            repeats = EXTENSIONS if self.cycles is None else 0
+            return ParticleMapWork(self.case, grid, names, **options, extensions=repeats)
         return ImpactMapWork(self.case, grid, MEASURES, motion=True, **options)
 
     @cached_property
