@@ -65,7 +65,7 @@ def harmonic_case(
     damper = ImpactDamper(
         balls=(Sphere(radius=RADIUS, material="steel"),),
         gap=GAP,
-        start=(z + y) / GAP,  # relative to the position of the cavity at rest
+        start=y / GAP,
         velocity=(w,),
         contact=contact,
     )

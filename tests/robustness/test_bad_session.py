@@ -216,12 +216,16 @@ MESSAGES = {
     ),
     "start in a wall": (
         changed('"0.4 mm"', '"0.4 mm"\nstart = 1.5'),
-        "damper.start = 1.5\n  ball 1 would start 0.2 mm inside a wall of the cavity\n  try: start between -1 and 1",
+        "damper.start = 1.5\n  ball 1 would start 0.2 mm inside a wall of the cavity\n"
+        "  try: start between -1 and 1, or a length up to 0.4 mm "
+        "from the centre of the cavity",
     ),
     "start outside a displaced cavity": (
-        changed('mass = "20 kg"', 'mass = "20 kg"\ndisplacement = "1 mm"'),
-        "damper.start\n  ball 1 would start 0.6 mm inside a wall of the cavity, which is displaced by 1 mm at the start\n"
-        '  try: start = "1 mm" is its centre, with 0.4 mm on each side',
+        changed('mass = "20 kg"', 'mass = "20 kg"\ndisplacement = "1 mm"').replace(
+            '"0.4 mm"', '"0.4 mm"\nstart = "1 mm"'
+        ),
+        "damper.start = '1 mm'\n  ball 1 would start 0.6 mm inside a wall of the cavity\n"
+        "  try: start between -1 and 1, or a length up to 0.4 mm from the centre of the cavity",
     ),
     "one of several velocities": (
         changed('"0.4 mm"', '"0.4 mm"\nvelocity = ["1 m/s", "2 mm"]'),

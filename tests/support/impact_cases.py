@@ -77,7 +77,7 @@ def impact_damper(
             ball=ball(orbit.mass_ratio, soft or "steel"),
             wall="rigid" if soft else None,
             gap=gap,
-            start=(y + shift[2]) / gap,
+            start=(y + shift[2] - (x + shift[0])) / gap,
             velocity=w + shift[3],
             contact=law,
         ),
@@ -191,7 +191,7 @@ def impact_oscillator(orbit: StopOrbit, cycles: float) -> Any:
         damper=rb.ImpactDamper(
             ball=ball(1e15),
             gap=STOP_GAP,
-            start=(orbit.stop - STOP_GAP) / STOP_GAP,
+            start=(orbit.stop - STOP_GAP - x) / STOP_GAP,
             contact=rb.Tsuji(restitution=orbit.restitution),
         ),
         load=rb.Harmonic(

@@ -86,7 +86,7 @@ class Flights:
             damper=rb.ImpactDamper(
                 ball=impact_cases.ball(1e-3),
                 gap=gap,
-                start=float(self.ball[k]) / gap,
+                start=float(self.ball[k] - self.shape[k] @ self.q[k]) / gap,
                 velocity=float(self.speed[k]),
                 gravity=float(self.gravity[k]),
                 point="tip",

@@ -200,7 +200,7 @@ def test_both_input_times_have_second_order(by: str, input_time: int, tmp_path: 
 def test_coupled_to_a_mass_on_a_spring_it_approaches_the_whole_run(fmi: int, tmp_path: Path) -> None:
     """Two FMUs, a mass on a spring and a ball, exchange velocity and force and approach the coupled run."""
     displaced = rb.SDOF(mass="1 kg", frequency="10 Hz", displacement="5 mm")
-    whole = rb.simulate(structure(structure=displaced, damper=ball(start="5 mm"), load=[]), progress=False)
+    whole = rb.simulate(structure(structure=displaced, damper=ball(), load=[]), progress=False)
     assert whole.impacts.sizes["impact"] >= 4
     host = rb.Case(
         structure=displaced,

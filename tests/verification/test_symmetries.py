@@ -105,7 +105,7 @@ def test_run_split_in_a_flight_is_the_whole_run() -> None:
             damper=rb.ImpactDamper(
                 ball=rb.Sphere(radius=0.03317, material="steel"),
                 gap=0.4e-3,
-                start=float(first.ball_position[-1, 0]) / 0.4e-3,
+                start=float(first.ball_position[-1, 0] - first.displacement[-1, 0]) / 0.4e-3,
                 velocity=float(first.ball_velocity[-1, 0]),
                 contact=rb.Tsuji(alpha=0.006313, ending="zero_overlap"),
             ),

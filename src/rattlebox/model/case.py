@@ -131,7 +131,7 @@ class Case(Part):
         for index, damper in enumerate(self.dampers):
             with at("dampers", index):
                 first = len(names)
-                for each in damper.each() if isinstance(damper, ParticleDamper) else self._each(damper):
+                for each in damper.each():
                     label = each.label(len(names))
                     if label in names:
                         raise Hint(f"two dampers are called {label!r}", "different names")
@@ -267,20 +267,16 @@ class Case(Part):
             )
 
     def _check_starts(self, damper: ImpactDamper) -> None:
-        """Raise if a ball starts inside a wall of the cavity, which may be displaced at the start."""
+        """Raise if a ball starts inside a wall of the cavity."""
         with at("point"):
-            shape = self.modes.shape(damper.point)
-        cavity = float(shape @ self.modes.q0)
+            self.modes.shape(damper.point)
         half = 0.5 * damper.clearance
         for number, place in enumerate(damper.positions0, start=1):
-            depth = abs(place - cavity) - half
-            if depth > 4e-16 * (half + abs(cavity)):
-                where = "" if cavity == 0 else f", which is displaced by {1e3 * cavity:.4g} mm at the start"
+            depth = abs(place) - half
+            if depth > 4e-16 * half:
                 raise Hint(
-                    f"ball {number} would start {1e3 * depth:.4g} mm inside a wall of the cavity" + where,
-                    "start between -1 and 1"
-                    if cavity == 0
-                    else f'start = "{1e3 * cavity:.6g} mm" is its centre, with {1e3 * half:.6g} mm on each side',
+                    f"ball {number} would start {1e3 * depth:.4g} mm inside a wall of the cavity",
+                    f"start between -1 and 1, or a length up to {1e3 * half:.6g} mm from the centre of the cavity",
                     ["start"],
                 )
 
@@ -311,18 +307,14 @@ class Case(Part):
     @property
     def impact_dampers(self) -> tuple[ImpactDamper, ...]:
         """The impact dampers, identical ones (`ImpactDamper.number`) one by one."""
-        return tuple(each for damper in self.dampers if isinstance(damper, ImpactDamper) for each in self._each(damper))
+        return tuple(each for damper in self.dampers if isinstance(damper, ImpactDamper) for each in damper.each())
 
-    def _each(self, damper: ImpactDamper) -> tuple[ImpactDamper, ...]:
-        """Return the identical dampers that an impact damper stands for."""
-        if damper.number == 1:
-            return (damper,)
-        with at("point"):
-            shape = self.modes.shape(damper.point)
-        displacement = self.modes.q0
+    def cavity_displacement(self, damper: ImpactDamper) -> Any:
+        """Return the displacement of the cavity of an impact damper at the start [m], an array in a batch of variants."""
+        shape, displacement = self.modes.shape(damper.point), self.modes.q0
         axes = max(shape.ndim, displacement.ndim)  # 1, or more in a batch of variants
         pair = [part.reshape(*part.shape, *(1,) * (axes - part.ndim)) for part in (shape, displacement)]
-        return damper.each(np.sum(pair[0] * pair[1], axis=0))
+        return np.sum(pair[0] * pair[1], axis=0)
 
     @cached_property
     def particle_dampers(self) -> tuple[ParticleDamper, ...]:

@@ -126,8 +126,9 @@ class ImpactDamper(Part):
     wall
         Material of the walls, or "rigid"; default that of the adjacent ball.
     start
-        Reduced position of each ball: fraction of the gap in [-1, 1] (-1 at the trailing, +1 at the leading wall), or
-        a length. One number for a row of balls in contact, or one for each ball, ascending.
+        Reduced position of each ball in the cavity at t = 0, wherever the structure then is: fraction of the gap in [-1, 1]
+        (-1 at the trailing, +1 at the leading wall), or a length from the centre. One number for a row of balls in contact,
+        or one for each ball, ascending.
     velocity
         Initial velocity of the balls, relative to the base [m/s]; one for all, or one for each.
     contact, ball_contact
@@ -244,21 +245,14 @@ class ImpactDamper(Part):
         """Return the name of the damper; by default it has the number of the damper in the case."""
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")
 
-    def each(self, cavity: Any = 0.0) -> tuple[ImpactDamper, ...]:
-        """Return the identical dampers that this one stands for (see `number`), each with its own start.
-
-        Parameters
-        ----------
-        cavity
-            Displacement of the cavity at the start [m].
-        """
+    def each(self) -> tuple[ImpactDamper, ...]:
+        """Return the identical dampers that this one stands for (see `number`), each with its own start."""
         if self.number == 1:
             return (self,)
-        half = 0.5 * self.clearance
-        first = (self.positions0[0] - cavity) / half
+        first = self.positions0[0] / (0.5 * self.clearance)
         dampers = [self.model_copy(update={"number": 1})]
         for index in range(1, self.number):
-            place = (first + 1 + 2 * _GOLDEN * index) % 2 - 1 + cavity / half
+            place = (first + 1 + 2 * _GOLDEN * index) % 2 - 1
             start = place if np.ndim(place) else float(place)
             name = f"{self.name}{index + 1}" if self.name else ""
             dampers.append(self.model_copy(update={"number": 1, "name": name, "start": start}))
@@ -289,7 +283,7 @@ class ImpactDamper(Part):
 
     @property
     def positions0(self) -> Vector:
-        """Reduced start positions, (n,) [m]."""
+        """Reduced start positions in the cavity, (n,) [m]."""
         half = 0.5 * self.clearance
         places = self.start if isinstance(self.start, list) else [self.start] * len(self.balls)
         return stacked([parse(p, ("m",))[0] if isinstance(p, str) else p * half for p in places])

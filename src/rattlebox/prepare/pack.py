@@ -19,6 +19,7 @@ from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.model.base import Part
 from rattlebox.model.contacts import FixedDamping
+from rattlebox.model.elementwise import stacked
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import EventDriven, Newton, TwoStep
 from rattlebox.model.pairs import Pair, contact_pairs
@@ -294,7 +295,10 @@ def _problem(case: Case, axes: int = 0) -> _core.Problem:
                 gravity=damper.gravity,
                 shape=_vector(modes.shape(damper.point), axes),
                 mass=_vector(damper.masses, axes),
-                position=_vector(damper.positions0, axes),
+                # The case states places in the cavity, the core places relative to the rest position of its centre.
+                position=_vector(
+                    stacked([place + case.cavity_displacement(damper) for place in damper.positions0]), axes
+                ),
                 velocity=_vector(damper.velocities0, axes),
             )
             for damper in case.impact_dampers

@@ -306,7 +306,7 @@ class _Columns:
         if base.dtype.kind != "f":
             raise parameter.wrong("its values are not numbers, so that offsets cannot be added")
         moved = base + offsets
-        self.found[parameter.place] = self.mirrored(parameter, moved) if parameter.is_start else moved
+        self.found[parameter.place] = self.mirrored(moved) if parameter.is_start else moved
 
     def case_value(self, parameter: Parameter) -> Column:
         """Return the value of the case."""
@@ -345,14 +345,10 @@ class _Columns:
             raise start.wrong("a length needs a gap greater than zero", "fractions of the gap, -1 to 1")
         return gap
 
-    def mirrored(self, parameter: Parameter, start: Column) -> Column:
-        """Return start positions mirrored at the walls of the cavity, which may be displaced."""
-        damper = self.case.dampers[int(parameter.place[1])]
-        modes = self.case.modes
-        cavity = float(modes.shape(damper.point) @ modes.q0)
-        centre = cavity / self.gap(parameter) if cavity else 0.0
-        relative = start - centre
-        return np.where(np.abs(relative) > 1, np.copysign(2.0, relative) - relative, relative) + centre
+    @staticmethod
+    def mirrored(start: Column) -> Column:
+        """Return start positions mirrored at the walls of the cavity."""
+        return np.where(np.abs(start) > 1, np.copysign(2.0, start) - start, start)
 
 
 def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column, dict[str, str]]]]:
