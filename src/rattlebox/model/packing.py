@@ -25,6 +25,9 @@ from .space import to_global
 from .units import SI, Number, Whole, in_si, numbers
 
 TOUCHING = 1e-9  # tolerance for overlaps by rounding, relative to the radius
+PRESSED = 0.1
+"""Largest overlap of given positions over the smaller radius. Contacts at the end of a run overlap; `prepare` compares with
+the overlaps of the contact law."""
 RANDOM_CLOSE_PACKING = 0.64
 """Largest share of the volume that equal spheres fill at random.
 
@@ -217,7 +220,9 @@ class Positions(FilePart, Packing):
     Parameters
     ----------
     positions
-        Centres, relative to the centre of the cavity, (n, 3) [m].
+        Centres, relative to the centre of the cavity, (n, 3) [m]. Contacts may overlap as deeply as the contact law makes
+        them, as those at the end of a run do; their elastic energy is part of that of the start. Tangential springs start
+        without stretch.
     radii
         Radii, (n,) [m], if the species have no size.
     velocities, spins
@@ -575,7 +580,7 @@ def check_size(cavity: AnyCavity, radius: float) -> None:
         )
 
 
-def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
+def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector, allowed: float = TOUCHING) -> None:
     """Raise if spheres overlap or extend beyond the cavity.
 
     Parameters
@@ -586,6 +591,8 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
         Centres, (n, 3) [m].
     radii
         Radii, (n,) [m].
+    allowed
+        Largest overlap over the smaller radius.
 
     Raises
     ------
@@ -593,20 +600,34 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
         With the indices of the particles in their damper (from 0), and the overlap.
     """
     room = cavity.room(positions, radii)
-    worst = int(room.argmin())
-    if room[worst] < -TOUCHING * radii[worst]:
+    worst = int((room / radii).argmin())
+    if room[worst] < -allowed * radii[worst]:
         place = ", ".join(f"{1e3 * x:.4g}" for x in positions[worst])
         far = float(np.abs(positions).max()) > _FAR * cavity.volume ** (1 / 3)
         raise Hint(
             f"particle {worst} at ({place}) mm sticks out of the cavity by {-1e3 * room[worst]:.4g} mm",
-            "positions in metres, or with units" if far else "positions relative to the centre of the cavity",
+            "positions in metres, or with units" if far else _where_inside(cavity, positions, radii, worst),
         )
     first, second, apart = overlapping(positions, radii)
     if apart.size:
-        k = int(apart.argmin())
-        if apart[k] < -TOUCHING * min(radii[first[k]], radii[second[k]]):
+        smaller = np.minimum(radii[first], radii[second])
+        k = int((apart / smaller).argmin())
+        if apart[k] < -allowed * smaller[k]:
             one, other = sorted((int(first[k]), int(second[k])))
-            raise Hint(f"particles {one} and {other} overlap by {-1e3 * apart[k]:.4g} mm")
+            raise Hint(
+                f"particles {one} and {other} overlap by {-1e3 * apart[k]:.4g} mm",
+                f"positions at least {1e3 * (radii[first[k]] + radii[second[k]]):.4g} mm apart, the sum of their radii",
+            )
+
+
+def _where_inside(cavity: AnyCavity, positions: Vector, radii: Vector, worst: int) -> str:
+    """Return advice for a particle outside of a cavity: the shift that brings all inside, or the room for its centre."""
+    middle = 0.5 * (positions.max(axis=0) + positions.min(axis=0))
+    from_corner = bool((positions >= 0).all() and positions.any())
+    if from_corner and cavity.room(positions - middle, radii).min() >= -TOUCHING * radii.min():
+        shift = ", ".join(f"{1e3 * x:.4g}" for x in -middle)
+        return f"positions relative to the centre of the cavity: with a shift by ({shift}) mm all are inside"
+    return f"a distance of at least {1e3 * radii[worst]:.4g} mm between its centre and the walls, or a larger cavity"
 
 
 def overlapping(positions: Vector, radii: Vector, within: float = 0.0) -> tuple[Any, Any, Vector]:

@@ -26,6 +26,7 @@ from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, 
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
 from .packing import (
+    PRESSED,
     RANDOM_CLOSE_PACKING,
     AnyPacking,
     Bed,
@@ -524,7 +525,7 @@ class ParticleDamper(Part):
         if isinstance(packing, Positions):
             positions = np.array(packing.positions)
             with at("packing", packing.where):
-                check_packing(self.cavity, positions, radius)
+                check_packing(self.cavity, positions, radius, PRESSED)
             velocity += 0.0 if packing.velocities is None else np.array(packing.velocities)
             spin += 0.0 if packing.spins is None else np.array(packing.spins)
         elif isinstance(packing, Lattice):

@@ -18,6 +18,7 @@ from rattlebox.model.particle_case import direction_of_base, inertia_along
 from rattlebox.prepare.bed import bed_level, bed_note
 from rattlebox.prepare.laws import pack_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
+from rattlebox.prepare.pressed import pressed_notes
 from rattlebox.prepare.settle import pack_walls, settle
 from rattlebox.prepare.softening import ENDURING, cavity_motion, choose_softening
 from rattlebox.prepare.time_step import (
@@ -92,8 +93,12 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
     tables, step = _step(case)
     shapes = _shapes(case)
     starts = tuple(_positions(case, shapes, positions))
+    pressed: list[str] = []
+    for index, (damper, table, speed) in enumerate(zip(case.particle_dampers, tables, step.speeds, strict=True)):
+        with at(*(("dampers", index) if len(tables) > 1 else ("damper",))):
+            pressed += pressed_notes(damper, table, speed, damper.label(index))
     fills, more = _fills(case, [start - case.modes.q0 @ shape for start, shape in zip(starts, shapes, strict=True)])
-    return Prepared(case, (*notes, *more), step, tables, starts, fills)
+    return Prepared(case, (*notes, *more, *pressed), step, tables, starts, fills)
 
 
 def count_steps(case: Case) -> int:
