@@ -102,6 +102,7 @@ from rattlebox.studies.calibration.measurements import Drops as Drops
 from rattlebox.studies.calibration.measurements import RingDown as RingDown
 from rattlebox.studies.calibration.measurements import ShakerLoss as ShakerLoss
 from rattlebox.studies.check_softening import check_softening as check_softening
+from rattlebox.studies.check_step import check_step as check_step
 from rattlebox.studies.compare import compare as compare
 from rattlebox.studies.damping_curve import damping_curve as damping_curve
 from rattlebox.studies.export import to_mat as to_mat

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from rattlebox.model.errors import Hint
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.particles import resolve_softening
-from rattlebox.studies.kinds.sweep import sweep
+from rattlebox.studies.compare_variants import compared
 from rattlebox.studies.robust import packing_axis
 
 if TYPE_CHECKING:
@@ -94,17 +91,13 @@ def check_softening(
     >>> sorted(result)[:2]
     ['reduced_loss', 'reduced_loss_change']
     """
-    import xarray
-
-    names = [measures] if isinstance(measures, str) else list(measures)
     count = whole_number(packings, "packings", 2)
     if not case.particle_dampers:
         raise Hint("the case has no particle damper, and only these have softening", "a case with rb.ParticleDamper")
     case, _ = resolve_softening(case)
     own = max(damper.softening_factor for damper in case.particle_dampers)
     values = _values(own, softenings)
-    seeds = packing_axis(case, count)
-    found: dict[str, list[Any]] = {name: [] for name in names}
+    variants = []
     for value in values:
         dampers = [
             each.model_copy(update={"softening": max(1.0, each.softening_factor * value / own)})
@@ -112,33 +105,9 @@ def check_softening(
             else each
             for each in case.dampers
         ]
-        variant = case.model_copy(update={"dampers": tuple(dampers)})
-        study = sweep(variant, seeds, names, skip=skip, cycles=cycles, workers=workers, progress=progress)
-        for name in names:
-            found[name].append(study[name])
-    data: dict[str, Any] = {}
-    for name, rows in found.items():
-        about = rows[0].attrs
-        numbers = np.array([row.values for row in rows])
-        mean, error = numbers.mean(axis=1), numbers.std(axis=1, ddof=1) / math.sqrt(count)
-        change, change_error = mean - mean[-1], np.hypot(error, error[-1])
-        change_error[-1] = 0.0
-        data[name] = "softening", mean, about
-        long_name, units = about.get("long_name", name), about.get("units", "1")
-        for suffix, part, words in (
-            ("error", error, "standard error of the {}"),
-            ("change", change, "change of the {} from the last softening"),
-            ("change_error", change_error, "standard error of the change of the {}"),
-        ):
-            data[f"{name}_{suffix}"] = "softening", part, {"units": units, "long_name": words.format(long_name)}
-        allowed = tolerance * abs(mean[-1])
-        changed = np.abs(change) > np.maximum(2 * change_error, allowed)
-        kept = np.abs(change) + 2 * change_error <= allowed
-        data[f"{name}_changed"] = "softening", changed, {"long_name": f"whether the {long_name} changes"}
-        data[f"{name}_kept"] = "softening", kept, {"long_name": f"whether the {long_name} is kept"}
-    attributes = {"packings": count, "tolerance": tolerance}
-    coordinate = ("softening", values, {"units": "1", "long_name": "softening"})
-    return xarray.Dataset(data, {"softening": coordinate}, attributes)
+        variants.append(case.model_copy(update={"dampers": tuple(dampers)}))
+    options = {"skip": skip, "cycles": cycles, "workers": workers, "progress": progress}
+    return compared(variants, measures, packing_axis(case, count), ("softening", values, "1"), tolerance, options)
 
 
 def _values(own: float, given: Sequence[float] | None) -> list[float]:

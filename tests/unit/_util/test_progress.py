@@ -157,7 +157,8 @@ def test_progress_means_the_same_in_all_functions():
     """All long calls take `progress`, with one type and one default."""
     result = with_progress()
     studies = {"sweep", "bifurcation", "basins", "frequency_response", "lyapunov", "loss_map", "design", "sensitivity"}
-    others = {"simulate", "simulate_many", "compare", "damping_curve", "calibrate", "check_softening", "film_particles"}
+    others = {"simulate", "simulate_many", "compare", "damping_curve", "calibrate", "film_particles"}
+    others |= {"check_softening", "check_step"}
     assert set(result) == studies | others
     parameters = [inspect.signature(each).parameters["progress"] for each in result.values()]
     assert {(p.annotation, p.default, p.kind) for p in parameters} == {
