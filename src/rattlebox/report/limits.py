@@ -120,7 +120,7 @@ def _particle_limits(run: Run) -> Iterator[Limit]:
             "time step",
             f"{digits(known['steps_per_contact'], 3)} steps in the shortest contact",
             f"{MIN_STEPS_PER_CONTACT:g} or more",
-            "Errors fall with the square of the step: compare with half of it, rb.Dem(fraction=0.0125).",
+            "Errors fall with the square of the step: rb.check_step compares with half of it.",
         )
     if "largest_overlap" in known:
         yield Limit(

@@ -58,6 +58,7 @@ def check_softening(
         Over `softening`, for each measure: its mean over the packings, `..._error` (standard error of the mean),
         `..._change` from the reference, `..._change_error`, and `..._changed`: whether the change exceeds the tolerance
         and twice its error. If the measure of a packing is NaN, all are NaN and `..._changed` is False.
+        Attributes: packings, tolerance, and `exceeded`, the names of the validity limits that runs exceeded.
 
     Raises
     ------

@@ -12,8 +12,8 @@ from rattlebox.model.units import whole_number
 from rattlebox.prepare.particles import count_steps, resolve_softening
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.compare_variants import compared
+from rattlebox.studies.particle_work import ParticleWork
 from rattlebox.studies.robust import packing_axis
-from rattlebox.studies.work_of_case import work_of_case
 
 if TYPE_CHECKING:
     import xarray
@@ -60,6 +60,7 @@ def check_step(
         `..._change` from the reference, `..._change_error`, `..._changed`: whether the change exceeds the tolerance and
         twice its error, and `..._kept`: whether the change plus twice its error is within the tolerance. If both are False,
         more packings or cycles are needed. If the measure of a packing is NaN, all are NaN and both are False.
+        Attributes: packings, tolerance, and `exceeded`, the names of the validity limits that runs exceeded.
 
     Raises
     ------
@@ -99,7 +100,7 @@ def check_step(
         raise Hint("two parts or more are needed, ascending", "parts = (1, 2)", ["parts"])
     case, _ = resolve_softening(case)
     seeds = packing_axis(case, count)
-    work = work_of_case(case, read_axes(case, seeds, source="packings"), skip=skip, cycles=cycles)
+    work = ParticleWork(case, read_axes(case, seeds, source="packings"), cycles=cycles)
     whole = work.variant(0)
     own = whole.duration / count_steps(whole)
     steps = [own / part for part in divisors]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.studies.kinds.sweep import sweep
 
 if TYPE_CHECKING:
@@ -69,4 +70,12 @@ def compared(
         data[f"{name}_changed"] = along, changed, {"long_name": f"whether the {long_name} changes"}
         data[f"{name}_kept"] = along, kept, {"long_name": f"whether the {long_name} is kept"}
     about_values = (along, list(values), {"units": unit, "long_name": "time step" if along == "step" else along})
-    return xarray.Dataset(data, {along: about_values}, {"packings": count, "tolerance": tolerance})
+    exceeded = [name for name in WARNINGS if any(_exceeds(study, name) for study in studies)]
+    attributes = {"packings": count, "tolerance": tolerance, "exceeded": exceeded}
+    return xarray.Dataset(data, {along: about_values}, attributes)
+
+
+def _exceeds(study: xarray.Dataset, name: str) -> bool:
+    """Return whether a run of a study exceeds a validity limit."""
+    bit = 2 ** study.warnings.attrs["flag_meanings"].split().index(name)
+    return bool((study.warnings.values.astype(int) & bit).any())
