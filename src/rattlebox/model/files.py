@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.mat_check import check_mat
+from rattlebox.exchange.read.guarded import errors_of
 
 from .errors import Hint
 from .units import LARGEST
@@ -115,24 +116,20 @@ def read_arrays(file: Path) -> dict[str, Array]:
         If the file cannot be read.
     """
     try:
-        file.open("rb").close()  # SciPy would hide the reason if this fails
-        content = dict(_flatten(_load_mat(file) if file.suffix.lower() == ".mat" else _load_numpy(file)))
+        with errors_of(file, file.suffix[1:].upper()):
+            file.open("rb").close()  # SciPy would hide the reason if this fails
+            content = dict(_flatten(_load_mat(file) if file.suffix.lower() == ".mat" else _load_numpy(file)))
     except NotImplementedError:
         raise DataError(f"{file} is a MAT file of version 7.3", "save('...', '-v7') in MATLAB") from None
-    except OSError as error:
-        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
-    except Exception as error:
-        raise DataError(
-            f"{file} cannot be read as {file.suffix[1:].upper()}: {error}", "the complete file, as it was written"
-        ) from None
     return {name: np.asarray(value, dtype=float) for name, value in content.items() if _is_real(value)}
 
 
 def _load_numpy(file: Path) -> Mapping[str, Any]:
-    loaded = np.load(file, allow_pickle=False)
-    if not isinstance(loaded, np.ndarray):
-        with loaded:
-            return dict(_without_pickles(loaded))
+    with file.open("rb") as stream:  # NumPy leaves a damaged NPZ file open
+        loaded = np.load(stream, allow_pickle=False)
+        if not isinstance(loaded, np.ndarray):
+            with loaded:
+                return dict(_without_pickles(loaded))
     return {"": loaded} if loaded.dtype.names is None else {name: loaded[name] for name in loaded.dtype.names}
 
 

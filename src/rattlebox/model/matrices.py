@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -142,16 +142,19 @@ class Matrices(FilePart, DampedModes):
 
     def _where(self, name: str) -> list[str]:
         """Return the field with a matrix, for messages."""
+        if isinstance(self.file, dict):
+            return ["file", name]
         return ["file"] if self.file else [name]
 
     @classmethod
-    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Matrices:
-        """Read a structure from a NPZ or MAT file.
+    def from_file(cls, path: str | os.PathLike[str] | Mapping[str, str | os.PathLike[str]], **options: Any) -> Matrices:
+        """Read a structure from a NPZ or MAT file, or from Matrix Market files.
 
         Parameters
         ----------
         path
-            The file, with M, K, optionally C, and points as `point_<name>` or in a struct `points`.
+            The file, with M, K, optionally C, and points as `point_<name>` or in a struct `points`. Matrix Market files by
+            the name of their matrix: `{"M": "M.mtx", "K": "K.mtx"}`.
         **options
             points, influence, displacement, velocity.
 
@@ -162,10 +165,13 @@ class Matrices(FilePart, DampedModes):
 
         Raises
         ------
+        DataError
+            If a file cannot be read, or contains no such matrix; the message lists its content.
         CaseError
-            If a matrix is missing or invalid; the message names the file and lists its content.
+            If a matrix is invalid.
         """
-        return cls(**{"file": os.fspath(path), **options})
+        each = {name: os.fspath(file) for name, file in path.items()} if isinstance(path, Mapping) else os.fspath(path)
+        return cls(**{"file": each, **options})
 
     def notes(self) -> Iterator[str]:
         """Yield the units that are assumed for matrices from files, which state none."""
@@ -257,6 +263,8 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
     """Return matrices and points of a file, by name."""
     file = existing(path)
     if file.suffix.lower() not in (".npz", ".mat"):
+        if file.suffix.lower() == ".mtx":
+            raise DataError(f"{path} is one matrix; M and K are needed", 'file = {"M": "M.mtx", "K": "K.mtx"}')
         raise DataError(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
     arrays = read_arrays(file)
     if not arrays:

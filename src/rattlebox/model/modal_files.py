@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,14 +10,16 @@ from typing import Any
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox._util.text import has_controls
 from rattlebox.exchange.read.ansys import read_full, read_result
+from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.modal_table import read_modal_table
 from rattlebox.exchange.read.modes_in_file import ModesInFile, listed
 from rattlebox.exchange.read.universal import read_universal_modes
 
 from .elementwise import Vector
 from .errors import Hint, at, nearest
-from .files import existing, read_toml
+from .files import check_finite, existing, read_toml
 from .space import AXES
 from .units import numbers, parse, whole_number
 
@@ -28,10 +29,9 @@ _SUPPORTED = ".csv, .toml, .uff, .unv, .rst or .full"
 _TOML_FIELDS = ("frequencies", "damping_ratios", "modal_masses", "shapes", "participation")
 _DEFAULT_MODES = 10  # number of modes computed from a .full file
 _MOST_POINTS = 8  # largest number of points that are all read if none is named
+_SHOWN = 200  # characters of a name or a value in a message
 _SAME_UNIT = 1e-2  # relative difference of units that are the same
 _SMALLEST_SHAPE = 1e-12  # kg^-1/2
-
-_POINT_AND_AXIS = re.compile(r"^\s*(.+?)(?:\s+(-?[xyz]))?\s*$")
 
 
 def read_modes(path: str, count: int | None, *, has_mass_unit: bool = False) -> ModesInFile | dict[str, Any]:
@@ -121,23 +121,20 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         if masses is None and "modal_masses" in modes:
             with at("file"):
                 masses = _modal_masses(modes["modal_masses"], given, in_kg=False)
-        shapes = {point: numbers(row) for point, row in modes["shapes"].items()}
-        modes = ModesInFile(
-            frequencies=np.array([parse(f, ("Hz",))[0] for f in modes["frequencies"]]),
-            shapes=shapes,
-            modal_masses=masses,
-            damping_ratios=numbers(modes["damping_ratios"]) if "damping_ratios" in modes else None,
-            participation=numbers(modes["participation"]) if "participation" in modes else None,
-            mass_unit=None if given.get("mass_unit") is not None else 1.0,
-        )
+        modes = _modes_of_toml(modes, path, masses, has_mass_unit=given.get("mass_unit") is not None)
     elif masses is not None:
         modes = replace(modes, modal_masses=masses, mass_unit=1.0)
+    with at("file"):
+        _check_numbers(modes, path)
     first = slice(None, count)
     total = modes.frequencies.size
     if count is not None and count > total:
         raise Hint(f"{name} has {total} modes", f"mode_count = {total}", ["mode_count"])
     scale, notes = _scale(modes, given, name, path)
     points = _select_points(modes, given, name)
+    with at("file"):
+        for point, shape in points.items():
+            check_finite((shape.T * scale).T, f"{path}: the mass-normalised shape at {point}")
     fields: dict[str, Any] = {
         "frequencies": modes.frequencies[first].tolist(),
         "shapes": {point: (shape[first].T * scale[first]).T.tolist() for point, shape in points.items()},
@@ -159,6 +156,61 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         )
     size = f"the largest mass-normalised shape is {largest:.4g} kg^-0.5, at {point}"
     return fields, [f"{note}; {size}" for note in (*notes, *modes.notes)]
+
+
+def _check_numbers(modes: ModesInFile, path: str) -> None:
+    """Raise if a number of the modes is not finite or absurd, whatever the format of the file."""
+    arrays: dict[str, Any] = {
+        "frequencies": modes.frequencies,
+        **{f"the shape at {name}": row for name, row in modes.shapes.items()},
+    }
+    arrays |= {"damping_ratios": modes.damping_ratios, "modal_masses": modes.modal_masses}
+    arrays |= {"participation": modes.participation, "total_mass": modes.total_mass}
+    for what, array in arrays.items():
+        if array is not None:
+            check_finite(np.asarray(array, dtype=float), f"{path}: {what}")
+
+
+def _modes_of_toml(table: dict[str, Any], path: str, masses: Vector | None, *, has_mass_unit: bool) -> ModesInFile:
+    """Return the modes of a TOML table.
+
+    Raises
+    ------
+    DataError
+        If a field is not what it should be; with the name of the file.
+    """
+    with at("file"), errors_of(path, "a table of modes"):
+        for name in table:
+            if not isinstance(table[name], dict if name == "shapes" else list) or not table[name]:
+                raise DataError(f"{path}: {name} is not a list of values, or a table of lists", "[shapes] tip = [0.7]")
+        try:
+            modes = ModesInFile(
+                frequencies=np.array([parse(f, ("Hz",))[0] for f in table["frequencies"]]),
+                shapes={point: numbers(row) for point, row in table["shapes"].items()},
+                modal_masses=masses,
+                damping_ratios=numbers(table["damping_ratios"]) if "damping_ratios" in table else None,
+                participation=numbers(table["participation"]) if "participation" in table else None,
+                mass_unit=None if has_mass_unit else 1.0,
+            )
+        except Hint as hint:
+            raise DataError(
+                f"{path}: {hint.complaint[:_SHOWN]}", hint.suggestion or "numbers, or text with a unit"
+            ) from None
+        for name, row in modes.shapes.items():
+            if has_controls(name):
+                raise DataError(f"{path}: the name {name[:_SHOWN]!r} contains a control character", "printable names")
+            if row.ndim not in (1, 2) or len(row) != modes.frequencies.size or (row.ndim == 2 and row.shape[1] != 3):
+                raise DataError(
+                    f"{path}: the shape at {name[:_SHOWN]!r} has the size {row.shape}, but there are"
+                    f" {modes.frequencies.size} frequencies",
+                    "one number, or three along x, y and z, for each mode",
+                )
+        for name, values in (("damping_ratios", modes.damping_ratios), ("modal_masses", masses)):
+            if values is not None and values.shape != modes.frequencies.shape and name in table:
+                raise DataError(
+                    f"{path}: {values.size} {name}, but {modes.frequencies.size} frequencies", "one for each mode"
+                )
+    return modes
 
 
 def _modal_masses(values: Any, given: Mapping[str, Any], *, in_kg: bool) -> Vector:
@@ -228,8 +280,10 @@ def _select_points(modes: ModesInFile, given: Mapping[str, Any], name: str) -> d
         with at("points", point):
             text = str(value) if isinstance(value, (int, str)) and not isinstance(value, bool) else ""
             label, axis = text, None
-            if text not in modes.shapes and (match := _POINT_AND_AXIS.match(text)):
-                label, axis = match[1], match[2]
+            stem, _, last = text.strip().rpartition(" ")
+            if text not in modes.shapes:
+                is_axis = bool(stem) and last.removeprefix("-") in AXES
+                label, axis = (stem.rstrip(), last) if is_axis else (text.strip(), None)
             if label not in modes.shapes:
                 raise Hint(f"{name} has no point {label!r}; it has {listed(labels)}", nearest(label, labels[:200]))
             shape = modes.shapes[label]

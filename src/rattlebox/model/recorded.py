@@ -418,8 +418,10 @@ class Record(FilePart, Sampled):
 
         Raises
         ------
-        CaseError
+        DataError
             If the file cannot be read; with the line at fault, or the available columns.
+        CaseError
+            If other fields do not fit the file.
         """
         return cls(file=os.fspath(path), **options)
 

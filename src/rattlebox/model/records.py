@@ -16,6 +16,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
+from rattlebox.exchange.read.guarded import errors_of
 
 from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
@@ -86,11 +87,17 @@ class _Text:
     lines: list[Line]
     step: float | None
     notes: tuple[str, ...]
+    is_blank: bool  # whether blanks separate the columns
 
     @property
     def width(self) -> int:
         """Number of columns."""
         return len(self.rows[0].cells)
+
+    @property
+    def is_named(self) -> bool:
+        """Whether the columns have names for sure: a line of words above may as well be a title."""
+        return self.names is not None and not (self.is_blank and all("(" not in name for name in self.names))
 
     @property
     def labels(self) -> list[str]:
@@ -164,27 +171,28 @@ def read_columns(path: str, columns: Selection = None, step: float | None = None
     DataError
         If the file cannot be read; with the line at fault, or the available columns.
     """
-    file = existing(path)
-    if file.suffix.lower() in BINARY:
-        arrays = read_arrays(file)
-        if not arrays:
-            raise DataError(f"{file} contains no numbers", _ANY)
-        if step is None and columns != "rows":
-            return Columns(*_select_arrays(file, arrays, columns))
-        values, notes = _select_samples(file, arrays, columns)
-        return Columns(_even_times(file, values.size, step), values, notes=notes)
-    text = _parse_text(file, requested=[str(column) for column in columns or ()])
-    by_rows = columns == "rows" or (columns is None and text.goes_by_rows() and (step or text.step))
-    if step is None and (columns not in (None, "rows") or not (by_rows or (text.step and text.width == 1))):
-        return _times_and_values(text, columns if columns != "rows" else None)
-    return _samples(text, columns, step, bool(by_rows))
+    with errors_of(path, "columns of numbers"):
+        file = existing(path)
+        if file.suffix.lower() in BINARY:
+            arrays = read_arrays(file)
+            if not arrays:
+                raise DataError(f"{file} contains no numbers", _ANY)
+            if step is None and columns != "rows":
+                return Columns(*_select_arrays(file, arrays, columns))
+            values, notes = _select_samples(file, arrays, columns)
+            return Columns(_even_times(file, values.size, step), values, notes=notes)
+        text = _parse_text(file, requested=[str(column) for column in columns or ()])
+        by_rows = columns == "rows" or (columns is None and text.goes_by_rows() and (step or text.step))
+        if step is None and (columns not in (None, "rows") or not (by_rows or (text.step and text.width == 1))):
+            return _times_and_values(text, columns if columns != "rows" else None)
+        return _samples(text, columns, step, bool(by_rows))
 
 
 def _times_and_values(text: _Text, columns: Sequence[Column] | None) -> Columns:
     by_number = not any(isinstance(column, str) for column in columns or ())
     if by_number and not _rises(text.table()[0]) and text.goes_by_rows():
         raise _by_rows_error(text.file, text.width, 'dt = "0.01 s", the time between samples, and columns = "rows"')
-    indices = _column_indices(text.file, columns, text.labels, is_named=text.names is not None)
+    indices = _column_indices(text.file, columns, text.labels, is_named=text.is_named)
     times, values = _parse_rows(text.file, text.rows, indices).T
     headings = text.above(indices[0]), text.above(indices[1])
     return Columns(times, values, headings, tuple(text.lines), text.notes)
@@ -204,7 +212,7 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
             notes.append(f"the samples are read row by row, {text.width} a row, {values.size} in all")
         headings: list[str] = []
     else:
-        is_named = text.names is not None
+        is_named = text.is_named
         (index,) = _column_indices(text.file, columns, text.labels, needed=1, is_named=is_named)
         by_name = columns is not None and isinstance(columns[0], str)
         if not by_name and text.goes_by_rows():
@@ -341,13 +349,15 @@ def _column_indices(
         if len(names) != needed:
             advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
             if len(names) > needed:
-                advice = f"columns = {list(range(1, needed + 1)) if is_named else list(names[:needed])}"
-                advice = advice.replace("'", '"')
+                advice = f"columns = {list(range(1, needed + 1))}"
             if len(names) > needed and not is_named:
                 advice = 'dt = "0.01 s" and ' if needed == 2 else ""
                 advice += f"{_BY_ROWS}, if the samples go on from row to row; else a line of names above the columns"
                 advice += ', and columns = ["time", "force"]' if needed == 2 else ', and columns = ["force"]'
-            raise DataError(f"{file} has {several(len(names), what)} ({available}), {_NEEDED[needed]} needed", advice)
+            raise DataError(
+                f"{file} has {several(len(names), what)} ({available}), {_NEEDED[needed]} needed",
+                advice or f"a file of {needed} columns of numbers",
+            )
         columns = range(1, needed + 1)
     indices = []
     for column in columns:
@@ -388,12 +398,13 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     DataError
         If the file cannot be read; with the line at fault.
     """
-    text = _parse_text(file, known)
-    names = text.labels
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise DataError(f"{file} has two columns {twice!r}", "another name for one of them")
-    return dict(zip(names, _parse_rows(file, text.rows, list(range(len(names)))).T, strict=True))
+    with errors_of(file, "columns of numbers"):
+        text = _parse_text(file, known)
+        names = text.labels
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise DataError(f"{file} has two columns {twice!r}", "another name for one of them")
+        return dict(zip(names, _parse_rows(file, text.rows, list(range(len(names)))).T, strict=True))
 
 
 def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tuple[Array, list[list[str]]]:
@@ -420,10 +431,11 @@ def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tup
     DataError
         If the file cannot be read; with the line at fault, or the available columns.
     """
-    file = existing(path)
-    text = _parse_text(file, requested=[str(column) for column in columns or ()])
-    indices = _column_indices(file, columns, text.labels, needed=count)
-    return _parse_rows(file, text.rows, indices), [text.above(index) for index in indices]
+    with errors_of(path, "columns of numbers"):
+        file = existing(path)
+        text = _parse_text(file, requested=[str(column) for column in columns or ()])
+        indices = _column_indices(file, columns, text.labels, needed=count)
+        return _parse_rows(file, text.rows, indices), [text.above(index) for index in indices]
 
 
 def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] = ()) -> _Text:
@@ -449,7 +461,8 @@ def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] 
     for row in lines[:start]:
         if len(row.cells) != width and set(row.cells) <= set(known):
             raise DataError(
-                f"{file}, line {rows[0].number}: {width} columns, but {len(row.cells)} in line {row.number}"
+                f"{file}, line {rows[0].number}: {width} columns, but {len(row.cells)} in line {row.number}",
+                "a name above each column",
             )
     above = [(row, _heading_cells(row, width)) for row in lines[:start]]
     if width == 1:  # a name and a unit; further lines are text
@@ -463,7 +476,8 @@ def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] 
         for row, cells in above
         if cells is None or cells not in headings or "unit" in row.content.lower()
     ]
-    return _Text(file, rows, names, headings, free, step, notes)
+    is_blank = all(row.cells == row.content.split() for row in rows[:_PROBED])
+    return _Text(file, rows, names, headings, free, step, notes, is_blank)
 
 
 def _heading_cells(row: _Row, width: int) -> list[str] | None:
@@ -606,7 +620,9 @@ def _bad_row(file: Path, lines: list[_Row], indices: list[int]) -> DataError:
             advice = "the whole file, if its last line is cut short"
             return DataError(
                 f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0].number}",
-                advice if number == lines[-1].number and len(cells) < width else "",
+                advice
+                if number == lines[-1].number and len(cells) < width
+                else "as many cells in each line of numbers",
             )
         row = [cells[k] for k in indices]
         bad = next((cell for cell in row if not _is_number(cell)), None)
@@ -641,7 +657,7 @@ def _split_lines(file: Path) -> list[_Row]:
             else:
                 cells = content.split(delimiter)
         except csv.Error as error:
-            raise DataError(f"{file}, line {number}: {error}") from None
+            raise DataError(f"{file}, line {number}: {error}", "numbers and names of usual lengths") from None
         cells = [cell.strip() for cell in cells]
         while cells and not cells[-1]:
             cells.pop()

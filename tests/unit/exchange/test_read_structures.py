@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import struct
+import time
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,8 @@ import scipy.io
 from ansys.mapdl.reader import examples
 
 import rattlebox as rb
+from rattlebox.exchange.read import ansys_arrays, guarded
+from rattlebox.exchange.read.matrix_market import read_matrix
 from rattlebox.exchange.read.universal import _phase_scatter, read_functions
 from rattlebox.model.plausibility import plausibility_notes
 
@@ -297,6 +301,95 @@ def test_matrices_in_matrix_market_files(tmp_path: Path) -> None:
     assert rb.Case.from_file(tmp_path / "again.toml") == case
 
 
+def test_matrices_of_files_by_name(tmp_path: Path) -> None:
+    """`from_file` takes one Matrix Market file for each matrix, as its page describes, and refuses a single one."""
+    scipy.io.mmwrite(tmp_path / "K.mtx", np.array([[3e4, -1e4], [-1e4, 1e4]]))
+    scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.coo_array(np.diag([2.0, 1.0])))
+    paths = {"M": tmp_path / "M.mtx", "K": str(tmp_path / "K.mtx")}
+    read = rb.Matrices.from_file(paths, points={"tip": 0})
+    assert read == rb.Matrices(file={name: str(path) for name, path in paths.items()}, points={"tip": 0})
+    with pytest.raises(rb.DataError, match=r"is one matrix; M and K are needed\n  try: file = {\"M\""):
+        rb.Matrices.from_file(tmp_path / "M.mtx", points={"tip": 0})
+    with pytest.raises(rb.DataError, match="there is no file"):
+        rb.Matrices.from_file({"M": tmp_path / "M.mtx", "K": tmp_path / "none.mtx"}, points={"tip": 0})
+    with pytest.raises(rb.DataError, match="there is no file"):
+        rb.Positions.from_file(tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize("kind", ["coordinate", "array"])
+@pytest.mark.parametrize("symmetry", ["general", "symmetric"])
+@pytest.mark.parametrize("field", ["real", "integer"])
+def test_matrix_market_against_scipy(tmp_path: Path, kind: str, symmetry: str, field: str) -> None:
+    """Random matrices that SciPy writes in each form of the format are read as SciPy reads them."""
+    random = np.random.default_rng(3)
+    for n in (1, 2, 7, 40):
+        matrix = np.round(random.standard_normal((n, n)) * 100, 0 if field == "integer" else 17)
+        matrix = matrix + matrix.T if symmetry == "symmetric" else matrix
+        matrix[random.random((n, n)) < 0.4] = 0
+        matrix = np.tril(matrix) + np.tril(matrix, -1).T if symmetry == "symmetric" else matrix
+        given = matrix.astype(int) if field == "integer" else matrix
+        written = scipy.sparse.coo_array(given) if kind == "coordinate" else given
+        scipy.io.mmwrite(tmp_path / "A.mtx", written, comment=" two\n lines", symmetry=symmetry, precision=17)
+        expected = scipy.io.mmread(tmp_path / "A.mtx")
+        expected = expected.toarray() if kind == "coordinate" else expected
+        np.testing.assert_array_equal(read_matrix(tmp_path / "A.mtx"), expected)
+
+
+def test_a_child_process_with_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A reader that takes too long, or asks for too much memory, is stopped, and the file is refused."""
+    monkeypatch.setattr(guarded, "LEAST_TIME", 0.001)
+    monkeypatch.setattr(guarded, "BYTES_PER_SECOND", 1e12)
+    with pytest.raises(rb.DataError, match=r"cannot be read as \.rst within 0 s"):
+        guarded.arrays_from_child(RST, "rst")
+    monkeypatch.undo()
+    monkeypatch.setattr(guarded, "LEAST_MEMORY", 1 << 20)
+    monkeypatch.setattr(guarded, "MEMORY_PER_BYTE", 0)
+    with pytest.raises(rb.DataError, match="try: the complete file"):
+        guarded.arrays_from_child(RST, "rst")
+    assert set(guarded.IN_CHILD) == {"rst", "full"}
+
+
+def test_a_free_structure(tmp_path: Path) -> None:
+    """Matrices of Ansys without a support have rigid-body modes; the table of supports is empty."""
+    arrays = ansys_arrays._read_fixed([])
+    assert arrays.shape == (0, 2)
+
+
+def test_errors_of_other_libraries_name_the_file(tmp_path: Path) -> None:
+    """Every exception of a reader becomes an error with the name of the file, of a length that can be read."""
+    for error in (
+        KeyError("data"),
+        OverflowError("too large"),
+        ValueError(""),
+        MemoryError(),
+        OSError(22, "Invalid"),
+        RecursionError(),
+    ):
+        with (
+            pytest.raises(rb.DataError, match=r"a\.uff.*\n  try: ") as caught,
+            guarded.errors_of(tmp_path / "a.uff", "a file"),
+        ):
+            raise error
+        assert len(str(caught.value)) < 500
+    with pytest.raises(rb.DataError) as caught, guarded.errors_of(tmp_path / "a.uff", "a file"):
+        raise rb.DataError("a.uff: " + "A" * 100_000, "another")
+    assert len(str(caught.value)) < 1100
+
+
+@pytest.mark.parametrize("heading", ["P1" + " " * 9000 + "x", "A" * 140_000, "(" * 9000, "x " * 5000, '"' * 1001])
+def test_headings_of_any_length(tmp_path: Path, heading: str) -> None:
+    """A heading of thousands of blanks, letters or brackets is read or refused at once; a pattern took cubic time."""
+    (tmp_path / "a.csv").write_text(f"frequency (Hz),damping,{heading}\n10,0.1,1\n")
+    begin = time.process_time()
+    with contextlib.suppress(rb.RattleboxError):
+        rb.Modal.from_file(tmp_path / "a.csv")
+    with contextlib.suppress(rb.RattleboxError):
+        rb.SDOF(mass=f"1 {heading}", stiffness=1)
+    with contextlib.suppress(rb.RattleboxError):
+        rb.Modal.from_file(FULL, points={"a": heading}, damping_ratio=0.01)
+    assert time.process_time() - begin < 2
+
+
 def test_records_of_universal_files() -> None:
     """Text and binary time histories are read as records in the unit of the file."""
     binary = rb.Record.from_file(UFF / "time_history_58b.uff")
@@ -380,7 +473,18 @@ def test_damaged_files_of_modes(tmp_path: Path, name: str, content: bytes, messa
     [
         (b"", "is empty"),
         (b"1 0\n0 1\n", "does not begin with %%MatrixMarket"),
-        (MTX[:-9], "cannot be read"),
+        (MTX[:-9], "states 2 entries, but contains 1"),
+        (MTX.replace(b"1.0\n2", b"1.0\x002"), "which is not a number"),
+        (MTX + bytes(16), "which is not a number"),
+        (MTX[:60] + bytes(12), "which is not a number|whole numbers"),
+        (MTX.replace(b"1 1 1.0", b"1 3 1.0"), "an entry outside of its 2 rows and columns"),
+        (MTX.replace(b"1 1 1.0", b"1 1.5 1"), "an entry outside of its 2 rows and columns"),
+        (MTX.replace(b"2 2 2", b"2 2 99999999999"), "size in whole numbers"),
+        (MTX.replace(b"2 2 2", b"-2 2 2"), "size in whole numbers"),
+        (MTX.replace(b"2 2 2\n1 1 1.0\n2 2 1.0", b"2 2 3\n1 2 1\n2 1 1\n2 2 1"), "on both sides of the diagonal"),
+        (MTX.replace(b"symmetric", b"skew-symmetric"), "a skew-symmetric matrix of the field real"),
+        (MTX.replace(b"real", b"pattern"), "a symmetric matrix of the field pattern"),
+        (MTX.replace(b"matrix", b"vector"), "is no heading of a matrix"),
         (MTX.replace(b"real", b"complex").replace(b"1.0\n", b"1.0 0.0\n"), "complex numbers"),
         (MTX.replace(b"2 2 2", b"2 3 2").replace(b"symmetric", b"general"), "2 rows and 3 columns"),
         (MTX.replace(b"2 2 2", b"9000 9000 2"), "9000 degrees of freedom; at most 3000"),

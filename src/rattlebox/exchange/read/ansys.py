@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import struct
-import subprocess
-import sys
 from functools import lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -15,6 +12,7 @@ import numpy as np
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 
+from .guarded import arrays_from_child, errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
 _MASS_UNITS = {
@@ -49,21 +47,7 @@ def _read_arrays(path: Path, kind: str) -> dict[str, Any]:
 def _read_once(path: Path, kind: str, modified: int, size: int) -> dict[str, Any]:
     """Return the arrays of a file; those of the last files are cached until the files change."""
     optional_import("ansys.mapdl", "fe", "a modal table in CSV")
-    with TemporaryDirectory() as folder:
-        output = Path(folder) / "arrays.npz"
-        command = [sys.executable, "-P", str(Path(__file__).with_name("ansys_arrays.py")), kind, str(path), str(output)]
-        process = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-        if process.returncode == 1:
-            reason = (process.stderr.strip().splitlines() or ["cannot be read"])[-1]
-            raise DataError(f"{path} {reason}", "the complete file")
-        if process.returncode:
-            raise DataError(
-                f"{path} cannot be read as .{kind}: the reader crashed (exit code {process.returncode}); the file may be"
-                " cut short or damaged",
-                "the complete file",
-            )
-        with np.load(output) as arrays:
-            return dict(arrays)
+    return arrays_from_child(path, kind)
 
 
 def read_result(path: Path) -> ModesInFile:
@@ -85,34 +69,35 @@ def read_result(path: Path) -> ModesInFile:
         If the file is damaged or not of a modal analysis, or if all shapes have a largest component of 1, so that the modal
         masses are unknown.
     """
-    result = _read_arrays(path, "rst")
-    if result["analysis"] != 2:
-        raise DataError(
-            f"{path} has an analysis of type {result['analysis']}; type 2 (modal) is needed",
-            "the result of a modal analysis",
+    with errors_of(path, "a result of Ansys"):
+        result = _read_arrays(path, "rst")
+        if result["analysis"] != 2:
+            raise DataError(
+                f"{path} has an analysis of type {result['analysis']}; type 2 (modal) is needed",
+                "the result of a modal analysis",
+            )
+        if result["sectors"] > 1:
+            raise DataError(f"{path} has a cyclic sector, which is not supported", "modes of the whole structure")
+        modes = result["shapes"][:, :, :3]
+        if modes.shape[2] != 3 or not np.isfinite(modes).all():
+            raise DataError(
+                f"{path}: the modes have {modes.shape[2]} components at nodes; three finite ones are needed",
+                "a model in 3-D, with translations along x, y and z",
+            )
+        largest = np.abs(modes).max(axis=(1, 2))
+        if len(largest) > 1 and np.allclose(largest, 1.0, rtol=1e-9):
+            raise DataError(
+                f"{path}: every mode has a largest component of 1, so that the modal masses are unknown",
+                "MODOPT with Nrmkey = OFF, for modes that are mass-normalised; or modal_masses",
+            )
+        return ModesInFile(
+            frequencies=np.asarray(result["frequencies"], dtype=float),
+            shapes={str(int(node)): modes[:, k] for k, node in enumerate(result["nodes"])},
+            mass_unit=_MASS_UNITS.get(str(result["units"])),
+            notes=(
+                f"the modes of {path.name} are assumed to be mass-normalised, the default of Ansys (MODOPT, Nrmkey = OFF)",
+            ),
         )
-    if result["sectors"] > 1:
-        raise DataError(f"{path} has a cyclic sector, which is not supported", "modes of the whole structure")
-    modes = result["shapes"][:, :, :3]
-    if modes.shape[2] != 3 or not np.isfinite(modes).all():
-        raise DataError(
-            f"{path}: the modes have {modes.shape[2]} components at nodes; three finite ones are needed",
-            "a model in 3-D, with translations along x, y and z",
-        )
-    largest = np.abs(modes).max(axis=(1, 2))
-    if len(largest) > 1 and np.allclose(largest, 1.0, rtol=1e-9):
-        raise DataError(
-            f"{path}: every mode has a largest component of 1, so that the modal masses are unknown",
-            "MODOPT with Nrmkey = OFF, for modes that are mass-normalised; or modal_masses",
-        )
-    return ModesInFile(
-        frequencies=np.asarray(result["frequencies"], dtype=float),
-        shapes={str(int(node)): modes[:, k] for k, node in enumerate(result["nodes"])},
-        mass_unit=_MASS_UNITS.get(str(result["units"])),
-        notes=(
-            f"the modes of {path.name} are assumed to be mass-normalised, the default of Ansys (MODOPT, Nrmkey = OFF)",
-        ),
-    )
 
 
 def read_full(path: Path, count: int) -> ModesInFile:
@@ -141,35 +126,38 @@ def read_full(path: Path, count: int) -> ModesInFile:
     The participation is phi^T M r, with r = 1 for the free degrees of freedom along an axis and 0 for all others; the total
     mass is r^T M r. `lowest_modes` names the method and its source.
     """
-    from scipy.sparse import coo_array, csr_array, triu
+    with errors_of(path, "matrices of Ansys"):
+        from scipy.sparse import coo_array, csr_array, triu
 
-    arrays = _read_arrays(path, "full")
-    numbers, n = arrays["rows"], len(arrays["rows"])
-    upper = [
-        coo_array((arrays[f"{name}_value"], (arrays[f"{name}_row"], arrays[f"{name}_column"])), shape=(n, n)).tocsr()
-        for name in ("K", "M")
-    ]
-    K, M = (csr_array(matrix + triu(matrix, 1).T) for matrix in upper)
-    fixed = {(int(node), int(axis)) for node, axis in arrays["fixed"][:, :2]}
-    free = np.array([(int(node), int(axis)) not in fixed for node, axis in numbers])
-    values, free_vectors = lowest_modes(K[free][:, free], M[free][:, free], count)
-    axes = numbers[:, 1]
-    vectors = np.zeros((len(numbers), values.size))
-    vectors[free] = free_vectors
-    directions = np.array([axes == axis for axis in range(3)], dtype=float).T
-    directions[~free] = 0.0
-    shapes = {}
-    for node in np.unique(numbers[:, 0]):
-        shapes[str(int(node))] = np.zeros((values.size, 3))
-    for row, (node, axis) in enumerate(numbers):
-        if axis < 3:
-            shapes[str(int(node))][:, axis] = vectors[row]
-    return ModesInFile(
-        frequencies=np.sqrt(values) / (2 * np.pi),
-        shapes=shapes,
-        participation=vectors.T @ (M @ directions),
-        total_mass=np.asarray(directions.T @ (M @ directions)).diagonal().copy(),
-    )
+        arrays = _read_arrays(path, "full")
+        numbers, n = arrays["rows"], len(arrays["rows"])
+        upper = [
+            coo_array(
+                (arrays[f"{name}_value"], (arrays[f"{name}_row"], arrays[f"{name}_column"])), shape=(n, n)
+            ).tocsr()
+            for name in ("K", "M")
+        ]
+        K, M = (csr_array(matrix + triu(matrix, 1).T) for matrix in upper)
+        fixed = {(int(node), int(axis)) for node, axis in arrays["fixed"][:, :2]}
+        free = np.array([(int(node), int(axis)) not in fixed for node, axis in numbers])
+        values, free_vectors = lowest_modes(K[free][:, free], M[free][:, free], count)
+        axes = numbers[:, 1]
+        vectors = np.zeros((len(numbers), values.size))
+        vectors[free] = free_vectors
+        directions = np.array([axes == axis for axis in range(3)], dtype=float).T
+        directions[~free] = 0.0
+        shapes = {}
+        for node in np.unique(numbers[:, 0]):
+            shapes[str(int(node))] = np.zeros((values.size, 3))
+        for row, (node, axis) in enumerate(numbers):
+            if axis < 3:
+                shapes[str(int(node))][:, axis] = vectors[row]
+        return ModesInFile(
+            frequencies=np.sqrt(values) / (2 * np.pi),
+            shapes=shapes,
+            participation=vectors.T @ (M @ directions),
+            total_mass=np.asarray(directions.T @ (M @ directions)).diagonal().copy(),
+        )
 
 
 def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, FloatArray]:

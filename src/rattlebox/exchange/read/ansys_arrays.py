@@ -1,7 +1,7 @@
-"""Script that copies the arrays of an Ansys file to a NPZ file: python -P ansys_arrays.py rst|full FILE OUTPUT.
+"""Script that copies the arrays of an Ansys file to a NPZ file: python -P ansys_arrays.py rst|full FILE OUTPUT MEMORY.
 
-It runs in a separate process, because the C code of the reader does not check the pointers in a file and crashes on wrong
-ones.
+It runs in a separate process (`guarded.py`), because the C code of the reader does not check the pointers in a file and
+crashes on wrong ones, or asks for any amount of memory.
 """
 
 from __future__ import annotations
@@ -40,6 +40,8 @@ def copy_arrays(kind: str, path: str, output: str) -> None:
             sys.exit(f"is not a .{kind} file; its format is {file_format}")
         file = reader.read_binary(path)
         arrays = _result(file, path) if kind == "rst" else _matrices(file, path)
+    except MemoryError:
+        sys.exit(f"cannot be read as .{kind}: it asks for more memory than its size allows; it may be damaged")
     except Exception as error:
         sys.exit(f"cannot be read as .{kind}: {' '.join(str(error).split()) or type(error).__name__}")
     np.savez(output, **arrays)
@@ -68,19 +70,35 @@ def _result(file: Any, path: str) -> dict[str, Any]:
     return {**arrays, "frequencies": file.time_values, "nodes": solutions[0][0], "shapes": shapes}
 
 
+def _read_fixed(supports: Any) -> Any:
+    """Return node and axis of each fixed degree of freedom, (n, 2 or more)."""
+    return np.asarray(supports, dtype=int).reshape(len(supports), -1) if len(supports) else np.zeros((0, 2), dtype=int)
+
+
 def _matrices(file: Any, path: str) -> dict[str, Any]:
     """Return the upper triangles of K and M, the node and axis of each row, and those that are fixed."""
     _check_size(path, int(file._header["ptrEND"]))
     if not int(file._header["ntermMl"]):
         sys.exit("contains no mass matrix")
     rows, stiffness, mass = file.load_km(sort=False)
-    arrays = {"rows": rows, "fixed": np.asarray(file.const, dtype=int).reshape(len(file.const), -1)}
+    arrays = {"rows": rows, "fixed": _read_fixed(file.const)}
     for name, matrix in (("K", stiffness), ("M", mass)):
         entries = matrix.tocoo()
         arrays |= {f"{name}_row": entries.row, f"{name}_column": entries.col, f"{name}_value": entries.data}
     return arrays
 
 
+def limit_memory(size: int) -> None:
+    """Limit the memory of this process [bytes], where the system can do it."""
+    try:
+        resource: Any = import_module("resource")
+        resource.setrlimit(resource.RLIMIT_AS, (size, size))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    except (ImportError, OSError, ValueError):
+        pass  # Windows, or a lower limit that is set already
+
+
 if __name__ == "__main__":
     warnings.simplefilter("ignore")
+    limit_memory(int(sys.argv.pop()))
     copy_arrays(*sys.argv[1:])

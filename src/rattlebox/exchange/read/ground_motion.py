@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import DataError
 
+from .guarded import errors_of
+
 _COUNT = re.compile(r"NPTS\s*=\s*(\d+)", re.I)
 _STEP = re.compile(r"DT\s*=\s*(\d*\.?\d*(?:E[-+]?\d+)?)", re.I)
 _OLD_HEADER = re.compile(r"^\s*(\d+)\s+(\d*\.?\d*(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
@@ -70,52 +72,57 @@ def read_ground_motion(path: Path) -> GroundMotion:
     ----------
     T. D. Ancheta et al., NGA-West2 database, Earthquake Spectra 30 (2014) 989-1005, doi:10.1193/070913EQS197M.
     """
-    try:
-        lines = path.read_text(encoding="latin-1").splitlines()
-    except OSError as error:
-        raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
-    begin, count, step = 0, "", ""
-    for line in lines[:_HEADER]:
-        begin += 1
-        old = _OLD_HEADER.match(line)
-        count, step = (old[1], old[2]) if old else (_first_group(_COUNT, line), _first_group(_STEP, line))
-        if count and step:
-            break
-    else:
-        raise DataError(
-            f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT; an AT2 file needs both",
-            'the ending .csv or .txt, and dt = "0.01 s" for one column of numbers',
-        )
-    header = "\n".join(lines[:begin])
-    other = _OTHER_QUANTITY.search(header)
-    if other and not re.search(r"\baccel", header, re.I):
-        raise DataError(f"{path} contains a {other[1].lower()}, not an acceleration", "the file with the ending .AT2")
-    if not (_is_positive(step) and len(count) < _DIGITS):
-        raise DataError(
-            f"{path}, line {begin}: the time step is {step} s and the number of samples {count[:_DIGITS]}; both must be"
-            " positive and finite",
-            _WHOLE,
-        )
-    values = []
-    for number, line in enumerate(lines[begin:], start=begin + 1):
+    with errors_of(path, "an AT2 file"):
         try:
-            values += [float(word) for word in line.split()]
-        except ValueError:
-            if len(values) == int(count):
-                continue  # such as "*** End Data ***"
-            raise DataError(f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers", _WHOLE) from None
-    if len(values) != int(count):
-        raise DataError(
-            f"{path} states {count} samples, but contains {len(values)}",
-            "the complete file: it may be cut short" if len(values) < int(count) else _WHOLE,
+            lines = path.read_text(encoding="latin-1").splitlines()
+        except OSError as error:
+            raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
+        begin, count, step = 0, "", ""
+        for line in lines[:_HEADER]:
+            begin += 1
+            old = _OLD_HEADER.match(line)
+            count, step = (old[1], old[2]) if old else (_first_group(_COUNT, line), _first_group(_STEP, line))
+            if count and step:
+                break
+        else:
+            raise DataError(
+                f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT; an AT2 file needs both",
+                'the ending .csv or .txt, and dt = "0.01 s" for one column of numbers',
+            )
+        header = "\n".join(lines[:begin])
+        other = _OTHER_QUANTITY.search(header)
+        if other and not re.search(r"\baccel", header, re.I):
+            raise DataError(
+                f"{path} contains a {other[1].lower()}, not an acceleration", "the file with the ending .AT2"
+            )
+        if not (_is_positive(step) and len(count) < _DIGITS):
+            raise DataError(
+                f"{path}, line {begin}: the time step is {step} s and the number of samples {count[:_DIGITS]}; both must be"
+                " positive and finite",
+                _WHOLE,
+            )
+        values = []
+        for number, line in enumerate(lines[begin:], start=begin + 1):
+            try:
+                values += [float(word) for word in line.split()]
+            except ValueError:
+                if len(values) == int(count):
+                    continue  # such as "*** End Data ***"
+                raise DataError(
+                    f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers", _WHOLE
+                ) from None
+        if len(values) != int(count):
+            raise DataError(
+                f"{path} states {count} samples, but contains {len(values)}",
+                "the complete file: it may be cut short" if len(values) < int(count) else _WHOLE,
+            )
+        samples = np.array(values)
+        if not np.isfinite(samples).all():
+            raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite", _WHOLE)
+        unit = _UNIT.search(header)
+        return GroundMotion(
+            float(step), samples, unit[1].strip(".,()") if unit else "", tuple(enumerate(lines[:begin], start=1))
         )
-    samples = np.array(values)
-    if not np.isfinite(samples).all():
-        raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite", _WHOLE)
-    unit = _UNIT.search(header)
-    return GroundMotion(
-        float(step), samples, unit[1].strip(".,()") if unit else "", tuple(enumerate(lines[:begin], start=1))
-    )
 
 
 def _is_positive(text: str) -> bool:

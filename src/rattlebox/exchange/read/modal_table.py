@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import csv
-import re
 from pathlib import Path
 
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.text import has_controls
 
+from .guarded import errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
-_HEADING = re.compile(r"^\s*(.*?)\s*(?:[\[(]([^\])]*)[\])])?\s*$")
 _AXES = {"x": 0, "y": 1, "z": 2}
 _QUANTITIES = {
     "frequency": "frequency", "f": "frequency", "damping": "damping", "damping ratio": "damping", "modal mass": "mass",
@@ -48,44 +48,67 @@ def read_modal_table(path: Path) -> ModesInFile:
     DataError
         If the file is not such a table; with the line and the column at fault.
     """
-    read_start(path, 64)
+    with errors_of(path, "a table of modes"):
+        read_start(path, 64)
+        try:
+            lines = path.read_text(encoding="utf-8-sig").splitlines()
+        except UnicodeDecodeError:
+            raise DataError(f"{path} is not text", "a CSV file in UTF-8") from None
+        numbered = [
+            (k, line) for k, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")
+        ]
+        if not numbered:
+            raise DataError(f"{path} contains no table", "a first line such as frequency (Hz), damping (%), tip")
+        mark = next((mark for mark in ";\t," if mark in numbered[0][1]), ",")
+        rows = [(k, _cells(path, k, line, mark)) for k, line in numbered]
+        head, body = rows[0][1], rows[1:]
+        names, units = zip(*map(_name_and_unit, head), strict=True)
+        if bad := next((name for name in names if has_controls(name)), None):
+            raise DataError(
+                f"{path}, line {rows[0][0]}: the name {bad!r} contains a control character", "printable names"
+            )
+        if "frequency" not in {_QUANTITIES.get(name.lower()) for name in names}:
+            raise DataError(
+                f"{path}, line {rows[0][0]}: no column is called frequency; the columns are {', '.join(map(repr, names))}",
+                "frequency (Hz), damping (%), tip",
+            )
+        if not body:
+            raise DataError(f"{path} has a header, but no mode below it", "a line of numbers for each mode")
+        table = np.zeros((len(body), len(head)))
+        for row, (number, cells) in enumerate(body):
+            if len(cells) != len(head):
+                is_last = row == len(body) - 1
+                advice = "the complete file: its last line is cut short" if is_last else "a number below each name"
+                raise DataError(f"{path}, line {number}: {len(cells)} cells, but {len(head)} names above", advice)
+            for column, cell in enumerate(cells):
+                if names[column].lower() in _NUMBERING:
+                    continue
+                try:
+                    table[row, column] = float(cell)
+                except ValueError:
+                    raise DataError(
+                        f"{path}, line {number}, column {names[column]!r}: {cell!r} is not a number", "a number"
+                    ) from None
+                if not np.isfinite(table[row, column]):
+                    raise DataError(
+                        f"{path}, line {number}, column {names[column]!r}: {cell} is not finite", "a number"
+                    )
+        return _modes(path, names, units, table)
+
+
+def _cells(path: Path, number: int, line: str, mark: str) -> list[str]:
+    """Return the cells of a line."""
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise DataError(f"{path} is not text", "a CSV file in UTF-8") from None
-    numbered = [
-        (k, line) for k, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not numbered:
-        raise DataError(f"{path} contains no table", "a first line such as frequency (Hz), damping (%), tip")
-    mark = next((mark for mark in ";\t," if mark in numbered[0][1]), ",")
-    rows = [(k, [cell.strip() for cell in row]) for k, line in numbered for row in csv.reader([line], delimiter=mark)]
-    head, body = rows[0][1], rows[1:]
-    names, units = zip(*((match[1], match[2] or "") for match in map(_HEADING.match, head) if match), strict=True)
-    if "frequency" not in {_QUANTITIES.get(name.lower()) for name in names}:
-        raise DataError(
-            f"{path}, line {rows[0][0]}: no column is called frequency; the columns are {', '.join(map(repr, names))}",
-            "frequency (Hz), damping (%), tip",
-        )
-    if not body:
-        raise DataError(f"{path} has a header, but no mode below it", "a line of numbers for each mode")
-    table = np.zeros((len(body), len(head)))
-    for row, (number, cells) in enumerate(body):
-        if len(cells) != len(head):
-            advice = "the complete file: its last line is cut short" if row == len(body) - 1 else ""
-            raise DataError(f"{path}, line {number}: {len(cells)} columns, but {len(head)} names above", advice)
-        for column, cell in enumerate(cells):
-            if names[column].lower() in _NUMBERING:
-                continue
-            try:
-                table[row, column] = float(cell)
-            except ValueError:
-                raise DataError(
-                    f"{path}, line {number}, column {names[column]!r}: {cell!r} is not a number", "a number"
-                ) from None
-            if not np.isfinite(table[row, column]):
-                raise DataError(f"{path}, line {number}, column {names[column]!r}: {cell} is not finite", "a number")
-    return _modes(path, names, units, table)
+        return [cell.strip() for row in csv.reader([line], delimiter=mark) for cell in row]
+    except csv.Error as error:
+        raise DataError(f"{path}, line {number}: {error}", "numbers and names of usual lengths") from None
+
+
+def _name_and_unit(heading: str) -> tuple[str, str]:
+    """Return the name of a column and the unit in brackets at its end, "" if there is none."""
+    text = heading.strip()
+    begin = max(text.rfind("("), text.rfind("[")) if text.endswith((")", "]")) else -1
+    return (text[:begin].rstrip(), text[begin + 1 : -1]) if begin >= 0 else (text, "")
 
 
 def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: FloatArray) -> ModesInFile:

@@ -12,6 +12,7 @@ import numpy as np
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 
+from .guarded import errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
 # Factors of length and force from SI to the units of a file, by code; code 9 stands for units of the user.
@@ -76,17 +77,11 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
         stream.seek(-min(path.stat().st_size, _TAIL), 2)
         end = stream.read().rstrip().rsplit(b"\n", 1)[-1].strip()
     pyuff = optional_import("pyuff", "uff", "a modal table in CSV")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            file = pyuff.UFF(str(path))
-            types = [int(kind) for kind in file.get_set_types()]
-            sets = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds + further]
-    except Exception as error:  # pyuff does not wrap the errors of its parser
-        raise DataError(
-            f"{path} cannot be read as a universal file: {str(error).strip() or type(error).__name__}",
-            "the complete file, as the program wrote it",
-        ) from None
+    with errors_of(path, "a universal file"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        file = pyuff.UFF(str(path))
+        types = [int(kind) for kind in file.get_set_types()]
+        sets = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds + further]
     if not types:
         raise DataError(
             f"{path} contains no complete data set of a universal file", "the complete file, with -1 around each set"
@@ -97,7 +92,10 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
         )
     if not {each["type"] for each in sets} & set(kinds):
         available = ", ".join(map(str, sorted(set(types))))
-        raise DataError(f"{path} contains no set {' or '.join(map(str, kinds))}; it contains {available}")
+        raise DataError(
+            f"{path} contains no set {' or '.join(map(str, kinds))}; it contains {available}",
+            "an export with mode shapes (sets 55 or 2414) or with functions (set 58)",
+        )
     return sets
 
 
@@ -131,59 +129,62 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
     Structural Dynamics Research Corporation, I-DEAS universal file datasets 15, 55, 58, 164, 2411, 2414 and 2420; published
     by the University of Cincinnati, Structural Dynamics Research Laboratory (UC-SDRL).
     """
-    every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
-    sets = [each for each in every if each["type"] not in _GEOMETRY]
-    # The set 55 may also have stresses, velocities or accelerations of the same modes.
-    normal = [each for each in sets if each["type"] == 55 and _is_normal(each)]
-    quantities = {int(each["spec_data_type"]) for each in normal}
-    wanted = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
-    chosen = [each for each in sets if each["type"] != 164 and _is_mode(each, wanted)]
-    modes = [_mode(path, each) for each in _without_twins(chosen)]
-    others = [_QUANTITIES.get(kind, f"data of type {kind}") for kind in sorted(quantities - set(wanted))]
-    notes = [f"{path.name} does not state the quantity of its modes; displacements are assumed"] * (
-        bool(quantities) and wanted == _UNKNOWN and bool(modes)
-    )
-    if not modes and others:
-        raise DataError(
-            f"{path} contains normal modes of {' and '.join(others)}; mode shapes are displacements (type 8)",
-            "an export of displacements",
+    with errors_of(path, "a universal file"):
+        every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
+        sets = [each for each in every if each["type"] not in _GEOMETRY]
+        # The set 55 may also have stresses, velocities or accelerations of the same modes.
+        normal = [each for each in sets if each["type"] == 55 and _is_normal(each)]
+        quantities = {int(each["spec_data_type"]) for each in normal}
+        wanted = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
+        chosen = [each for each in sets if each["type"] != 164 and _is_mode(each, wanted)]
+        modes = [_mode(path, each) for each in _without_twins(chosen)]
+        others = [_QUANTITIES.get(kind, f"data of type {kind}") for kind in sorted(quantities - set(wanted))]
+        notes = [f"{path.name} does not state the quantity of its modes; displacements are assumed"] * (
+            bool(quantities) and wanted == _UNKNOWN and bool(modes)
         )
-    if not modes:
-        kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
-        scatter = [
-            _phase_scatter(each) for each in sets if each["type"] == 55 and int(each["analysis_type"]) in _COMPLEX_MODES
-        ]
-        if scatter:
+        if not modes and others:
             raise DataError(
-                f"{path} contains only complex modes, whose phases scatter by up to {max(scatter):.3g} degrees; "
-                "normal modes are needed",
-                "an export of real normal modes; they are similar if the phases scatter by less than about 10 degrees",
+                f"{path} contains normal modes of {' and '.join(others)}; mode shapes are displacements (type 8)",
+                "an export of displacements",
             )
-        raise DataError(
-            f"{path} contains no normal modes (analysis type 2); its types are {', '.join(map(str, kinds)) or 'none'}",
-            "an export of real normal modes",
+        if not modes:
+            kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
+            scatter = [
+                _phase_scatter(each)
+                for each in sets
+                if each["type"] == 55 and int(each["analysis_type"]) in _COMPLEX_MODES
+            ]
+            if scatter:
+                raise DataError(
+                    f"{path} contains only complex modes, whose phases scatter by up to {max(scatter):.3g} degrees; "
+                    "normal modes are needed",
+                    "an export of real normal modes; they are similar if the phases scatter by less than about 10 degrees",
+                )
+            raise DataError(
+                f"{path} contains no normal modes (analysis type 2); its types are {', '.join(map(str, kinds)) or 'none'}",
+                "an export of real normal modes",
+            )
+        nodes = modes[0][3]
+        for number, mode in enumerate(modes, start=1):
+            if not np.array_equal(mode[3], nodes):
+                raise DataError(f"{path}: mode {number} has other nodes than mode 1", "the same nodes for all modes")
+        frequencies = np.array([mode[0] for mode in modes])
+        shapes = np.array([mode[4] for mode in modes])
+        for what, values in (("frequency", frequencies), ("mode shape", shapes)):
+            if not np.isfinite(values).all() or np.abs(values).max(initial=0.0) > 1e30:
+                raise DataError(f"{path}: a {what} is not finite", "the file as it was written: bytes may be swapped")
+        if (frequencies < 0).any():
+            raise DataError(f"{path}: a frequency is negative", "the file as the program wrote it")
+        masses = np.array([mode[1] for mode in modes])
+        damping = np.array([mode[2] for mode in modes])
+        return ModesInFile(
+            frequencies=frequencies,
+            shapes={str(int(node)): shapes[:, k] for k, node in enumerate(nodes)},
+            modal_masses=masses,
+            damping_ratios=damping if damping.any() else None,
+            mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164], needs_units),
+            notes=tuple(notes) + _check_axes(path, [each for each in every if each["type"] in _GEOMETRY], nodes),
         )
-    nodes = modes[0][3]
-    for number, mode in enumerate(modes, start=1):
-        if not np.array_equal(mode[3], nodes):
-            raise DataError(f"{path}: mode {number} has other nodes than mode 1", "the same nodes for all modes")
-    frequencies = np.array([mode[0] for mode in modes])
-    shapes = np.array([mode[4] for mode in modes])
-    for what, values in (("frequency", frequencies), ("mode shape", shapes)):
-        if not np.isfinite(values).all() or np.abs(values).max(initial=0.0) > 1e30:
-            raise DataError(f"{path}: a {what} is not finite", "the file as it was written: bytes may be swapped")
-    if (frequencies < 0).any():
-        raise DataError(f"{path}: a frequency is negative", "the file as the program wrote it")
-    masses = np.array([mode[1] for mode in modes])
-    damping = np.array([mode[2] for mode in modes])
-    return ModesInFile(
-        frequencies=frequencies,
-        shapes={str(int(node)): shapes[:, k] for k, node in enumerate(nodes)},
-        modal_masses=masses,
-        damping_ratios=damping if damping.any() else None,
-        mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164], needs_units),
-        notes=tuple(notes) + _check_axes(path, [each for each in every if each["type"] in _GEOMETRY], nodes),
-    )
 
 
 def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str, ...]:
@@ -328,32 +329,34 @@ def read_functions(path: Path) -> list[Function]:
     --------
     read_universal_modes : Modes, with the source of the format.
     """
-    functions = []
-    for number, each in enumerate(_read_sets(path, (58,)), start=1):
-        values = np.asarray(each["data"])
-        stated = int(each["num_pts"])
-        if values.size != stated:
-            raise DataError(
-                f"{path}: function {number} states {stated} points, but has {values.size}", "the complete file"
+    with errors_of(path, "a universal file"):
+        functions = []
+        for number, each in enumerate(_read_sets(path, (58,)), start=1):
+            values = np.asarray(each["data"])
+            stated = int(each["num_pts"])
+            if values.size != stated:
+                raise DataError(
+                    f"{path}: function {number} states {stated} points, but has {values.size}", "the complete file"
+                )
+            size = np.abs(values)
+            if not np.isfinite(size).all() or size.max(initial=0.0) > 1e30 or 0 < size.max(initial=0.0) < 1e-30:
+                raise DataError(
+                    f"{path}: function {number} has values up to {size.max(initial=0.0):.3g}, outside any"
+                    " measurement's range",
+                    "the other byte order; the header may state the wrong one",
+                )
+            functions.append(
+                Function(
+                    name=str(each.get("rsp_ent_name") or each.get("id1", "")).strip(),
+                    kind=int(each["func_type"]),
+                    abscissa=np.asarray(each["x"], dtype=float),
+                    values=values,
+                    unit=_label(each, "ordinate"),
+                    source_unit=_label(each, "orddenom"),
+                    quantities=(int(each["ordinate_spec_data_type"]), int(each["orddenom_spec_data_type"])),
+                )
             )
-        size = np.abs(values)
-        if not np.isfinite(size).all() or size.max(initial=0.0) > 1e30 or 0 < size.max(initial=0.0) < 1e-30:
-            raise DataError(
-                f"{path}: function {number} has values up to {size.max(initial=0.0):.3g}, outside any measurement's range",
-                "the other byte order; the header may state the wrong one",
-            )
-        functions.append(
-            Function(
-                name=str(each.get("rsp_ent_name") or each.get("id1", "")).strip(),
-                kind=int(each["func_type"]),
-                abscissa=np.asarray(each["x"], dtype=float),
-                values=values,
-                unit=_label(each, "ordinate"),
-                source_unit=_label(each, "orddenom"),
-                quantities=(int(each["ordinate_spec_data_type"]), int(each["orddenom_spec_data_type"])),
-            )
-        )
-    return functions
+        return functions
 
 
 def _label(each: dict[str, Any], axis: str) -> str:
