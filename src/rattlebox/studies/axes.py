@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -15,7 +16,8 @@ from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
 from rattlebox.model.materials import Material
-from rattlebox.model.paths import Place, all_paths, get
+from rattlebox.model.paths import Place, all_paths, get, place_of, replaced
+from rattlebox.model.plausibility import plausibility_notes
 
 from .grid import Column, Grid, labels
 from .parameter import Parameter, Values, objects
@@ -149,7 +151,25 @@ class ParsedAxes:
         except Hint as hint:
             raise CaseError(f"{self.source}: {hint}") from None
         _check_variants(case, grid, self.source)
+        _warn_about_files(case, grid)
         return grid
+
+
+def _warn_about_files(case: Case, grid: Grid) -> None:
+    """Warn of the assumptions about each file of an axis, such as its unit, that the base case does not make."""
+    known = set(plausibility_notes(case, signals=False))
+    for path, values in grid.columns.items():
+        if place_of(case, path)[-1] != "file":
+            continue
+        for value in {repr(value): value for value in values.ravel().tolist()}.values():
+            try:
+                notes = plausibility_notes(replaced(case, {path: value}), signals=False)
+            except RattleboxError:
+                continue  # it varies together with another field
+            for note in notes:
+                if note.startswith("note: ") and note not in known:
+                    known.add(note)
+                    warnings.warn(note.removeprefix("note: "), stacklevel=5)
 
 
 def materials_in(case: Case) -> dict[str, Material]:

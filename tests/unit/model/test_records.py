@@ -98,6 +98,16 @@ def test_scale_and_file_as_axes(tmp_path: Path) -> None:
     np.testing.assert_allclose(both, scaled[1] * np.array([[1.0, 4.0]] * 4), rtol=1e-7)
 
 
+def test_a_study_warns_of_assumptions_about_files(tmp_path: Path) -> None:
+    """A file of an axis that states no unit gives a warning with the peak, as a run of it gives a note."""
+    written(tmp_path)
+    base = case(rb.Record.from_file(tmp_path / "gal.csv"))
+    files = [str(tmp_path / name) for name in ("gal.csv", "bare.txt", "a.at2")]
+    with pytest.warns(UserWarning, match=r"bare\.txt states no unit; m/s\^2 is assumed, with a peak of ") as caught:
+        rb.sweep(base, {"base.file": files}, ["peak"], progress=False)
+    assert len([each for each in caught if "assumed" in str(each.message)]) == 1
+
+
 def test_a_unit_is_an_axis_of_its_own(tmp_path: Path) -> None:
     """Another unit of a file without one replaces the first one; it does not multiply it."""
     written(tmp_path)
