@@ -15,6 +15,7 @@ from support.mounts import needs_mounts, with_own_mounts
 
 import rattlebox as rb
 from rattlebox._util.atomic_io import atomic_write
+from rattlebox._util.owned_folder import MARKER
 from rattlebox.model.files import read_arrays
 
 CASE = """
@@ -67,7 +68,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def check_complete(folder: Path, runs: Path) -> int:
     """Check that each file is complete; return the number of files."""
-    files = [path for path in folder.iterdir() if not path.name.startswith(".")]
+    files = [path for path in folder.iterdir() if not path.name.startswith(".") and path.name != MARKER]
     for path in files:
         if path.suffix == ".csv":
             assert path.read_bytes() in [(runs / name / path.name).read_bytes() for name in ("first", "second")]

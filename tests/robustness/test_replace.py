@@ -194,7 +194,7 @@ def test_demo_replaces_only_its_own_files() -> None:
         assert rattlebox("demo", "-o", "out").returncode == 0
     Path("out/demo.png").write_text("mine")
     done = rattlebox("demo", "-o", "out")
-    assert done.returncode == 2 and "out/demo.png was not written by this command" in done.stderr
+    assert done.returncode == 2 and "out/demo.png was not written by Rattlebox" in done.stderr
     assert Path("out/demo.png").read_text() == "mine"
 
 

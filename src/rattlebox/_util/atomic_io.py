@@ -10,8 +10,9 @@ import errno
 import glob
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 
 from .exceptions import DataError, RattleboxError, ResourceError
@@ -118,8 +119,68 @@ def check_format(path: Path, version: object, own: int) -> None:
         )
 
 
+class FileTaken(DataError):
+    """A file to be written appeared, or was changed by others, after its name was chosen."""
+
+
+Identity = tuple[int, int, int, int]
+
+_watched: ContextVar[dict[str, list[Identity | None]] | None] = ContextVar("watched", default=None)
+_watched_only: ContextVar[bool] = ContextVar("watched_only", default=False)
+
+
+def _identity(path: Path) -> Identity | None:
+    """Return what tells the file at a path from another one and from a changed one; None if there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+
+
 @contextmanager
-def atomic_write(path: str | os.PathLike[str], advice: str = DISK_HINT) -> Iterator[Path]:
+def watch(paths: Iterable[Path]) -> Iterator[None]:
+    """Let `atomic_write` in this block write to paths only while nobody else has created or changed their files.
+
+    Parameters
+    ----------
+    paths
+        Files, which need not exist.
+    """
+    now = {os.path.abspath(path): [_identity(path)] for path in paths}
+    token = _watched.set({**now, **(_watched.get() or {})})  # an outer block has looked earlier
+    try:
+        yield
+    finally:
+        _watched.reset(token)
+
+
+def unchanged(path: Path) -> bool:
+    """Return whether a file is still as it was when a block of `watch` began, or is not watched.
+
+    Parameters
+    ----------
+    path
+        The file, which need not exist.
+    """
+    seen = (_watched.get() or {}).get(os.path.abspath(path))
+    return seen is None or seen[0] == _identity(path)
+
+
+@contextmanager
+def only_watched_files() -> Iterator[None]:
+    """Let `atomic_write` in this block replace no file that is not watched, so that no command can forget it."""
+    token = _watched_only.set(True)
+    try:
+        yield
+    finally:
+        _watched_only.reset(token)
+
+
+@contextmanager
+def atomic_write(
+    path: str | os.PathLike[str], advice: str = DISK_HINT, *, replace: bool | None = None
+) -> Iterator[Path]:
     """Yield the name of a temporary file, which replaces the target once the block has ended.
 
     The content is flushed to the disk before the temporary file is renamed, and the new name before the context ends: after
@@ -132,9 +193,14 @@ def atomic_write(path: str | os.PathLike[str], advice: str = DISK_HINT) -> Itera
         File to write, in an existing folder.
     advice
         Advice in the message about a full disk.
+    replace
+        Whether an existing file is replaced. Default: a file that is watched, if it is unchanged since; others, except
+        in commands (see `only_watched_files`).
 
     Raises
     ------
+    FileTaken
+        If the target exists and must not be replaced. It is unchanged.
     DataError
         If the file cannot be written. An earlier file is then unchanged, and the temporary file is removed.
     ResourceError
@@ -147,6 +213,8 @@ def atomic_write(path: str | os.PathLike[str], advice: str = DISK_HINT) -> Itera
             return
         target = path.resolve() if path.is_symlink() else path
         require_folder(target)
+        if replace is False and os.path.lexists(target):  # before a long computation in the block
+            raise _taken(target)
         handle, name = tempfile.mkstemp(f".partial{target.suffix}", f".{target.name}.", target.parent)
         os.close(handle)
         temporary = Path(name)
@@ -156,11 +224,67 @@ def atomic_write(path: str | os.PathLike[str], advice: str = DISK_HINT) -> Itera
             os.umask(mask)
             temporary.chmod(0o666 & ~mask)
             sync(temporary)
-            temporary.replace(target)
+            install(temporary, path, replace=replace)
             sync(target.parent)
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
+
+
+def install(source: Path, path: Path, *, replace: bool | None = None) -> None:
+    """Give a complete file its name.
+
+    Parameters
+    ----------
+    source
+        The file.
+    path
+        New name in the same file system.
+    replace
+        Whether an existing file is replaced, as in `atomic_write`.
+
+    Raises
+    ------
+    FileTaken
+        If another file has the name that must not be replaced.
+    """
+    target = path.resolve() if path.is_symlink() else path
+    seen = (_watched.get() or {}).get(os.path.abspath(path))
+    if replace is None and seen:
+        now = _identity(target)
+        if now not in (None, seen[0]):
+            raise _taken(target)
+        replace = now is not None
+    if replace or (replace is None and not _watched_only.get()):
+        source.replace(target)
+    else:
+        _install_new(source, target)
+    if seen:
+        seen[0] = _identity(target)
+
+
+def _install_new(source: Path, target: Path) -> None:
+    """Rename a file to a name that must be free, also if another process creates a file there at the same time."""
+    try:
+        os.link(source, target)
+    except FileExistsError:
+        raise _taken(target) from None
+    except OSError:  # a file system without links; an empty file then reserves the name
+        try:
+            os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY))
+        except FileExistsError:
+            raise _taken(target) from None
+        source.replace(target)
+    else:
+        source.unlink()
+
+
+def _taken(target: Path) -> FileTaken:
+    raised = FileTaken(
+        f"{target} exists, or has changed since it was looked at, and is not overwritten", "another name"
+    )
+    raised.errno, raised.filename = errno.EEXIST, str(target)
+    return raised
 
 
 def temporaries(path: Path) -> list[Path]:

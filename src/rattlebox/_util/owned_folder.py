@@ -117,7 +117,7 @@ def write_marker(folder: Path, marker: Marker, *, new: bool = False) -> None:
         with disk_errors(path), suppress(FileExistsError), path.open("x", encoding="utf-8") as file:
             file.write(text)
         return
-    with atomic_write(path) as name:
+    with atomic_write(path, replace=True) as name:
         name.write_text(text, encoding="utf-8")
 
 
@@ -171,7 +171,7 @@ def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
     for name, content in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        with atomic_write(path) as temporary:
+        with atomic_write(path, replace=True) as temporary:
             temporary.write_bytes(content)
     complete = replace(marker, complete=True, files={name: _digest(content) for name, content in files.items()})
     write_marker(folder, complete)

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from rattlebox._util.atomic_io import only_watched_files
 from rattlebox._util.exceptions import CaseError, DataError, RattleboxError
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
@@ -328,13 +329,14 @@ def schema(
     import json
 
     from rattlebox._util.atomic_io import atomic_write
+    from rattlebox.cli.output import output_file
     from rattlebox.model.case import Case
 
     text = json.dumps(Case.json_schema(), indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
     else:
-        with atomic_write(out) as name:
+        with output_file(out, ""), atomic_write(out) as name:
             name.write_text(text, encoding="utf-8")
 
 
@@ -357,11 +359,13 @@ def doctor() -> None:
 def run_command() -> None:
     """Run the command that the arguments of this process name.
 
-    This is the only place where errors end the program. Errors of the package and of the operating system are printed
+    This is the only place where errors end the program, and where all commands are kept from replacing files that they
+    did not claim. Errors of the package and of the operating system are printed
     without a traceback, with exit code 2.
     """
     try:
-        code = app(standalone_mode=False)
+        with only_watched_files():
+            code = app(standalone_mode=False)
         if code == STOPPED:
             raise typer.Abort
         sys.exit(code)

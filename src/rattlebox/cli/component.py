@@ -8,22 +8,17 @@ from typing import Any
 import rattlebox as rb
 from rattlebox._util.atomic_io import atomic_write, require_folder
 from rattlebox._util.exceptions import DataError
+from rattlebox.cli.output import output_file
 from rattlebox.engines.fmu import fmu_and_notes
 
 
 def write_fmu(case: Path, out: Path | None, fmi: Any, by: Any, alone: bool, other_systems: bool) -> None:
     """Write a case file as an FMU and print its name; see `rattlebox.to_fmu`."""
     content = rb.Case.from_file(case)
-    file, notes = fmu_and_notes(
-        content,
-        out or Path(f"{case.stem}.fmu"),
-        fmi=fmi,
-        input=by,
-        alone=alone or None,
-        other_systems=other_systems,
-    )
+    with output_file(out, f"{case.stem}.fmu") as (file, note):
+        _, notes = fmu_and_notes(content, file, fmi=fmi, input=by, alone=alone or None, other_systems=other_systems)
     others = "; libraries for other systems were never run" if other_systems else ""
-    print(f"{file}: FMI {fmi}.0 for co-simulation on Linux x86-64{others}", *notes, sep="\n  ")
+    print(f"{file}: FMI {fmi}.0 for co-simulation on Linux x86-64{others}{note}", *notes, sep="\n  ")
 
 
 def write_packed(case: Path, out: Path | None, alone: bool) -> None:
@@ -34,11 +29,13 @@ def write_packed(case: Path, out: Path | None, alone: bool) -> None:
     DataError
         If the file would overwrite the case file, or its folder does not exist.
     """
-    file = out or Path(f"{case.stem}.bin")
-    if file.exists() and file.samefile(case):
-        raise DataError(f"-o {file}: this is the case file, which is not overwritten", f"-o {case.stem}.bin")
+    default = f"{case.stem}.bin"
+    if (file := out or Path(default)).exists() and file.samefile(case):
+        raise DataError(f"-o {file}: this is the case file, which is not overwritten", f"-o {default}")
     require_folder(file)
-    stepper = rb.Stepper(rb.Case.from_file(case), alone=alone or None)
-    with atomic_write(file) as name:
-        name.write_bytes(stepper.packed)
-    print(f"{file}: inputs {', '.join(stepper.inputs)}", *stepper.notes, sep="\n  ")
+    content = rb.Case.from_file(case)
+    with output_file(out, default) as (file, note):
+        stepper = rb.Stepper(content, alone=alone or None)
+        with atomic_write(file) as name:
+            name.write_bytes(stepper.packed)
+    print(f"{file}: inputs {', '.join(stepper.inputs)}{note}", *stepper.notes, sep="\n  ")

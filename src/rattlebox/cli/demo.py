@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rattlebox.cli.folder import check_overwrite, make_folder, register_digests, register_names
+import rattlebox
+from rattlebox._util.own_files import claim, list_files
+from rattlebox._util.owned_folder import digest_of
+from rattlebox.cli.folder import make_folder
 from rattlebox.cli.terminal import terminal
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.contacts import Tsuji
@@ -29,14 +32,14 @@ def run_demo(out: Path) -> None:
     stems = {name: name.lower().replace(" ", "_").replace("-", "_") for name in cases}
     files = [*(f"{stem}.{suffix}" for stem in stems.values() for suffix in ("nc", "toml")), "demo.png"]
     make_folder(out)
-    check_overwrite(out, files)
-    runs = dict(zip(cases, simulate_many(list(cases.values())), strict=True))
     console = terminal()
-    console.print(compare(runs))
-    register_names(out, files)
-    for name, run in runs.items():
-        run.save(out / f"{stems[name]}.nc")
-        cases[name].to_file(out / f"{stems[name]}.toml")
-    plot_comparison(runs).savefig(out / "demo.png")
-    register_digests(out, files)
+    with claim(out / file for file in files):
+        runs = dict(zip(cases, simulate_many(list(cases.values())), strict=True))
+        console.print(compare(runs))
+        list_files(out, rattlebox.__version__, dict.fromkeys(files, ""))
+        for name, run in runs.items():
+            run.save(out / f"{stems[name]}.nc")
+            cases[name].to_file(out / f"{stems[name]}.toml")
+        plot_comparison(runs).savefig(out / "demo.png")
+        list_files(out, rattlebox.__version__, {file: digest_of(out / file) for file in files})
     console.print(f"written to {out}: demo.png, and a netCDF and a case file of each model", soft_wrap=True)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from rattlebox._util.atomic_io import remove_temporaries, sync
+import rattlebox
+from rattlebox._util.atomic_io import FileTaken, install, remove_temporaries, sync, unchanged, watch
 from rattlebox._util.exceptions import DataError, RattleboxError
+from rattlebox._util.own_files import REPLACEMENT, RUN_FOLDER, folder_marker, list_files, may_replace
 from rattlebox._util.owned_folder import (
     MARKER,
     DamagedError,
@@ -25,7 +26,6 @@ from rattlebox.engines.checkpoint import Checkpoint, comparable_toml, is_checkpo
 from rattlebox.model.case import Case
 from rattlebox.model.differences import differences
 from rattlebox.results.netcdf import read_case
-from rattlebox.results.snapshots import is_snapshots
 
 RUN, SNAPSHOTS, CHECKPOINT = "run.nc", "run.vtkhdf", "run.checkpoint"
 
@@ -38,9 +38,6 @@ WRITTEN = (
     CHECKPOINT,
 )
 """Names of all files that the command can write to the folder."""
-
-KIND, _REPLACEMENT = "Rattlebox run", "Rattlebox replacement"
-"""Kinds of folders, as stored in their markers."""
 
 
 def make_folder(out: Path) -> None:
@@ -111,69 +108,17 @@ class RunFolder:
         """
         own_checkpoint = [CHECKPOINT] if keep_checkpoint and self.checkpoint == self.folder / CHECKPOINT else []
         if self.folder == self.out:
-            register_digests(self.out, [*names, *own_checkpoint])
+            list_files(self.out, rattlebox.__version__, digests(self.out, [*names, *own_checkpoint]))
         else:
-            files = _digests(self.folder, [*names, *own_checkpoint])
+            files = digests(self.folder, [*names, *own_checkpoint])
             in_use = {self.checkpoint, self.snapshots}  # may be in `out` although the other files are not
             removed = [name for name in self.removed if name not in files and self.out / name not in in_use]
-            write_marker(self.folder, replace(_new_marker(_REPLACEMENT, files), complete=True, about={"gone": removed}))
+            write_marker(self.folder, replace(_new_marker(REPLACEMENT, files), complete=True, about={"gone": removed}))
             _install(self.out, self.folder)
         checkpoint = self.out / CHECKPOINT if own_checkpoint else self.checkpoint
-        if not keep_checkpoint:
+        if not keep_checkpoint and unchanged(checkpoint):
             checkpoint.unlink(missing_ok=True)
         return checkpoint
-
-
-def check_overwrite(out: Path, names: Iterable[str]) -> None:
-    """Raise if writing results would overwrite a file that is not a result of this program.
-
-    Parameters
-    ----------
-    out
-        Folder of the results.
-    names
-        Names of the files.
-
-    Raises
-    ------
-    DataError
-        If there is such a file.
-    """
-    marker = _folder_marker(out)
-    for name in names:
-        if not _is_result(out, name, marker):
-            raise DataError(_FOREIGN.format(out / name))
-
-
-def register_names(out: Path, names: Iterable[str]) -> None:
-    """Add files that are about to be written to the marker of the folder.
-
-    Parameters
-    ----------
-    out
-        Folder of the results.
-    names
-        Names of the files.
-    """
-    _register(out, dict.fromkeys(names, ""))
-
-
-def register_digests(out: Path, names: Iterable[str]) -> None:
-    """Add the digests of files that were written to the marker of the folder.
-
-    Parameters
-    ----------
-    out
-        Folder of the results.
-    names
-        Names of the files.
-    """
-    _register(out, _digests(out, names))
-
-
-def _register(out: Path, files: Mapping[str, str]) -> None:
-    earlier = _folder_marker(out)
-    write_marker(out, _new_marker(KIND, {**(earlier.files if earlier else {}), **files}))
 
 
 @contextmanager
@@ -204,8 +149,8 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
         process uses it, or if a result would overwrite an input file of the case.
     """
     make_folder(out)
-    marker = _folder_marker(out)
-    if (out / "zarr.json").exists() or (marker and marker.name not in (KIND, "")):
+    marker = folder_marker(out)
+    if (out / "zarr.json").exists() or (marker and marker.name not in (RUN_FOLDER, "")):
         raise DataError(f"{out} contains a study; a run needs a folder of its own\n  try: another -o folder")
     _check_inputs(out, case)
     own = Checkpoint(out / CHECKPOINT, case)
@@ -217,7 +162,7 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
             for folder in replacements(out):
                 _install(out, folder)
             earlier = _stored_case(out / RUN)
-            present = tuple(name for name in files_in(out) if _is_result(out, name, _folder_marker(out)))
+            present = tuple(name for name in files_in(out) if may_replace(out / name))
             lines = (
                 differences({"case": _bare(earlier)}, {"case": comparable_toml(case)}) if earlier is not None else []
             )
@@ -263,7 +208,7 @@ def replacements(out: Path) -> list[Path]:
             marker = read_marker(path)
         except DamagedError:
             continue
-        if marker and marker.name == _REPLACEMENT:
+        if marker and marker.name == REPLACEMENT:
             paths.append(path)
     return paths
 
@@ -280,26 +225,53 @@ def _replacement(out: Path, case: Case) -> Iterator[Path]:
     if folder.exists() and folder not in replacements(out) and not (folder.is_dir() and is_free(folder)):
         raise DataError(f"{folder} was not written by Rattlebox\n  try: another -o folder, or move this one")
     folder.mkdir(exist_ok=True)
-    write_marker(folder, _new_marker(_REPLACEMENT, dict.fromkeys(WRITTEN, "")))
+    write_marker(folder, _new_marker(REPLACEMENT, dict.fromkeys(WRITTEN, "")))
     try:
         yield folder
     finally:
-        if not any((folder / name).is_file() for name in (CHECKPOINT, SNAPSHOTS)):
+        marker = read_marker(folder)
+        complete = marker is not None and marker.complete  # it waits for files of others that are in the way
+        if not complete and not any((folder / name).is_file() for name in (CHECKPOINT, SNAPSHOTS)):
             _discard(folder)
 
 
 def _install(out: Path, folder: Path) -> None:
-    """Move the files of a finished replacement to the results folder, also if an earlier move was interrupted."""
+    """Move the files of a finished replacement to the results folder, also if an earlier move was interrupted.
+
+    Raises
+    ------
+    FileTaken
+        If others have put files of the same names there; the new ones are then still in the folder of the replacement.
+    """
     marker = read_marker(folder)
     if not marker or not marker.complete:
         return
-    remove(out, marker.about["gone"])
-    for name in marker.files:
-        if (folder / name).is_file():
-            (folder / name).replace(out / name)
+    with watch(out / name for name in WRITTEN):
+        remove(out, [name for name in marker.about["gone"] if unchanged(out / name) and may_replace(out / name)])
+        taken = [name for name in marker.files if not _moved(folder / name, out / name)]
     sync(out)
-    write_marker(out, _new_marker(KIND, marker.files))
+    if taken:
+        names = ", ".join(str(out / name) for name in taken)
+        raise FileTaken(
+            f"not written by Rattlebox, or put there during the run, and not overwritten: {names}; "
+            f"the new results are in {folder}",
+            "move your files, and repeat the command",
+        )
+    write_marker(out, _new_marker(RUN_FOLDER, marker.files))
     _discard(folder)
+
+
+def _moved(source: Path, target: Path) -> bool:
+    """Move a file, if it is still there; return False if the target must not be replaced."""
+    if not source.is_file():
+        return True
+    try:
+        if may_replace(target):
+            install(source, target)
+            return True
+    except FileTaken:
+        pass
+    return False
 
 
 def _discard(folder: Path) -> None:
@@ -313,38 +285,24 @@ def _discard(folder: Path) -> None:
 
 
 def _new_marker(kind: str, files: Mapping[str, str]) -> Marker:
-    from rattlebox import __version__
-
-    return Marker(kind, __version__, files=files)
-
-
-def _folder_marker(out: Path) -> Marker | None:
-    try:
-        return read_marker(out)
-    except DamagedError as error:
-        raise DataError(f"{out / MARKER}: {error}", "another -o folder, or remove this file") from None
+    return Marker(kind, rattlebox.__version__, files=files)
 
 
 _SELF_DESCRIBING = (RUN, SNAPSHOTS, CHECKPOINT)
 """Files whose content identifies them as results of Rattlebox; they may be large, so they have no digest."""
 
 
-def _digests(folder: Path, names: Iterable[str]) -> dict[str, str]:
+def digests(folder: Path, names: Iterable[str]) -> dict[str, str]:
+    """Return the digests of files of a run for the marker of their folder.
+
+    Parameters
+    ----------
+    folder
+        Folder of the files.
+    names
+        Names of the files.
+    """
     return {name: "" if name in _SELF_DESCRIBING else digest_of(folder / name) for name in names}
-
-
-def _is_result(out: Path, name: str, marker: Marker | None) -> bool:
-    """Return whether a file does not exist, or is a result of Rattlebox."""
-    path = out / name
-    if not os.path.lexists(path):
-        return True
-    if name == RUN:
-        return _stored_case(path) is not None
-    if name == SNAPSHOTS:
-        return path.is_file() and is_snapshots(path)
-    if name == CHECKPOINT:
-        return path.is_file() and is_checkpoint(path)
-    return marker is not None and marker.files.get(name) in ("", digest_of(path))
 
 
 _FOREIGN = (

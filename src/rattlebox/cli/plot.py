@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import rattlebox
 from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox.cli.output import output_file
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.maps import plot_map
@@ -61,24 +62,25 @@ def plot_study(
     DataError
         If there is no such study.
     """
-    out, message = output_file(out, "study.png", size)
-    if number is not None:
-        raise CaseError(
-            f"--number {number}: {study} is a study, which has no snapshots\n  try: leave out --number, or plot a run"
-        )
-    data, options, values = open_study(study), {"of": of, "size": size}, _axis_values(at)
-    own = str(data.attrs.get("study", "sweep"))
-    options = {name: value for name, value in options.items() if value is not None}
-    if (kind or own) in MAPS:
-        figure = _draw_kind(data, kind or own, own, options, values)
-    elif kind in (None, "map", "lines"):
-        figure = plot_map(data, kind=kind, at=values, **options)  # type: ignore[arg-type]
-    else:
-        raise CaseError(f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *MAPS))}")
-    figure.savefig(out)
-    for line in nearest_value_notes(data, values):
-        terminal().print(line, soft_wrap=True)
-    terminal().print(message, soft_wrap=True)
+    check_output(out, size)
+    with output_file(out, "study.png") as (file, note):
+        if number is not None:
+            raise CaseError(
+                f"--number {number}: {study} is a study, which has no snapshots\n  try: leave out --number, or plot a run"
+            )
+        data, options, values = open_study(study), {"of": of, "size": size}, _axis_values(at)
+        own = str(data.attrs.get("study", "sweep"))
+        options = {name: value for name, value in options.items() if value is not None}
+        if (kind or own) in MAPS:
+            figure = _draw_kind(data, kind or own, own, options, values)
+        elif kind in (None, "map", "lines"):
+            figure = plot_map(data, kind=kind, at=values, **options)  # type: ignore[arg-type]
+        else:
+            raise CaseError(f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *MAPS))}")
+        figure.savefig(file)
+        for line in nearest_value_notes(data, values):
+            terminal().print(line, soft_wrap=True)
+        terminal().print(f"written: {file}{note}", soft_wrap=True)
 
 
 def refuse_particle_options(**options: str | None) -> None:
@@ -102,24 +104,17 @@ def refuse_particle_options(**options: str | None) -> None:
             )
 
 
-def output_file(out: Path | None, default: str, size: str | None, formats: Sequence[str] = FORMATS) -> tuple[Path, str]:
-    """Return the file to write and the message to print afterwards.
+def check_output(out: Path | None, size: str | None, formats: Sequence[str] = FORMATS) -> None:
+    """Raise if a figure cannot be written to a file.
 
     Parameters
     ----------
     out
         File to write, if given.
-    default
-        Name of the file in the current folder otherwise.
     size
         Width of the figure, if given.
     formats
         Allowed suffixes.
-
-    Returns
-    -------
-    tuple of Path and str
-        File, and message.
 
     Raises
     ------
@@ -128,18 +123,14 @@ def output_file(out: Path | None, default: str, size: str | None, formats: Seque
     DataError
         If the folder of the file does not exist.
     """
-    replaces = out is None and Path(default).exists()
-    out = out or Path(default)
-    message = f"written: {out}" + " (replaced an earlier file; choose another name with -o)" * replaces
-    if out.suffix not in formats:
+    if out is not None and out.suffix not in formats:
         raise CaseError(
             f"-o {out}: the suffix must be one of {', '.join(formats)}\n  try: -o {out.stem or 'study'}.png"
         )
     if size is not None and size not in WIDTHS:
         raise CaseError(f"--size {size}: unknown size\n  try: {', '.join(WIDTHS)}")
-    if not out.parent.is_dir():
+    if out is not None and not out.parent.is_dir():
         raise DataError(f"-o {out}: the folder {out.parent} does not exist", "another folder, or create it first")
-    return out, message
 
 
 def _draw_kind(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:

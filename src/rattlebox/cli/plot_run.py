@@ -13,7 +13,8 @@ import typer
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
-from rattlebox.cli.plot import FORMATS, output_file, refuse_particle_options
+from rattlebox.cli.output import output_file
+from rattlebox.cli.plot import FORMATS, check_output, refuse_particle_options
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
@@ -66,7 +67,26 @@ def plot_run(
     DataError
         If the file does not exist.
     """
-    out, message = output_file(out, "run.png", size, (*FORMATS, *FILMS))
+    check_output(out, size, (*FORMATS, *FILMS))
+    with output_file(out, "run.png") as (file, note):
+        _plot(path, file, kind=kind, of=of, at=at, number=number, size=size, colour=colour, view=view, pixels=pixels)
+        terminal().print(f"written: {file}{note}", soft_wrap=True)
+
+
+def _plot(
+    path: Path,
+    out: Path,
+    *,
+    kind: str | None,
+    of: str | None,
+    at: Sequence[str],
+    number: int | None,
+    size: str | None,
+    colour: str | None,
+    view: str | None,
+    pixels: str | None,
+) -> None:
+    """Draw a run or its snapshots and write a file; see `plot_run`."""
     if path.is_dir():
         path /= SNAPSHOTS if out.suffix in FILMS or number is not None else RUN
     for option, value in (("--of", of), ("--at", at and at[0])):
@@ -89,7 +109,6 @@ def plot_run(
             f"--number {number}: {path} has no snapshots\n"
             "  try: run.vtkhdf in the same folder; output.snapshots in the case creates it"
         )
-    console = terminal()
     try:
         if film:
             _check_film(out, kind, number)
@@ -99,11 +118,10 @@ def plot_run(
     except (ValueError, IndexError) as error:
         raise CaseError(str(error)) from None
     if (kind == "particles" or isinstance(run, Snapshots)) and default_renderer() == "plain":
-        console.print(
+        terminal().print(
             "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'",
             soft_wrap=True,
         )
-    console.print(message, soft_wrap=True)
 
 
 def _numbers(option: str, text: str, separator: str) -> tuple[float, ...]:

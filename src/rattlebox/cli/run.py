@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from datetime import timedelta
+from functools import partial
+from itertools import chain, count
 from pathlib import Path
 from time import monotonic
 
@@ -12,7 +14,10 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
+import rattlebox
+from rattlebox._util.atomic_io import FileTaken, watch
 from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox._util.own_files import claim, list_files
 from rattlebox._util.progress import progress_bar
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
@@ -21,8 +26,6 @@ from rattlebox.cli.folder import (
     RUN,
     SNAPSHOTS,
     RunFolder,
-    check_overwrite,
-    register_names,
     reserve_folder,
 )
 from rattlebox.cli.terminal import terminal
@@ -31,6 +34,7 @@ from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.results import Run
+from rattlebox.results.export import write_table
 from rattlebox.results.schema import Engine, groups
 
 _FIGURES = ("motion", "energy", "impacts")
@@ -135,22 +139,27 @@ def _run_in_folder(path: Path, case: Case, folder: RunFolder, *, csv: bool, mat:
     mat |= "run.mat" in folder.rewritten
     figures |= "motion.png" in folder.rewritten
     names = _result_names(case, csv=csv, mat=mat, figures=figures)
-    check_overwrite(out, names)
-    written: list[str] = []
+    written: dict[str, str] = {}
     installed = folder.folder == out
+    watched = [checkpoint, *(out / name for name in folder.removed), *(folder.folder / name for name in names)]
     try:
-        run = _simulate(case, folder)
-        if run.status == "interrupted" and case.particle_dampers:
-            typer.echo(printable(run.message), err=True)
-            sys.exit(STOPPED)
-        if installed:
-            register_names(out, names)
-        if case.output.snapshots:
-            written.append(SNAPSHOTS)
-        for name in _write(run, folder.folder, csv=csv, mat=mat, figures=figures):
-            written.append(name)
-        unfinished = bool(case.particle_dampers) and run.status not in ("finished", "energy_error")
-        checkpoint = folder.finish(written, keep_checkpoint=unfinished)
+        # The names are checked now, and each again when its file is complete: hours may lie between.
+        with claim(out / name for name in names), watch(watched):
+            run = _simulate(case, folder)
+            if run.status == "interrupted" and case.particle_dampers:
+                typer.echo(printable(run.message), err=True)
+                sys.exit(STOPPED)
+            if installed:  # so that the next command recognises the files if this one is killed
+                list_files(out, rattlebox.__version__, dict.fromkeys(names, ""))
+            if case.output.snapshots:
+                written[SNAPSHOTS] = SNAPSHOTS
+            for name, used in _write(run, folder.folder, csv=csv, mat=mat, figures=figures):
+                written[name] = used
+            others = [name for name, used in written.items() if used != name]
+            if others:
+                list_files(out, rattlebox.__version__, dict.fromkeys(others))
+            unfinished = bool(case.particle_dampers) and run.status not in ("finished", "energy_error")
+            checkpoint = folder.finish(list(written.values()), keep_checkpoint=unfinished)
         installed = True
     except CheckpointMismatch as error:
         option = "--replace, " if checkpoint == out / CHECKPOINT else ""
@@ -158,18 +167,25 @@ def _run_in_folder(path: Path, case: Case, folder: RunFolder, *, csv: bool, mat:
     except Hint as hint:
         raise CaseError(f"{path}: {hint}") from None
     except KeyboardInterrupt:
-        typer.echo(f"stopped; {_stop_message(checkpoint, out, written if installed else ())}", err=True)
+        typer.echo(f"stopped; {_stop_message(checkpoint, out, list(written.values()) if installed else ())}", err=True)
         sys.exit(STOPPED)
     # The summary comes last, since the reader of a pipe may have closed it.
     console = terminal()
     console.print(run.summary())
-    console.print(f"written to {out}: {', '.join(written)}", soft_wrap=True)
+    console.print(f"written to {out}: {', '.join(written.values())}", soft_wrap=True)
     if not run.ok:
         errors = terminal(stderr=True)
         errors.print(Text.assemble((run.status, "bold"), f": {run.message}"), soft_wrap=True)
         if checkpoint.is_file():
             option = "another -o folder, or --replace" if checkpoint == out / CHECKPOINT else "another --checkpoint"
             errors.print(f"{checkpoint} remains; to run a changed case, use {option}", soft_wrap=True)
+    if others:
+        raise DataError(
+            f"files of others that appeared or changed in {out} during the run are not overwritten: {', '.join(others)}; "
+            f"the results are in {', '.join(written[name] for name in others)}",
+            "move your files; then the same command writes the results with their usual names",
+        )
+    if not run.ok:
         sys.exit(1)
 
 
@@ -187,19 +203,31 @@ def _result_names(case: Case, *, csv: bool, mat: bool, figures: bool) -> list[st
     return names
 
 
-def _write(run: Run, folder: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[str]:
-    """Write the result files one after the other, and yield the name of each when it is complete."""
-    run.save(folder / RUN)
-    yield RUN
+def _write(run: Run, folder: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[tuple[str, str]]:
+    """Write the result files one after the other, and yield the usual name and the name of each when it is complete.
+
+    They differ if a file that must not be replaced has the usual name.
+    """
+    writers: dict[str, Callable[[Path], object]] = {RUN: run.save}
     if mat:
-        run.to_mat(folder / "run.mat")
-        yield "run.mat"
+        writers["run.mat"] = run.to_mat
     if csv:
-        yield from [path.name for path in run.to_csv(folder)]
+        writers |= {f"{group}.csv": partial(write_table, run, group) for group in run.groups}
     if figures:
-        for name in (name for name in run.groups if name in _FIGURES):
-            getattr(run.plot, name)().savefig(folder / f"{name}.png")
-            yield f"{name}.png"
+        writers |= {f"{name}.png": partial(_draw, run, name) for name in run.groups if name in _FIGURES}
+    for name, write in writers.items():
+        path = folder / name
+        for used in chain([path], (path.with_stem(f"{path.stem}-{number}") for number in count(2))):
+            try:
+                write(used)
+            except FileTaken:
+                continue
+            yield name, used.name
+            break
+
+
+def _draw(run: Run, figure: str, path: Path) -> None:
+    getattr(run.plot, figure)().savefig(path)
 
 
 def _stop_message(checkpoint: Path, out: Path, written: Sequence[str]) -> str:

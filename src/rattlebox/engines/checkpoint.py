@@ -25,9 +25,11 @@ from rattlebox._util.atomic_io import (
     remove_temporaries,
     require_folder,
     require_readable,
+    watch,
 )
 from rattlebox._util.digests import array_digest
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.own_files import register_format
 from rattlebox.core import _core
 from rattlebox.core.choose import instructions
 from rattlebox.model.differences import differences
@@ -90,6 +92,9 @@ def is_checkpoint(path: Path) -> bool:
             return bool({"case", "numbers"} <= json.loads(file["about"].tobytes()).keys())
     except Exception:  # NumPy and zipfile raise nearly any exception for damaged files
         return False
+
+
+register_format(".checkpoint", is_checkpoint)
 
 
 class Unfinished(NamedTuple):
@@ -168,7 +173,8 @@ class Checkpoint:
         try:
             name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
             remove_temporaries(self.path)
-            yield
+            with watch([self.path]):
+                yield
         finally:
             name.unlink(missing_ok=True)
             lock.release()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import os
 import re
@@ -16,6 +17,7 @@ from typing import Any, Literal
 
 import rattlebox
 from rattlebox._util.atomic_io import atomic_write, require_folder
+from rattlebox._util.own_files import seal
 from rattlebox.core import _core
 from rattlebox.core.component import component_library, other_libraries
 from rattlebox.model.case import Case
@@ -173,9 +175,12 @@ def fmu_and_notes(
         "resources/limits": _limits(case, packed).encode(),
         "documentation/index.html": _page(model, variables, packed.notes, list(libraries)).encode(),
     }
-    with atomic_write(path) as name, zipfile.ZipFile(name, "w", zipfile.ZIP_DEFLATED) as file:
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
         for entry, data in content.items():
             file.writestr(zipfile.ZipInfo(entry), data, zipfile.ZIP_DEFLATED)
+    with atomic_write(path) as name:
+        name.write_bytes(seal(archive.getvalue(), ".fmu"))
     return path, packed.notes
 
 

@@ -19,6 +19,7 @@ from matplotlib.ticker import MaxNLocator
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.narrow import present
+from rattlebox._util.own_files import seal
 
 from ..results.quantities import in_unit
 
@@ -175,8 +176,11 @@ class StyledFigure(Figure):
             form == "png"
         ):  # Level 4 takes two thirds of the time of the default level 6 and writes slightly larger files.
             options = {"pil_kwargs": {"compress_level": 4}} | options
+        # To memory: matplotlib's writers of PDF files hide the error of a full disk.
+        content = io.BytesIO()
+        super().savefig(content, format=form, **options)
         with atomic_write(path, "make room and save the figure again") as name:
-            super().savefig(name, format=form, **options)
+            name.write_bytes(seal(content.getvalue(), ".png") if form == "png" else content.getbuffer())
 
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from rattlebox._util.own_files import register_format
 from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
@@ -30,6 +32,16 @@ _NO_MODES = dict.fromkeys(
     ("mode_decay", "mode_stiffness", "mode_coupling", "mode_displacement", "mode_velocity"), _EMPTY
 )
 """Fields of a problem of the core without a structure."""
+
+_MAGIC = b"RATTLEBX"  # as in core/stepper/packed_case.hpp
+
+
+def _is_packed_case(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(len(_MAGIC)) == _MAGIC
+
+
+register_format(".bin", _is_packed_case)
 
 LIGHT, HEAVY = 0.03, 0.3
 """Mass in a damper over the effective mass of its structure. Up to `LIGHT`, the reaction of the structure within a step does

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.own_files import claim, seal
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
 _SUFFIXES = (".html", ".htm")
-_MARK = re.compile(rb"\n<!-- Rattlebox report, SHA-256 of the text above: ([0-9a-f]{64}) -->\n$")
 
 
 def write_report(
@@ -72,49 +70,15 @@ def write_report(
         check_suffix(path, ".html")
         raise DataError(f"{path}: a report is an HTML file", str(path.with_suffix(".html")))
     require_folder(path)
-    check_replaceable(path)
-    # Drawing and rendering take longer than the checks above.
-    from .page import render, sections_of
+    with claim([path]):
+        # Drawing and rendering take longer than the checks above.
+        from .page import render, sections_of
 
-    sections = list(sections_of(_compared(result), case, question))
-    content = render(sections, title or _title(result, sections)).encode()
-    with atomic_write(path, "make room and write the report again") as name:
-        name.write_bytes(content + _mark(content))
+        sections = list(sections_of(_compared(result), case, question))
+        content = render(sections, title or _title(result, sections)).encode()
+        with atomic_write(path, "make room and write the report again") as name:
+            name.write_bytes(seal(content, path.suffix.lower()))
     return path
-
-
-def check_replaceable(path: Path) -> None:
-    """Raise if a file exists that is not an unchanged report.
-
-    Parameters
-    ----------
-    path
-        File to be written.
-
-    Raises
-    ------
-    DataError
-        If there is such a file.
-    """
-    if not os.path.lexists(path):
-        return
-    if path.is_file():
-        content = path.read_bytes()
-        found = _MARK.search(content)
-        if found and hashlib.sha256(content[: found.start()]).hexdigest().encode() == found[1]:
-            return
-        if found:
-            raise DataError(
-                f"{path} is a report that has changed since it was written, and is not overwritten", "another name"
-            )
-    raise DataError(
-        f"{path} exists and is not a report of Rattlebox, and is not overwritten", "another name, or move it"
-    )
-
-
-def _mark(content: bytes) -> bytes:
-    digest = hashlib.sha256(content).hexdigest()
-    return f"\n<!-- Rattlebox report, SHA-256 of the text above: {digest} -->\n".encode()
 
 
 def _compared(result: Any) -> Any:

@@ -12,6 +12,8 @@ import numpy as np
 
 from rattlebox._util.atomic_io import atomic_write, check_suffix, disk_errors, require_folder
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.own_files import claim, list_files
+from rattlebox._util.owned_folder import digest_of
 
 from .datasets import columns
 from .schema import dimensions, groups, variables
@@ -156,26 +158,49 @@ def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:
     Raises
     ------
     DataError
-        If a file cannot be written, or the folder is a file.
+        If a file cannot be written, the folder is a file, or a file was not written by Rattlebox or has changed since.
     ResourceError
         If no space is left on the disk.
     """
-    import csv
-
     check_suffix(folder, "")
     if folder.is_file():
         raise DataError(f"{folder} is a file; CSV files are written to a folder", "another name")
     with disk_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for group in run.groups:
-        path = folder / f"{group}.csv"
-        header, data = zip(*_columns(run, group), strict=True)
-        # tolist() returns Python numbers, whose repr is the shortest text that parses to the same number.
-        lists = [array.astype(int).tolist() if array.dtype == bool else array.tolist() for array in data]
-        with atomic_write(path, _DISK_HINT) as name, name.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(header)
-            writer.writerows(zip(*lists, strict=True))
-        written.append(path)
-    return tuple(written)
+    paths = tuple(folder / f"{group}.csv" for group in run.groups)
+    with claim(paths):
+        list_files(folder, run.provenance.version, {path.name: "" for path in paths})
+        for group, path in zip(run.groups, paths, strict=True):
+            write_table(run, group, path)
+        list_files(folder, run.provenance.version, {path.name: digest_of(path) for path in paths})
+    return paths
+
+
+def write_table(run: Record, group: str, path: Path) -> None:
+    """Write a dataset of a run to a CSV file; see `to_csv`.
+
+    Parameters
+    ----------
+    run
+        Run to write.
+    group
+        Name of the dataset.
+    path
+        File to write.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be written, or must not be overwritten.
+    ResourceError
+        If no space is left on the disk.
+    """
+    import csv
+
+    header, data = zip(*_columns(run, group), strict=True)
+    # tolist() returns Python numbers, whose repr is the shortest text that parses to the same number.
+    lists = [array.astype(int).tolist() if array.dtype == bool else array.tolist() for array in data]
+    with atomic_write(path, _DISK_HINT) as name, name.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(header)
+        writer.writerows(zip(*lists, strict=True))

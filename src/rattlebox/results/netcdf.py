@@ -30,6 +30,7 @@ from rattlebox._util.atomic_io import (
 )
 from rattlebox._util.digests import group_digest
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.own_files import register_format
 
 from .arrays import RunArrays
 from .datasets import columns
@@ -164,7 +165,7 @@ def _write(run: Record, target: IO[bytes]) -> None:
             _write_group(file, run, group)
 
 
-def save(run: Record, path: Path) -> Path:
+def save(run: Record, path: Path, *, replace: bool = True) -> Path:
     """Write a run to a netCDF-4 file; the new file replaces an existing one when it is complete.
 
     Parameters
@@ -173,6 +174,8 @@ def save(run: Record, path: Path) -> Path:
         Run to write.
     path
         File to write.
+    replace
+        Whether an existing file may be replaced.
 
     Returns
     -------
@@ -192,7 +195,7 @@ def save(run: Record, path: Path) -> Path:
     content = io.BytesIO()
     _write(run, content)
     _add_digests(content)
-    with atomic_write(path, _DISK_HINT) as name:
+    with atomic_write(path, _DISK_HINT, replace=None if replace else False) as name:
         name.write_bytes(content.getbuffer())
     return path
 
@@ -243,6 +246,18 @@ def read_case(path: str | os.PathLike[str]) -> str:
         If the file cannot be read; see `load`.
     """
     return _read_file(Path(path), lambda file: _read_text(file, "case"), blocks=("/",))
+
+
+def _is_run(path: Path) -> bool:
+    """Return whether a file is a run of Rattlebox, whose case can be read."""
+    try:
+        read_case(path)
+    except DataError:
+        return False
+    return True
+
+
+register_format(".nc", _is_run)
 
 
 def _add_digests(content: IO[bytes]) -> None:

@@ -90,13 +90,15 @@ class Run(Record):
         import_module("rattlebox.plots")  # registers the figures; results must not import plots statically
         return Plots(self)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
+    def save(self, path: str | os.PathLike[str], *, replace: bool = True) -> Path:
         """Write the run to one netCDF-4 file that MATLAB, ncdump and xarray read.
 
         Parameters
         ----------
         path
             File to write; the new file replaces an existing one when it is complete.
+        replace
+            Whether an existing file may be replaced; otherwise a DataError with the number `errno.EEXIST` is raised.
 
         Returns
         -------
@@ -110,7 +112,7 @@ class Run(Record):
         ResourceError
             If no space is left on the disk.
         """
-        return netcdf.save(self, Path(path))
+        return netcdf.save(self, Path(path), replace=replace)
 
     def to_mat(self, path: str | os.PathLike[str]) -> Path:
         """Write a MATLAB file with a struct for each dataset, and the structs `units` and `info`.
@@ -140,7 +142,8 @@ class Run(Record):
         Parameters
         ----------
         folder
-            Folder to write to, created if missing.
+            Folder to write to, created if missing. Its marker, rattlebox.json, lists the files: files with their names that
+            are not in the list, or have changed since, are not overwritten.
 
         Returns
         -------
@@ -150,7 +153,7 @@ class Run(Record):
         Raises
         ------
         DataError
-            If a file cannot be written.
+            If a file cannot be written, or must not be overwritten.
         ResourceError
             If no space is left on the disk.
         """

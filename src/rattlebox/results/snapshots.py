@@ -29,9 +29,11 @@ from rattlebox._util.atomic_io import (
     require_readable,
     reserve_space,
     sync,
+    watch,
 )
 from rattlebox._util.digests import SIZE, array_digest, group_digest
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.own_files import register_format
 from rattlebox.model.surfaces import Surface
 
 from .arrays import FloatArray, IntArray
@@ -122,6 +124,8 @@ def is_snapshots(path: Path) -> bool:
         return b"rattlebox_format" in begin
 
 
+register_format(".vtkhdf", is_snapshots)
+
 _GROWING = frozenset(
     (
         _DIGESTS,
@@ -188,9 +192,9 @@ class SnapshotFile:
         """
         import h5py
 
-        if self.path.is_file() and not is_snapshots(self.path):
+        if os.path.lexists(self.path) and not (self.path.is_file() and is_snapshots(self.path)):
             raise DataError(f"{self.path} is not a snapshot file and is not overwritten", "another file")
-        with atomic_write(self.path, _DISK_HINT) as name:
+        with watch([self.path]), atomic_write(self.path, _DISK_HINT) as name:
             reserve_space(name, self._size())
             with h5py.File(name, "w") as file:
                 self._create_datasets(file)

@@ -134,7 +134,7 @@ class Store:
             if not (self.path / MARKER).is_file():
                 raise StoreError(f"{self.path} was removed while the study ran", "the same command again")
             if state := {name: values[name] for name in values if name not in self._arrays}:
-                with atomic_write(self._state_file(block)) as temporary, temporary.open("wb") as file:
+                with atomic_write(self._state_file(block), replace=True) as temporary, temporary.open("wb") as file:
                     np.savez(file, allow_pickle=False, **state)
             for name, array in self._arrays.items():
                 # Without this, Zarr would read a chunk that may be damaged.

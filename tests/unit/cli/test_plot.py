@@ -83,11 +83,11 @@ def test_default_file(study: Path, plot: RunCli) -> None:
     at = ["--at", "damper.start=0", "--kind", "lines"]
     for name, arguments in (("study.png", [study, *at]), ("run.png", ["first.nc"])):
         assert plot(*arguments) == (0, f"written: {name}\n", "")
-        Path(name).write_text("somebody's")
         code, printed, errors = plot(*arguments)
         assert (code, errors) == (0, "") and printed.startswith(f"written: {name} (replaced")
-        assert Path(name).read_bytes().startswith(b"\x89PNG")
+        Path(name).write_text("somebody's")
         assert plot(*arguments, "-o", name) == (0, f"written: {name}\n", "")
+        assert Path(name).read_bytes().startswith(b"\x89PNG")
 
 
 def test_figure_that_cannot_be_written(study: Path, plot: RunCli) -> None:

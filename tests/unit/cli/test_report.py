@@ -101,5 +101,5 @@ def test_files_of_others_stay(run_cli: RunCli) -> None:
     assert run_cli("run", "case.toml", "-o", "out", "--no-figures")[0] == 0
     Path("out.html").write_text("mine")
     code, printed, errors = run_cli("report", "out")
-    assert (code, printed) == (2, "") and "out.html exists and is not a report of Rattlebox" in errors
+    assert (code, printed) == (2, "") and "out.html was not written by Rattlebox" in errors
     assert Path("out.html").read_text() == "mine"

@@ -93,7 +93,7 @@ def test_bad_input(tmp_path: Path, run: Run) -> None:
     [
         ("rattlebox.prepare.particles.settle", "no results were written"),
         ("rattlebox.results.Run.save", "repeat the command to resume from out/run.checkpoint"),
-        ("rattlebox.results.Run.to_csv", "repeat the command to resume from out/run.checkpoint"),
+        ("rattlebox.cli.run.write_table", "repeat the command to resume from out/run.checkpoint"),
     ],
 )
 def test_stop_signals(

@@ -1,0 +1,36 @@
+"""The file that a command writes: the one that the user named, or a default name, which replaces no file of others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rattlebox._util.own_files import claim
+
+
+@contextmanager
+def output_file(out: Path | None, default: str) -> Iterator[tuple[Path, str]]:
+    """Claim the file that a command writes in this block.
+
+    Parameters
+    ----------
+    out
+        File that the user named, which may be replaced.
+    default
+        Name in the current folder otherwise.
+
+    Yields
+    ------
+    tuple of Path and str
+        The file, and a note for the user if it replaces an earlier one of the default name, else "".
+
+    Raises
+    ------
+    DataError
+        If a file has the default name that Rattlebox did not write, or that has changed since.
+    """
+    path = out or Path(default)
+    note = " (replaced an earlier file; choose another name with -o)" if out is None and path.exists() else ""
+    with claim([path], named=out is not None):
+        yield path, note
