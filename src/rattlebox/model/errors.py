@@ -19,6 +19,7 @@ Vocabulary = Mapping[str, Mapping[str, Mapping[str, str]]]
 """Names of fields with an example or "", by the field that holds the part and by the kind of the part."""
 
 _LIMIT = 4  # errors in a message
+_EXAMINED = 100  # errors that are compared with each other and with all known names; others are only counted
 _SPELLINGS = {"loads": "load", "dampers": "damper", "balls": "ball", "radius": "diameter"}
 _NOTHING = object()
 
@@ -105,7 +106,7 @@ def translate(
         _misspelt_fields_first(error.errors(include_url=False), str(source), vocabulary), vocabulary
     )
     blocks: list[str] = []
-    for finding in findings:
+    for finding in findings[:_EXAMINED]:
         location = (*finding["loc"], *getattr(_raised(finding), "place", ()))
         if finding["type"] == "union_tag_invalid":
             location += ("kind",)
@@ -117,8 +118,9 @@ def translate(
         block = message(head, *_complaint_and_suggestion(finding, value, str(source), vocabulary, place))
         if block not in blocks:
             blocks.append(block)
-    if len(blocks) > _LIMIT:
-        blocks[_LIMIT:] = [f"and {len(blocks) - _LIMIT} more"]
+    count = len(blocks) + len(findings[_EXAMINED:])
+    if count > _LIMIT:
+        blocks[_LIMIT:] = [f"and {count - _LIMIT} more"]
     kinds = {type(_raised(finding)) for finding in findings}
     kind = kinds.pop() if len(kinds) == 1 else CaseError
     return (kind if kind in (DataError, ResourceError) else CaseError)("\n".join(blocks))
@@ -144,7 +146,7 @@ def _misspelt_fields_first(findings: Sequence[Any], source: str, vocabulary: Voc
 
 def _without_echoes(findings: Sequence[Any], vocabulary: Vocabulary) -> list[Any]:
     """Remove errors about missing fields that are present under a similar name."""
-    extra = [finding["loc"] for finding in findings if finding["type"] == "extra_forbidden"]
+    extra = [finding["loc"] for finding in findings if finding["type"] == "extra_forbidden"][:_EXAMINED]
     return [
         finding
         for finding in findings

@@ -23,6 +23,10 @@ from .units import LARGEST
 
 Array = NDArray[np.float64]
 BINARY = (".npy", ".npz", ".mat")
+MOST_PARTS = 100
+"""Most parts of a key with dots, such as damper.gap; a case needs less than ten."""
+_QUOTED = re.compile(r"""\"[^"]*"|'[^']*'""")
+_BETWEEN = re.compile(r"[,=\[\]{}]")
 _SEVERAL = {"damper": "dampers", "load": "loads", "ball": "balls", "particles": "particles", "base": "base"}
 """Keys of tables that may occur several times, and the keys of the lists."""
 
@@ -68,6 +72,8 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
     CaseError
         If the text is not TOML; with the line at fault.
     """
+    if _has_long_key(content):  # for which tomllib needs a time that grows with the square of its length
+        raise CaseError(f"{source}: a key has more than {MOST_PARTS} parts", "fewer dots in one key")
     try:
         return tomllib.loads(content)
     except (ValueError, RecursionError) as error:  # ValueError: also an integer of thousands of digits
@@ -95,6 +101,15 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
             table = ".".join([*names[:-1], _SEVERAL[names[-1]]])
             complaint.append(f"  try: double brackets for each of them, [[{table}]]")
         raise CaseError("\n".join(complaint)) from None
+
+
+def _has_long_key(content: str) -> bool:
+    for line in content.split("\n"):
+        if line.count(".") > MOST_PARTS:
+            bare = _QUOTED.sub("q", line).partition("#")[0]
+            if any(part.count(".") > MOST_PARTS for part in _BETWEEN.split(bare)):
+                return True
+    return False
 
 
 def read_arrays(file: Path) -> dict[str, Array]:
