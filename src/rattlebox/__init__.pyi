@@ -115,6 +115,7 @@ from rattlebox.studies.kinds.lyapunov import lyapunov as lyapunov
 from rattlebox.studies.kinds.sensitivity import sensitivity as sensitivity
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.measures import MEASURES as MEASURES
+from rattlebox.studies.outcomes import study_remarks as study_remarks
 from rattlebox.studies.response_from_map import response_from_map as response_from_map
 from rattlebox.studies.sampling import geomspace as geomspace
 from rattlebox.studies.sampling import linspace as linspace

@@ -27,6 +27,16 @@ TEMPLATES = {
 
 Path_ = tuple[str | int, ...]
 
+FAILURES = (rb.RattleboxError, OSError, ValueError, ArithmeticError, MemoryError, RecursionError)
+"""Errors of cases and files of others."""
+
+
+def said(error: BaseException) -> str:
+    """Return the text of one of `FAILURES`."""
+    if isinstance(error, MemoryError):
+        return "the memory is exhausted\n  try: a shorter or smaller case"
+    return "nested too deep" if isinstance(error, RecursionError) else str(error)
+
 
 class Draft:
     """Case that a page edits, also while it is not valid.
@@ -46,6 +56,8 @@ class Draft:
         The case; None while it is not valid.
     errors
         Texts by path ("damper.gap"); "" for those without a field.
+    is_toml
+        Whether the text is TOML. Otherwise the tables are older than the text and cannot be changed.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -57,10 +69,12 @@ class Draft:
 
     def set_text(self, text: str) -> None:
         """Replace the whole case by the text of a case file."""
-        self.text = text
+        self.text, self.is_toml = text, False
         try:
             if len(text) > MOST_CHARACTERS:
                 raise rb.CaseError(f"the text has {len(text)} characters, more than {MOST_CHARACTERS}")
+            if _has_long_key(text):  # for which tomllib needs a time that grows with the square of its length
+                raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}")
             given = tomllib.loads(text)
             if _depth(given) > DEEPEST:
                 raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}")
@@ -71,7 +85,7 @@ class Draft:
         except RecursionError:
             self._invalid({"": f"the tables are nested deeper than {DEEPEST}"})
         else:
-            self.given = given
+            self.given, self.is_toml = given, True
             self._check()
 
     def value(self, path: Path_) -> Any:
@@ -86,6 +100,8 @@ class Draft:
 
     def set_value(self, path: Path_, value: Any) -> None:
         """Set the value at a path; None removes it. The text is written anew, without its comments."""
+        if not self.is_toml:  # a change of older tables would replace the text that the user is writing
+            return
         node: Any = self.given
         for part in path[:-1]:
             node = node.setdefault(part, {}) if isinstance(node, dict) else node[part]
@@ -105,8 +121,8 @@ class Draft:
             self.case, self.errors = rb.Case.from_dict(self.given, folder=self.folder), {}
         except rb.RattleboxError as error:
             self._invalid(by_field(str(error)))
-        except (RecursionError, OverflowError) as error:
-            self._invalid({"": f"the case cannot be read: {error}"})
+        except FAILURES as error:
+            self._invalid({"": f"the case cannot be read: {said(error)}"})
 
     def _invalid(self, errors: dict[str, str]) -> None:
         self.case, self.errors = None, errors
@@ -154,6 +170,15 @@ def _named_files(node: Any, is_file: bool = False) -> list[str]:
     if isinstance(node, dict):
         return [file for key, item in node.items() for file in _named_files(item, is_file or key == "file")]
     return [file for item in node for file in _named_files(item, is_file)] if isinstance(node, list) else []
+
+
+def _has_long_key(text: str) -> bool:
+    """Return whether a key has more than `DEEPEST` parts; not exact for dots in texts over several lines."""
+    for line in text.split("\n"):
+        bare = re.sub(r"""\"[^"]*"|'[^']*'""", "q", line).partition("#")[0] if line.count(".") > DEEPEST else ""
+        if any(part.count(".") > DEEPEST for part in re.split(r"[,=\[\]{}]", bare)):
+            return True
+    return False
 
 
 def _depth(node: Any) -> int:
@@ -232,6 +257,7 @@ def dotted(path: Path_) -> str:
 
 def python_script(toml: str, task: str = "") -> str:
     """Return a Python script that computes a case, or a task with it, again."""
-    quoted = toml.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+    quoted = toml.replace("\\", "\\\\").replace('"""', '\\"\\"\\"').removesuffix("\n") + "\n"
+    quoted = re.sub(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]", lambda found: f"\\u{ord(found[0]):04x}", quoted)
     body = task or 'run = rb.simulate(case)\nprint(run.summary())\nrun.plot.motion().savefig("motion.png")\n'
     return f'import rattlebox as rb\n\ncase = rb.Case.from_toml("""\n{quoted}""")\n{body}'

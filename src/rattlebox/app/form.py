@@ -106,15 +106,15 @@ class Form:
         self._draft, self._changed = draft, changed
         self._inputs: dict[str, Any] = {}
         self._labels: dict[str, Any] = {}
-        self._box = ui.column().classes("w-full gap-1")
-        self.refresh()
+        self.box = ui.column().classes("w-full gap-1")
+        self.follow_case()
 
-    def refresh(self) -> None:
+    def follow_case(self) -> None:
         """Build all inputs again, after the text of the case was changed."""
         self._inputs.clear()
         self._labels.clear()
-        self._box.clear()
-        with self._box:
+        self.box.clear()
+        with self.box:
             self._error_label("")
             self._table(schema(), (), self._draft.given)
 
@@ -149,7 +149,7 @@ class Form:
             return
         self._draft.set_value(path, value)
         if rebuild:
-            self.refresh()
+            self.follow_case()
         self._changed()
 
     def _error_label(self, name: str) -> None:

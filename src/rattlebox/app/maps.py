@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -37,8 +38,9 @@ class MapTab:
         self._name = ""
         self._typed: dict[str, Any] = {}
         self._grid: tuple[list[str], list[np.ndarray[Any, Any]], list[str]] | None = None
-        self._box = ui.column().classes("w-full gap-1")
-        self.case_changed()
+        self._proposed: dict[int, tuple[str, str]] = {}
+        self._rows = [self._row(number) for number in range(2)]
+        self.follow_case()
         with ui.row().classes("w-full items-center gap-2"):
             measures = {name: measure.long_name for name, measure in rb.MEASURES.items()}
             self._measure = ui.select(measures, value="rms", label="measure", with_input=True).props(
@@ -55,47 +57,51 @@ class MapTab:
         self._status = ui.label("A map shows a measure over one or two numbers; a click on a point shows its run.")
         self._status.classes("text-sm text-gray-700")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
+        self._remarks = ui.label("").classes("text-amber-800 text-sm whitespace-pre-wrap")
         self._chart = ui.echart({}, on_point_click=self._watch_point).classes("w-full").style("height:460px")
         with ui.row() as self._downloads:
             for suffix, title in MAP_FORMATS.items():
                 ui.button(title, icon="download", on_click=partial(self._download, suffix)).props("flat dense")
         self._chart.set_visibility(False), self._downloads.set_visibility(False)
 
-    def case_changed(self) -> None:
-        """Offer the numbers of the case."""
-        self._box.clear()
-        with self._box:
-            self._show_parameters()
+    def _row(self, number: int) -> tuple[Any, ...]:
+        """Build the inputs of a parameter: its name, the ends of its range, number of values and spacing."""
+        with ui.row().classes("w-full items-center gap-2"):
+            name = ui.select([NONE], value=NONE, label="second parameter" if number else "parameter")
+            name.props("dense options-dense").classes("w-56")
+            low, high = (ui.input(text).props("dense").classes("w-24") for text in ("from", "to"))
+            count = ui.number("values", value=12, min=2, max=MOST_VALUES, precision=0).props("dense").classes("w-20")
+            spacing = ui.switch("log")
+        name.on_value_change(lambda _: self._suggest(number))
+        return name, low, high, count, spacing
 
-    def _show_parameters(self) -> None:
+    def follow_case(self) -> None:
+        """Offer the numbers of the case, and ranges around its values in place of those that were proposed before."""
         names = [dotted(path) for path in numeric_paths(self._page.draft.given)]
-        self._rows = []
-        for number, usual in enumerate(("damper.gap", NONE)):
-            with ui.row().classes("w-full items-center gap-2"):
-                options = names if number == 0 else [NONE, *names]
-                chosen, label = usual if usual in options else options[0], "second parameter" if number else "parameter"
-                name = ui.select(options, value=chosen, label=label).props("dense options-dense").classes("w-56")
-                low, high = (ui.input(text).props("dense").classes("w-24") for text in ("from", "to"))
-                count = ui.number("values", value=12, min=2, max=MOST_VALUES, precision=0)
-                count.props("dense").classes("w-20")
-                spacing = ui.switch("log")
-                row = (name, low, high, count, spacing)
-                self._rows.append(row)
-                name.on_value_change(lambda _, row=row: self._suggest(row))
-                self._suggest(row)
+        for number, ((name, low, high, *_), usual) in enumerate(zip(self._rows, ("damper.gap", NONE), strict=True)):
+            options = [NONE, *names] if number or not names else names
+            kept = name.value if name.value in options and (number or name.value != NONE) else None
+            chosen = kept or (usual if usual in options else options[0])
+            if name.options != options or name.value != chosen:
+                name.set_options(options, value=chosen)
+            if kept is None or (low.value, high.value) == self._proposed.get(number):
+                self._suggest(number)
 
-    def _suggest(self, row: tuple[Any, ...]) -> None:
+    def _suggest(self, number: int) -> None:
         """Fill in a range around the value of the case."""
-        name, low, high = row[0].value, row[1], row[2]
+        name, low, high, *_ = self._rows[number]
         paths = {dotted(path): path for path in numeric_paths(self._page.draft.given)}
-        found = quantity(self._page.draft.value(paths[name])) if name in paths else None
+        found = quantity(self._page.draft.value(paths[name.value])) if name.value in paths else None
         if found is None:
-            return
-        value, unit = found
-        start, stop = (0.0, 1.0) if not unit and 0 <= value <= 1 else (value / 3, value * 3)
-        if name.endswith("start"):
-            start, stop = -1.0, 1.0
-        low.set_value(f"{rounded(start):g} {unit}".strip()), high.set_value(f"{rounded(stop):g} {unit}".strip())
+            ends = "", ""
+        else:
+            value, unit = found
+            start, stop = (0.0, 1.0) if not unit and 0 <= value <= 1 else (value / 3, value * 3)
+            if name.value.endswith("start"):
+                start, stop = -1.0, 1.0
+            ends = f"{rounded(start):g} {unit}".strip(), f"{rounded(stop):g} {unit}".strip()
+        self._proposed[number] = ends
+        low.set_value(ends[0]), high.set_value(ends[1])
 
     # ---- computing
 
@@ -132,6 +138,8 @@ class MapTab:
         finally:
             watch.cancel()
             worker.stop()
+            with suppress(OSError):  # a map without blocks gives its name back
+                (page.folder / f"{self._name}.zarr").rmdir()
             if self._worker is worker:
                 self._worker = None
                 self._start.set_visibility(True), self._stop.set_visibility(False)
@@ -194,9 +202,12 @@ class MapTab:
         self._grid = axes, points, units
         titles = [f"{axis} ({unit})" if unit not in ("", "1") else axis for axis, unit in zip(axes, units, strict=True)]
         draw = _lines if len(axes) == 1 else _heat
+        remarks = rb.study_remarks(study)
+        texts = remarks.transpose(*axes).values if set(axes) == set(remarks.dims) else np.full(values.shape, "", object)
+        self._remarks.set_text(_counted(texts))
         self._chart.set_visibility(True), self._downloads.set_visibility(True)
         self._chart.options.clear()
-        self._chart.options.update(draw(scale * values.values, points, titles, label))
+        self._chart.options.update(draw(scale * values.values, points, titles, label, texts))
         self._chart.update()
 
     def _as_typed(self, axis: str, values: Any, unit: str) -> tuple[Any, str]:
@@ -212,7 +223,10 @@ class MapTab:
         if self._grid is None:
             return
         axes, points, units = self._grid
-        indices = [event.data_index] if len(axes) == 1 else [int(number) for number in event.data[:2]]
+        if isinstance(event.data, dict):  # one of the triangles
+            indices = list(np.unravel_index(event.data["value"][2], [len(each) for each in points]))
+        else:
+            indices = [event.data_index] if len(axes) == 1 else [int(number) for number in event.data[:2]]
         page = self._page
         paths = {dotted(path): path for path in numeric_paths(page.draft.given)}
         for axis, values, unit, index in zip(axes, points, units, indices, strict=True):
@@ -240,16 +254,39 @@ def _axis(kind: str, title: str, gap: int, **more: Any) -> dict[str, Any]:
     return {"type": kind, "name": title, "nameLocation": "middle", "nameGap": gap, "scale": True, **more}
 
 
-def _lines(values: Any, points: list[Any], titles: list[str], label: str) -> dict[str, Any]:
+def _counted(texts: Any) -> str:
+    """Return the remarks on the points of a map in lines, with the number of points that have each."""
+    parts = [part for text in texts.ravel() if text for part in text.split("; ")]
+    lines = [f"warning: {parts.count(part)} of {texts.size} points: {part}" for part in dict.fromkeys(parts)]
+    return "\n".join([*lines, "The triangles mark these points."] if lines else [])
+
+
+def _marks(texts: Any, data: list[Any]) -> dict[str, Any]:
+    """Return triangles at the points with remarks: place in the picture, number of the point, and text."""
+    marked = [
+        {"value": [*place[:2], number], "name": text}
+        for number, (place, text) in enumerate(zip(data, texts.ravel().tolist(), strict=True))
+        if text
+    ]
+    form = {"symbol": "triangle", "symbolSize": 12, "itemStyle": {"color": "#b45309"}}
+    return {"type": "scatter", "data": marked, "animation": False, "tooltip": {"formatter": "{b}"}, **form}
+
+
+def _lines(values: Any, points: list[Any], titles: list[str], label: str, texts: Any) -> dict[str, Any]:
     data = [[float(x), _finite(y)] for x, y in zip(points[0], values, strict=True)]
     line = {"type": "line", "data": data, "symbolSize": 8, "color": rb.plots.SERIES_COLOURS[0], "animation": False}
     steps = points[0][1:] / points[0][:-1] if (points[0] > 0).all() else np.zeros(1)
     kind = "log" if steps.size > 1 and np.allclose(steps, steps[0]) else "value"
     axes = {"xAxis": _axis(kind, titles[0], 30), "yAxis": _axis("value", label, 60)}
-    return {"grid": {"left": 80, "right": 20, "top": 20, "bottom": 50}, "tooltip": {}, **axes, "series": [line]}
+    return {
+        "grid": {"left": 80, "right": 20, "top": 20, "bottom": 50},
+        "tooltip": {},
+        **axes,
+        "series": [line, _marks(texts, data)],
+    }
 
 
-def _heat(values: Any, points: list[Any], titles: list[str], label: str) -> dict[str, Any]:
+def _heat(values: Any, points: list[Any], titles: list[str], label: str, texts: Any) -> dict[str, Any]:
     cells = [[i, j, _finite(values[i, j])] for i in range(values.shape[0]) for j in range(values.shape[1])]
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
@@ -261,8 +298,11 @@ def _heat(values: Any, points: list[Any], titles: list[str], label: str) -> dict
         "tooltip": {"position": "top"},
         "xAxis": _axis("category", titles[0], 30, data=first),
         "yAxis": _axis("category", titles[1], 60, data=second),
-        "visualMap": {**colours, "top": "center", "text": [f"{high:.4g}", f"{low:.4g}"]},
-        "series": [{"type": "heatmap", "data": cells, "animation": False}],
+        "visualMap": {**colours, "seriesIndex": 0, "top": "center", "text": [f"{high:.4g}", f"{low:.4g}"]},
+        "series": [
+            {"type": "heatmap", "data": cells, "animation": False},
+            _marks(texts, cells),
+        ],
     }
 
 

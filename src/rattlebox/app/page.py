@@ -5,24 +5,35 @@ from __future__ import annotations
 import asyncio
 import io
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
+from nicegui import app, ui
 from nicegui import run as threads
-from nicegui import ui
 
 import rattlebox as rb
 
 from .binary import decode
-from .draft import TEMPLATES, Draft, dotted, numeric_paths, python_script, quantity, rounded, template
+from .draft import TEMPLATES, Draft, Path_, python_script, template
 from .elements import Balls, Charts, Particles
-from .form import Form, written
+from .form import Form
 from .jobs import Live, TaskFailed, Worker
 from .maps import MapTab
-from .results import DATA_FILES, new_name, paused_case, paused_runs, store_file
+from .results import (
+    DATA_FILES,
+    case_files,
+    inside,
+    new_name,
+    paused_case,
+    paused_runs,
+    release_name,
+    store_file,
+    typed_text,
+)
 from .runs import RunsTab
+from .sliders import PINNED, USUAL, Sliders
 from .views import view_of_run, view_of_snapshots
 
 Bodies = dict[str, Callable[..., bytes]]
@@ -43,17 +54,10 @@ STYLE = """
 .rb-left textarea { height: 26vh; resize: none; white-space: pre }
 .rb-drawing svg { width: 100%; height: auto }
 """
-MOST_SLIDERS = 4
 MOST_FILE = 1_000_000
 """Largest case file that is uploaded [B]."""
 RESUMES = "Run and save resumes from the last checkpoint"
 OUTDATED = "the pictures show an earlier case"
-PINNED = {
-    "steel_ball": ("damper.gap", "load.amplitude", "damper.start", "damper.ball.radius"),
-    "row": ("damper.gap", "load.amplitude", "damper.contact.restitution"),
-    "building": ("damper.gap", "damper.contact.restitution", "damper.ball.mass"),
-}
-"""Numbers with a slider at the start, by template."""
 
 
 class Page:
@@ -76,10 +80,11 @@ class Page:
         self._keys: dict[str, str] = {}
         self._version = 0
         self._impact_rows: list[dict[str, Any]] = []
-        self._pinned = list(PINNED["steel_ball"])
+        self._client = ui.context.client
         self._live = Live(self._show_view, self._show_failure)
         self._worker: Worker | None = None
         self._build()
+        self._client.on_connect(self._restore)
 
     # ---- bodies
 
@@ -123,7 +128,7 @@ class Page:
 
     def _build_case(self) -> None:
         with ui.column().classes("w-full grow overflow-auto"):
-            self.form = Form(self.draft, self._edited)
+            self.form = Form(self.draft, lambda: self._follow(self.form))
         with ui.row().classes("w-full items-center gap-2 no-wrap"):
             ui.label("TOML").classes("font-semibold text-sm")
             ui.button("Copy", icon="content_copy", on_click=self._copy).props("dense flat size=sm")
@@ -163,8 +168,7 @@ class Page:
             self._status = ui.label("").classes("text-sm text-gray-700")
             self._about = ui.label("").classes("text-sm text-gray-700")
         self._show_running(False)
-        self._slider_row = ui.row().classes("w-full items-center gap-4")
-        self._show_sliders()
+        self.sliders = Sliders(self.draft, partial(self._follow, None))
         self._not_saved = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._warnings = ui.label("").classes("text-amber-800 text-sm whitespace-pre-wrap")
@@ -180,72 +184,48 @@ class Page:
             self._summary = ui.label("").classes("font-mono text-xs whitespace-pre")
         ui.timer(0.05, self._changed, once=True)
 
-    # ---- sliders
-
-    def _show_sliders(self) -> None:
-        numbers = {dotted(path): path for path in numeric_paths(self.draft.given)}
-        self._slider_row.clear()
-        with self._slider_row:
-            for name in [name for name in self._pinned if name in numbers]:
-                self._slider(name, numbers[name])
-            pinned = [name for name in self._pinned if name in numbers]
-            choice = ui.select(list(numbers), label="slider for", multiple=True, value=pinned)
-            choice.props(f"dense options-dense max-values={MOST_SLIDERS}").classes("w-44")
-            choice.on_value_change(lambda event: self._pin(event.value))
-
-    def _pin(self, names: list[str]) -> None:
-        self._pinned = names[:MOST_SLIDERS]
-        self._show_sliders()
-
-    def _slider(self, name: str, path: Any) -> None:
-        """Show a slider from a quarter to four times the value; from 0 or -1 to 1 for numbers that are shares."""
-        number, unit = quantity(self.draft.value(path)) or (0.0, "")
-        share = not unit and abs(number) <= 1
-        low = (-1.0 if name.endswith("start") else 0.0) if share else -1.0
-
-        def text(place: float) -> Any:
-            value = rounded(place if share else number * 4**place)
-            return f"{value:g} {unit}" if unit else value
-
-        with ui.column().classes("gap-0").style("width:150px"):
-            label = ui.label(f"{name.removeprefix('damper.')}: {written(self.draft.value(path))}").classes("text-xs")
-
-            def move(event: Any) -> None:
-                place = float(event.args)
-                label.set_text(f"{name.removeprefix('damper.')}: {written(text(place))}")
-                self.draft.set_value(path, text(place))
-                self.form.show_value(path)
-                self._edited()
-
-            slider = ui.slider(min=low, max=1.0, step=0.01, value=number if share else 0.0)
-            slider.props(f'dense aria-label="{name}"')
-            slider.on("update:model-value", move, throttle=0.03, leading_events=True)
-
     # ---- changes of the case
 
-    def _edited(self) -> None:
-        """React to an edit in the form or by a slider."""
-        self._text.set_value(self.draft.text)
+    def _follow(self, source: object = None, path: Path_ | None = None) -> None:
+        """Let all views show the case, after a change at a path or of the whole case; the source shows it already."""
+        if source is not self._text:
+            self._text.set_value(self.draft.text)
+        if path is not None:
+            self.form.show_value(path)
+        elif source is not self.form:
+            self.form.follow_case()
+        self.sliders.follow_case()
+        self.map_tab.follow_case()
+        for box in (self.form.box, self.sliders.row):  # they show older tables while the text is being written
+            box.classes(**{"remove" if self.draft.is_toml else "add": "opacity-50 pointer-events-none"})
         self._changed()
 
     def _text_edited(self, event: Any) -> None:
         if event.value != self.draft.text:
             self.draft.set_text(event.value or "")
-            self.form.refresh()
-            self._show_sliders()
-            self._changed()
+            self._follow(self._text)
 
-    def use_text(self, text: str, pinned: tuple[str, ...] = ()) -> None:
+    def _restore(self) -> None:
+        """Show the case that this tab of the browser had before the page was loaded again."""
+        with self._client:
+            kept = app.storage.tab
+            if kept.get("text", self.draft.text) != self.draft.text:
+                self.use_text(kept["text"], kept["pinned"])
+
+    def _keep(self) -> None:
+        """Keep the case for `_restore`, in the memory of the server."""
+        if self._client.tab_id is not None:
+            with self._client:
+                app.storage.tab.update(text=self.draft.text, pinned=[*self.sliders.pinned])
+
+    def use_text(self, text: str, pinned: Sequence[str] = ()) -> None:
         """Replace the case by the text of a case file."""
         if self._worker is not None and not self._unsaved:
             self._stop_for_another_case()
-        self._pinned = list(pinned) or self._pinned
+        self.sliders.pinned = pinned or self.sliders.pinned
         self.draft.set_text(text)
         self._clear_view()
-        self.form.refresh()
-        self._show_sliders()
-        self.map_tab.case_changed()
-        self._edited()
+        self._follow()
 
     def _stop_for_another_case(self) -> None:
         self.stop_run()
@@ -262,11 +242,12 @@ class Page:
 
     def _use_template(self, event: Any) -> None:
         if event.value is not None:
-            self.use_text(template(event.value), PINNED.get(event.value, ("damper.friction",)))
+            self.use_text(template(event.value), PINNED.get(event.value, USUAL))
 
     def _changed(self) -> None:
         """Show errors, or compute a case of balls on a line again."""
         self.form.show_errors()
+        self._keep()
         draft = self.draft
         if self._templates.value and draft.text != template(self._templates.value):
             self._templates.set_value(None)  # so that the same template can be chosen again
@@ -276,7 +257,8 @@ class Page:
         if self._about.text and draft.text != self._running_text:
             self._about.set_text(OUTDATED)
         if draft.case is None:
-            self._failure.set_text("The case is not valid; see the red lines in the form.")
+            place = "in the form" if draft.is_toml else "above the text"
+            self._failure.set_text(f"The case is not valid; see the red lines {place}.")
             return
         self._failure.set_text("")
         particles = bool(draft.case.particle_dampers)
@@ -333,7 +315,7 @@ class Page:
 
     async def show_saved(self, name: str, run: rb.Run) -> None:
         """Show the case of a run in the folder; of particles, also the stored result."""
-        self.use_text(run.case.to_toml())
+        self.use_text(typed_text(self.folder, name, run.case.to_toml()))
         self.show_watch()
         if run.case.particle_dampers and self.draft.case is not None:
             self._running, self._running_text = name, self.draft.text
@@ -360,7 +342,7 @@ class Page:
             return
         try:
             resumed = self._paused_text == draft.text and self._paused in paused_runs(self.folder)
-            name = self._paused if resumed else new_name(self.folder, "run")
+            name = self._paused if resumed else new_name(self.folder, "run", draft.text)
         except OSError as error:
             self._failure.set_text(f"the folder {self.folder} cannot be used: {error.strerror}")
             return
@@ -378,9 +360,9 @@ class Page:
             self._particles.show(self.publish("particles", snapshots), growing=True)
         task = "run", draft.text, str(self.folder), name, bool(self._compare.value)
         try:
-            body, problem = await worker.do(*task, progress=partial(self._report, worker))
+            body, problem, saved = await worker.do(*task, progress=partial(self._report, worker))
             self._show_view(body)
-            self._ended(worker, name, problem)
+            self._ended(worker, saved, problem)
         except TaskFailed as error:
             if self._worker is worker:
                 self._failure.set_text(str(error))
@@ -390,6 +372,8 @@ class Page:
             self._end(worker)
         finally:
             self.runs_in_progress.discard(name)
+            if not self._unsaved:
+                release_name(self.folder, name, self._running_text)
             self.runs_tab.show_paused()
         if particles:
             self._particles.show(self._particles._props.get("url", ""), growing=False)
@@ -435,7 +419,7 @@ class Page:
         if worker is None or not name:
             return
         try:
-            await worker.do("save")
+            name = await worker.do("save")
         except TaskFailed as error:
             problem = str(error)
         self._ended(worker, name, problem)
@@ -457,6 +441,7 @@ class Page:
         if worker is not None:
             worker.stop()
             self.runs_in_progress.discard(self._running)
+            release_name(self.folder, self._running, self._running_text)
             self._paused, self._paused_text = self._running, self._running_text
 
     def _pause(self) -> None:
@@ -472,6 +457,7 @@ class Page:
         if not (self.folder / f"{self._running}.nc").exists():
             for suffix in (".checkpoint", ".vtkhdf"):
                 (self.folder / f"{self._running}{suffix}").unlink(missing_ok=True)
+            release_name(self.folder, self._running, self._running_text)
         self._paused = ""
         self.runs_tab.show_paused()
         self._particles.show("")
@@ -484,7 +470,11 @@ class Page:
         ui.notify("copied")
 
     def _open_dialog(self) -> None:
-        names = sorted(path.name for path in self.folder.glob("*.toml"))
+        try:
+            names = case_files(self.folder)
+        except OSError as error:
+            self._failure.set_text(f"the folder {self.folder} cannot be read: {error.strerror}")
+            return
         with ui.dialog() as dialog, ui.card():
             dialog.on("hide", dialog.delete)
             ui.label("Open a case file, or add a file of data that a case names").classes("font-semibold")
@@ -511,9 +501,9 @@ class Page:
 
     def _open(self, name: str) -> None:
         try:
-            self._use_file(name, (self.folder / name).read_bytes())
+            self._use_file(name, inside(self.folder, name.removesuffix(".toml"), ".toml").read_bytes())
         except OSError as error:
-            self._failure.set_text(f"{name} cannot be read: {error.strerror}")
+            self._failure.set_text(f"{name} cannot be read: {error.strerror or error}")
 
     def _use_file(self, name: str, content: bytes) -> None:
         """Open a case file; write another file, such as a record that a case names, to the folder."""

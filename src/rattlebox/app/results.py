@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import re
 import tempfile
 import tomllib
 import zipfile
+from contextlib import suppress
+from errno import EEXIST
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +19,7 @@ import xarray as xr
 
 import rattlebox as rb
 
-from .draft import python_script
+from .draft import FAILURES, MOST_CHARACTERS, python_script
 
 FORMATS = {
     "nc": "netCDF",
@@ -37,10 +40,59 @@ MAP_FORMATS = {"csv": "CSV table", "nc": "netCDF", "png": "figure", "html": "rep
 """Titles of the downloads of a map by suffix."""
 
 
-def new_name(folder: Path, kind: str) -> str:
-    """Return a name of a result that is not in the folder yet: "run-001", "map-001"."""
+def new_name(folder: Path, kind: str, text: str = "") -> str:
+    """Take a name of a result that is not in the folder yet, "run-001" or "map-001", also if others do so at the same time.
+
+    A run is reserved by the file of its case, "run-001.toml", a map by its folder, "map-001.zarr".
+    """
     taken = {path.name.partition(".")[0] for path in folder.iterdir()}
-    return next(name for number in range(1, 100_000) if (name := f"{kind}-{number:03d}") not in taken)
+    for number in range(1, 100_000):
+        name = f"{kind}-{number:03d}"
+        if name in taken:
+            continue
+        with suppress(FileExistsError):
+            if kind == "map":
+                (folder / f"{name}.zarr").mkdir()
+            else:
+                (folder / f"{name}.toml").open("x").close()
+                with suppress(OSError, UnicodeError):  # on a full disk the name is enough
+                    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+            return name
+    raise rb.DataError(f"{folder} has 99,999 results of one kind", "another folder")
+
+
+def release_name(folder: Path, name: str, text: str) -> None:
+    """Give the name of a run back unless there is a result of it, or a state from which it resumes."""
+    file = folder / f"{name}.toml"
+    with suppress(OSError, UnicodeError):
+        has_result = any((folder / f"{name}{suffix}").exists() for suffix in (".nc", ".checkpoint"))
+        if not has_result and file.read_text(encoding="utf-8") in ("", text):
+            file.unlink()
+
+
+def save_run(run: rb.Run, folder: Path, name: str) -> str:
+    """Write a run, with another name if somebody has taken its name meanwhile; return the name."""
+    while True:
+        try:
+            run.save(folder / f"{name}.nc", replace=False)
+        except rb.DataError as error:
+            if error.errno != EEXIST:
+                raise
+        else:
+            return name
+        before, name = name, new_name(folder, "run")
+        for suffix in (".toml", ".vtkhdf"):
+            with suppress(FileNotFoundError):
+                (folder / f"{before}{suffix}").replace(folder / f"{name}{suffix}")
+
+
+def typed_text(folder: Path, name: str, case_toml: str) -> str:
+    """Return the text of the case of a run as the user wrote it, with its units, if it is still of the same case."""
+    with suppress(*FAILURES):
+        text = inside(folder, name, ".toml").read_text(encoding="utf-8")
+        if len(text) <= MOST_CHARACTERS and rb.Case.from_toml(text, folder=folder) == rb.Case.from_toml(case_toml):
+            return text
+    return case_toml
 
 
 def runs(folder: Path) -> list[str]:
@@ -53,8 +105,8 @@ def name_of_case(path: Path, changed: float) -> str:
     """Return the name that the case of a run has; "" if it has none, or the file, changed at a time, cannot be read."""
     try:
         with xr.open_dataset(path) as stored:
-            return str(tomllib.loads(str(stored["case"].item())).get("name", ""))
-    except (OSError, ValueError, KeyError):
+            return str(tomllib.loads(str(stored["case"].item())).get("name", ""))[:80]
+    except Exception:  # of any library, for a file of others
         return ""
 
 
@@ -65,7 +117,7 @@ def paused_runs(folder: Path) -> list[str]:
 
 def paused_case(folder: Path, name: str) -> str:
     """Return the case file of a particle run that has a checkpoint."""
-    return str(rb.Snapshots(inside(folder, name, ".vtkhdf")).case_toml)
+    return typed_text(folder, name, str(rb.Snapshots(inside(folder, name, ".vtkhdf")).case_toml))
 
 
 def maps(folder: Path) -> list[str]:
@@ -73,9 +125,28 @@ def maps(folder: Path) -> list[str]:
     return [name for name in _names(folder, ".zarr") if not name.endswith(".bare")]
 
 
+def case_files(folder: Path) -> list[str]:
+    """Return the names of the case files in the folder, without those of results."""
+    results = {*_names(folder, ".nc"), *_names(folder, ".checkpoint")}
+    return sorted(f"{name}.toml" for name in _names(folder, ".toml") if name not in results)
+
+
 def _names(folder: Path, suffix: str) -> list[str]:
-    found = [path for path in folder.iterdir() if path.suffix == suffix]
-    return [path.stem for path in sorted(found, key=lambda path: path.stat().st_mtime, reverse=True)]
+    """Return the names of the results with a suffix, the newest first; pipes, links to nowhere and the like are none."""
+    found = []
+    for path in folder.iterdir():
+        with suppress(OSError):
+            if path.suffix == suffix and _is_name(path.stem) and _is_result(path):
+                found.append((path.stat().st_mtime, path.stem))
+    return [name for _, name in sorted(found, reverse=True)]
+
+
+def _is_result(path: Path) -> bool:
+    return (path / "rattlebox.json").is_file() if path.suffix == ".zarr" else path.is_file()
+
+
+def _is_name(name: str) -> bool:
+    return name.isprintable() and re.fullmatch(r"[\w-][^/\\]{0,80}", name) is not None
 
 
 def inside(folder: Path, name: str, suffix: str) -> Path:
@@ -87,9 +158,9 @@ def inside(folder: Path, name: str, suffix: str) -> Path:
         If the name is not one of a result in the folder.
     """
     path = folder / f"{name}{suffix}"
-    if not re.fullmatch(r"[\w-]{1,80}(\.bare)?", name) or not path.resolve().is_relative_to(folder.resolve()):
+    if not _is_name(name) or not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
         raise rb.DataError(f"{name!r} is not the name of a result", "letters, digits and -")
-    if not path.exists():
+    if not _is_result(path):
         raise rb.DataError(f"{path} does not exist; it may have been removed")
     return path
 
@@ -183,7 +254,9 @@ def download_map(folder: Path, name: str, suffix: str) -> bytes:
     if suffix == "py":
         return map_script(study, drawn).encode()
     if suffix == "csv":
-        return bytes(study.to_dataframe().to_csv().encode())
+        # The words of the flags stand beside each row, since a table has no legend.
+        words = rb.study_remarks(study).rename("remarks")
+        return bytes(study.assign(remarks=words).to_dataframe().to_csv().encode())
     with tempfile.TemporaryDirectory() as place:
         target = Path(place) / f"{name}.{suffix}"
         if suffix == "nc":

@@ -13,7 +13,7 @@ from nicegui import ui
 
 import rattlebox as rb
 
-from .draft import leaves, short
+from .draft import FAILURES, leaves, said, short
 from .elements import Charts
 from .results import FORMATS, download, inside, name_of_case, paused_runs, runs
 from .views import comparison
@@ -69,20 +69,19 @@ class RunsTab:
     def _list(self) -> None:
         folder = self._page.folder
         try:
-            names = runs(folder)[:MOST_RUNS]
-            times = [(folder / f"{name}.nc").stat().st_mtime for name in names]
+            times = {name: (folder / f"{name}.nc").stat().st_mtime for name in runs(folder)[:MOST_RUNS]}
         except OSError as error:
             self._failure.set_text(f"the folder {folder} cannot be read: {error.strerror}")
             return
         paused = self.show_paused()
-        if not names and not paused:
+        if not times and not paused:
             ui.label("No runs in the folder yet; Run and save stores one.").classes("text-sm text-gray-600")
         for name in paused:
             with ui.row().classes("w-full items-center gap-2 no-wrap"):
                 ui.icon("pause").classes("text-xl px-2")
                 ui.label(f"{name}, paused").classes("whitespace-nowrap")
                 ui.button("Resume", icon="play_arrow", on_click=partial(self._resume, name)).props("dense no-caps")
-        for name, changed in zip(names, times, strict=True):
+        for name, changed in times.items():
             with ui.row().classes("w-full items-center gap-2 no-wrap"):
                 box = ui.checkbox(name, value=name in self._chosen)
                 box.on_value_change(lambda event, name=name: self._choose(name, event.value))
@@ -101,8 +100,8 @@ class RunsTab:
     async def _resume(self, name: str) -> None:
         try:
             await self._page.resume(name)
-        except rb.RattleboxError as error:
-            self._failure.set_text(str(error))
+        except FAILURES as error:
+            self._failure.set_text(said(error))
 
     async def _open(self, name: str) -> None:
         run = (await self._load([name])).get(name)
@@ -114,12 +113,13 @@ class RunsTab:
         folder = self._page.folder
 
         def load() -> dict[str, rb.Run]:
-            return {name: rb.load(inside(folder, name, ".nc")) for name in names}
+            loaded = {name: rb.load(inside(folder, name, ".nc")) for name in names}
+            return {name: run for name, run in loaded.items() if run.case}  # raises if the text of a case is damaged
 
         try:
             loaded = await threads.io_bound(load) or {}
-        except (rb.RattleboxError, OSError, MemoryError) as error:
-            self._failure.set_text(str(error) or "the memory is exhausted")
+        except FAILURES as error:
+            self._failure.set_text(said(error))
             return {}
         self._failure.set_text("")
         return loaded
@@ -140,8 +140,8 @@ async def offer(failure: ui.label, content_of: Callable[..., bytes], folder: Pat
     """Offer a result as a download, or show an error."""
     try:
         content = await threads.io_bound(content_of, folder, name, suffix) or b""
-    except (rb.RattleboxError, OSError, MemoryError) as error:
-        failure.set_text(str(error) or "the memory is exhausted")
+    except FAILURES as error:
+        failure.set_text(said(error))
     else:
         failure.set_text("")
         ui.download.content(content, f"{name}.{'zip' if content[:2] == b'PK' else suffix}")

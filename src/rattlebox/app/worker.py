@@ -18,7 +18,8 @@ from typing import Any
 
 import rattlebox as rb
 
-from .draft import template
+from .draft import FAILURES, said, template
+from .results import save_run
 from .views import view_of_run
 
 Report = Callable[..., None]
@@ -43,8 +44,8 @@ def main(connection: Connection) -> None:
         try:
             result = TASKS[name](lambda *what: connection.send(("progress", *what)), *arguments)
             answer: tuple[Any, ...] = ("done", result)
-        except (rb.RattleboxError, OSError, ValueError, MemoryError, RecursionError) as error:
-            answer = ("failed", str(error) or "the memory is exhausted\n  try: a shorter or smaller case")
+        except FAILURES as error:
+            answer = ("failed", said(error))
         try:
             connection.send(answer)
         except BrokenPipeError:
@@ -67,7 +68,7 @@ _unsaved: list[tuple[rb.Run, Path]] = []
 """The last run if it could not be written."""
 
 
-def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tuple[bytes, str]:
+def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tuple[bytes, str, str]:
     """Run a case, write its results, and report views of the motion so far.
 
     A particle run is stopped at intervals and resumed from its checkpoint, which gives the same bits.
@@ -75,7 +76,7 @@ def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tup
     Returns
     -------
     tuple
-        View of the run, and why it could not be written; then `save` writes it later.
+        View of the run, why it could not be written (then `save` writes it later), and its name.
     """
     case = rb.Case.from_toml(toml, folder=Path(folder))
     target = Path(folder) / f"{name}.nc"
@@ -99,17 +100,18 @@ def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tup
     _unsaved[:] = [(result, target)]
     view = _view(result, case, compare)
     try:
-        save(report)
+        return view, "", save(report)
     except (rb.RattleboxError, OSError) as error:
-        return view, str(error)
-    return view, ""
+        return view, str(error), name
 
 
-def save(report: Report) -> None:
-    """Write the last run, and remove its checkpoint."""
+def save(report: Report) -> str:
+    """Write the last run, remove its checkpoint, and return the name of the run."""
     result, target = _unsaved[0]
-    result.save(target)
-    target.with_suffix(".checkpoint").unlink(missing_ok=True)
+    name = save_run(result, target.parent, target.stem)
+    if result.case.particle_dampers:
+        target.with_suffix(".checkpoint").unlink(missing_ok=True)
+    return name
 
 
 def _view(result: rb.Run, case: rb.Case, compare: bool) -> bytes:

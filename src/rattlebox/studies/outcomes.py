@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,6 +41,60 @@ def status_lines(study: xr.Dataset) -> list[str]:
         first = refused[0].replace("\n", "\n  ")
         lines.append(f"{len(refused):,} of {study.sizes['trial']:,} trials are not feasible, for example: {first}")
     return [*lines, *warning_lines(study)]
+
+
+def study_remarks(study: xr.Dataset) -> xr.DataArray:
+    """Return in words what limits the result of each run of a study: exceeded validity limits, or why it did not finish.
+
+    Parameters
+    ----------
+    study
+        Dataset from `rb.sweep`, `rb.open_study` or another study with `status` or `warnings`.
+
+    Returns
+    -------
+    xarray.DataArray
+        Text for each run, parts separated by "; "; "" for a run without remarks. Over the axes of `status` and `warnings`;
+        a single "" for a study without them.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> study = rb.sweep(rb.reference_case(duration=0.1), {"damper.gap": ["0.2 mm", "0.4 mm"]}, "peak")
+    >>> rb.study_remarks(study).values.tolist()
+    ['', '']
+    """
+    import xarray
+
+    found = xarray.DataArray("").astype(object)
+    if "status" in study and "flag_meanings" in study.status.attrs:
+        names = dict(enumerate(study.status.attrs["flag_meanings"].split()))
+        words = {number: name.replace("_", " ") for number, name in names.items() if name != "finished"}
+        found = _joined(found, study.status, lambda value: [words[value]] if value in words else [])
+    if "warnings" in study and "flag_masks" in study.warnings.attrs:
+        attrs = study.warnings.attrs
+        masks = [int(mask) for mask in np.atleast_1d(attrs["flag_masks"])]
+        flags = dict(zip(masks, attrs["flag_meanings"].split(), strict=True))
+        found = _joined(
+            found,
+            study.warnings,
+            lambda value: [WARNINGS.get(name, name) for mask, name in flags.items() if value > 0 and value & mask],
+        )
+    return found
+
+
+def _joined(found: xr.DataArray, codes: xr.DataArray, words: Callable[[int], list[str]]) -> xr.DataArray:
+    """Add the words of codes to texts, over the dimensions of both; codes of missing variants have none."""
+    import xarray
+
+    numbers = np.where(np.isfinite(codes.values), codes.values, -1).astype(int)
+    texts = {value: "; ".join(words(value)) for value in np.unique(numbers).tolist()}
+    added = codes.copy(data=np.array([texts[value] for value in numbers.ravel().tolist()], object).reshape(codes.shape))
+    first, second = xarray.broadcast(found, added)
+    joined = ["; ".join(filter(None, pair)) for pair in zip(first.values.ravel(), second.values.ravel(), strict=True)]
+    result = second.copy(data=np.array(joined, object).reshape(second.shape))
+    result.attrs = {"long_name": "remarks on the runs"}
+    return result
 
 
 def status_counts(study: xr.Dataset) -> dict[str, int]:

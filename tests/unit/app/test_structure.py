@@ -17,9 +17,9 @@ SOURCES = sorted(FOLDER.glob("*.py"))
 
 
 def test_size():
-    """Python and JavaScript together have at most 2500 lines that are not blank."""
+    """Python and JavaScript together have at most 2700 lines that are not blank."""
     files = [*SOURCES, *FOLDER.glob("browser/**/*.js")]
-    assert sum(bool(line.strip()) for file in files for line in file.read_text(encoding="utf-8").splitlines()) <= 2500
+    assert sum(bool(line.strip()) for file in files for line in file.read_text(encoding="utf-8").splitlines()) <= 2700
 
 
 @pytest.mark.parametrize("file", SOURCES, ids=lambda file: file.name)
