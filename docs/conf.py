@@ -1,3 +1,4 @@
+import re
 import sys
 from pathlib import Path
 
@@ -5,6 +6,7 @@ from docutils import nodes
 from docutils.parsers.rst import Directive
 from docutils.statemachine import StringList
 from latex2mathml.converter import convert
+from sphinx.util.math import get_node_equation_number
 
 sys.path.insert(0, str(Path(__file__).parent))  # for the module of the gallery
 
@@ -16,7 +18,7 @@ from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
 project = "Rattlebox"
 author = "Rattlebox developers"
 release = rattlebox.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery", "sphinxcontrib.bibtex"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 exclude_patterns = ["_build", "validation/verification_table.md", "validation/paper_table.md"]
 html_theme = "furo"
@@ -25,6 +27,9 @@ html_css_files = ["pages.css"]
 html_title = "Rattlebox"
 html_show_copyright = False
 html_math_renderer = "mathml"
+bibtex_bibfiles = ["theory/sources.bib"]
+bibtex_reference_style = "author_year"
+math_eqref_format = "({number})"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 plot_gallery = "False"  # `make gallery` runs the scripts
@@ -76,6 +81,23 @@ class SchemaTable(Directive):
         return container.children
 
 
+def formula(latex, display):
+    """Return a formula as MathML, with what browsers lay out otherwise than TeX.
+
+    Browsers ignore bold letters that are not characters of their own, and set space around a slash and a sign.
+    """
+    text = convert(latex, display=display)
+    text = re.sub(
+        r'<mi mathvariant="bold">([A-Za-z])</mi>',
+        lambda match: f"<mi>{chr(0x1D400 + ord(match[1]) - (65 if match[1] < 'a' else 71))}</mi>",
+        text,
+    )
+    text = text.replace("<mo>&#x0002F;</mo>", '<mo lspace="0" rspace="0">/</mo>')
+    return re.sub(
+        r"(<mrow>|<math[^>]*>|<mo[^>]*>[=(,]</mo>)<mo>&#x02212;</mo>", r'\1<mo form="prefix" lspace="0" rspace="0">&#x02212;</mo>', text
+    )
+
+
 def setup(app):
     """Prepare the gallery, add tables of output variables, and write formulas as MathML.
 
@@ -85,11 +107,16 @@ def setup(app):
     app.connect("source-read", gallery_of_examples.show_figure)
     app.add_directive("schema", SchemaTable)
 
-    def write(display):
-        def visit(self, node):
-            self.body.append(convert(node.astext(), display=display))
-            raise nodes.SkipNode
+    def inline(self, node):
+        self.body.append(formula(node.astext(), "inline"))
+        raise nodes.SkipNode
 
-        return visit
+    def block(self, node):
+        self.body.append(self.starttag(node, "div", CLASS="math"))
+        self.body.append(formula(node.astext(), "block"))
+        if node["number"]:
+            self.body.append(f'<span class="eqno">({get_node_equation_number(self, node)})</span>')
+        self.body.append("</div>")
+        raise nodes.SkipNode
 
-    app.add_html_math_renderer("mathml", (write("inline"), None), (write("block"), None))
+    app.add_html_math_renderer("mathml", (inline, None), (block, None))
