@@ -11,8 +11,12 @@ from sphinx.util.math import get_node_equation_number
 sys.path.insert(0, str(Path(__file__).parent))  # for the module of the gallery
 
 import gallery_of_examples
+import typer
 
 import rattlebox
+from rattlebox.cli import commands
+from rattlebox.engines.status import ADVICE, MESSAGES
+from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
 
 project = "Rattlebox"
@@ -81,6 +85,57 @@ class SchemaTable(Directive):
         return container.children
 
 
+class Lines(Directive):
+    """Base class of directives whose content is computed."""
+
+    def lines(self):
+        """Return the content in Markdown."""
+        raise NotImplementedError
+
+    def run(self):
+        """Return the content."""
+        container = nodes.container()
+        self.state.nested_parse(StringList(self.lines()), self.content_offset, container)
+        return container.children
+
+
+class Statuses(Lines):
+    """A table of the statuses of runs, with their messages and advice."""
+
+    def lines(self):
+        """Return the rows."""
+        rows = []
+        for status, message in MESSAGES.items():
+            words = re.sub(r"\{(\w+)[^}]*\}", "...", message)
+            rows.append(f"| `{status.name}` | {words} | {ADVICE.get(status, {}).get('', '')} |")
+        return ["| status | message | what to try |", "|---|---|---|", *rows]
+
+
+class ValidityLimits(Lines):
+    """A table of the validity limits of particle runs."""
+
+    def lines(self):
+        """Return the rows."""
+        return ["| name | meaning |", "|---|---|", *(f"| `{name}` | {text} |" for name, text in WARNINGS.items())]
+
+
+class Commands(Lines):
+    """The help of each command."""
+
+    def lines(self):
+        """Return a heading and a list of options for each command."""
+        lines = []
+        for name, command in typer.main.get_command(commands.app).commands.items():
+            context = typer.Context(command, info_name=f"rattlebox {name}")
+            usage = " ".join([f"rattlebox {name}", *command.collect_usage_pieces(context)])
+            lines += ["", f"**{usage}**", "", *(command.help or "").split("\n"), ""]
+            for parameter in command.get_params(context):
+                shown = parameter.get_help_record(context)
+                if shown is not None:
+                    lines.append(f"- `{' '.join(shown[0].split())}`: {shown[1]}")
+        return lines
+
+
 def formula(latex, display):
     """Return a formula as MathML, with what browsers lay out otherwise than TeX.
 
@@ -106,6 +161,9 @@ def setup(app):
     gallery_of_examples.prepare()
     app.connect("source-read", gallery_of_examples.show_figure)
     app.add_directive("schema", SchemaTable)
+    app.add_directive("statuses", Statuses)
+    app.add_directive("validity-limits", ValidityLimits)
+    app.add_directive("commands", Commands)
 
     def inline(self, node):
         self.body.append(formula(node.astext(), "inline"))

@@ -34,7 +34,7 @@ MESSAGES: dict[Status, str] = {
 }
 
 _SIZES = "Check the units of stiffnesses, masses and speeds."
-_ADVICE: dict[Status, dict[str, str]] = {
+ADVICE: dict[Status, dict[str, str]] = {
     Status.law_domain: {
         "": "Use a law that covers it (Thornton, a table), or allow extrapolation (extrapolate = true)."
     },
@@ -118,7 +118,7 @@ def describe(
     tuple of str
         Name and message.
     """
-    happened, advice = MESSAGES[status], _ADVICE.get(status, {})
+    happened, advice = MESSAGES[status], ADVICE.get(status, {})
     own = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))
     sentences = happened.format(time=time, contact=contact, value=value), own
     return status.name, " ".join(sentences).strip()
