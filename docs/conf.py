@@ -22,7 +22,13 @@ from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
 project = "Rattlebox"
 author = "Rattlebox developers"
 release = rattlebox.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_gallery.gen_gallery", "sphinxcontrib.bibtex"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_gallery.gen_gallery",
+    "sphinxcontrib.bibtex",
+]
 myst_enable_extensions = ["deflist", "dollarmath"]
 exclude_patterns = ["_build", "validation/verification_table.md", "validation/paper_table.md"]
 html_theme = "furo"
@@ -148,9 +154,8 @@ def formula(latex, display):
         text,
     )
     text = text.replace("<mo>&#x0002F;</mo>", '<mo lspace="0" rspace="0">/</mo>')
-    return re.sub(
-        r"(<mrow>|<math[^>]*>|<mo[^>]*>[=(,]</mo>)<mo>&#x02212;</mo>", r'\1<mo form="prefix" lspace="0" rspace="0">&#x02212;</mo>', text
-    )
+    sign = r'\1<mo form="prefix" lspace="0" rspace="0">&#x02212;</mo>'
+    return re.sub(r"(<mrow>|<math[^>]*>|<mo[^>]*>[=(,]</mo>)<mo>&#x02212;</mo>", sign, text)
 
 
 def setup(app):

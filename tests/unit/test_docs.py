@@ -61,6 +61,12 @@ PAGES = (
 FIELDS = DOCS / "reference" / "case_file.md"
 
 
+OTHER_WORDS = (
+    "TMD, PTMD, vibro-impact, NES, bean bag, NOPD, SRS, PSD, mobility, accelerance, receptance, loss factor, event detection, "
+    "describing function, chatter, g²/Hz, Nastran, Abaqus, nonlinear energy sink, tuned mass damper, non-spherical, cohesion, "
+    "centrifugal, honeycomb, wear, noise, conda, Docker, Windows, graphics cards, citation, licence, changes, command line, "
+    "symbols, equations of motion, bibliography, messages and warnings"
+)
 SEARCHES = (
     "co-simulation",
     "90 % full",
@@ -78,11 +84,7 @@ SEARCHES = (
     "softening",
     "time step",
     "units",
-    # words of other trades, and of what is not computed
-    *("TMD", "PTMD", "vibro-impact", "NES", "bean bag", "NOPD", "SRS", "PSD", "mobility", "accelerance", "receptance", "loss factor"),
-    *("event detection", "describing function", "chatter", "g²/Hz", "Nastran", "Abaqus", "nonlinear energy sink", "tuned mass damper"),
-    *("non-spherical", "cohesion", "centrifugal", "honeycomb", "wear", "noise", "conda", "Docker", "Windows", "graphics cards"),
-    *("citation", "licence", "changes", "command line", "symbols", "equations of motion", "bibliography", "messages and warnings"),
+    *OTHER_WORDS.split(", "),
 )
 
 
