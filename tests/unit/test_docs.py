@@ -62,10 +62,11 @@ FIELDS = DOCS / "reference" / "case_file.md"
 
 
 OTHER_WORDS = (
-    "TMD, PTMD, vibro-impact, NES, bean bag, NOPD, SRS, PSD, mobility, accelerance, receptance, loss factor, event detection, "
-    "describing function, chatter, g²/Hz, Nastran, Abaqus, nonlinear energy sink, tuned mass damper, non-spherical, cohesion, "
-    "centrifugal, honeycomb, wear, noise, conda, Docker, Windows, graphics cards, citation, licence, changes, command line, "
-    "symbols, equations of motion, bibliography, messages and warnings"
+    "TMD, PTMD, vibro-impact, NES, bean bag, NOPD, SRS, PSD, mobility, accelerance, receptance, loss "
+    "factor, event detection, describing function, chatter, g²/Hz, Nastran, Abaqus, nonlinear energy "
+    "sink, tuned mass damper, non-spherical, cohesion, centrifugal, honeycomb, wear, noise, conda, "
+    "Docker, Windows, graphics cards, citation, licence, changes, command line, symbols, equations of "
+    "motion, bibliography, messages and warnings"
 )
 SEARCHES = (
     "co-simulation",
