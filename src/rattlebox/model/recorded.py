@@ -88,7 +88,8 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
     except Hint as hint:
         if own is not None:
             return None, []
-        raise DataError(f"{name}: {hint.complaint}", _UNIT_ADVICE, ["file"]) from None
+        advice = "a file of accelerations, forces or displacements; or unit, if the line is about something else"
+        raise DataError(f"{name}: {hint.complaint}", advice, ["file"]) from None
     if own is not None:
         others = [each for each in found if (each.factor, each.unit) != own and each.unit == own[1]]
         return None, [

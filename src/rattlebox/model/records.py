@@ -40,6 +40,8 @@ _SAMPLES = re.compile(
 )
 """Numbers of samples in text: "NPTS= 24", "NO. OF POINTS: 32", "12 samples"."""
 _HEADINGS = 2  # lines above a single column that may name it
+_STEP = re.compile(r"\bDT\s*[=:]\s*(\d*\.?\d+(?:E[-+]?\d+)?)\s*(?:$|[,;)]|s\b|sec)", re.I)
+"""Time step in a line above the numbers: "NPTS= 2676, DT= .0200 SEC"."""
 _LARGE = 10  # samples from which a number in a text is no coincidence
 _PROBED = 2000  # rows from which the layout is concluded
 
@@ -129,6 +131,10 @@ class _Text:
                 return cells in stated
         return (self.names is None and len(self.rows[-1].cells) < self.width) or _continues(probe)
 
+    def rises(self) -> bool:
+        """Return whether the first column increases, as times do."""
+        return _increases(self.table()[0])
+
     def other_step(self, index: int, step: float) -> str:
         """Return a note if another column looks like times with another step than that of the user; else ""."""
         probe, _ = self.table()
@@ -190,9 +196,9 @@ def read_columns(path: str, columns: Selection = None, step: float | None = None
 
 def _times_and_values(text: _Text, columns: Sequence[Column] | None) -> Columns:
     by_number = not any(isinstance(column, str) for column in columns or ())
-    if by_number and not _rises(text.table()[0]) and text.goes_by_rows():
+    if by_number and not (text.width == 2 and text.rises()) and text.goes_by_rows():
         raise _by_rows_error(text.file, text.width, 'dt = "0.01 s", the time between samples, and columns = "rows"')
-    indices = _column_indices(text.file, columns, text.labels, is_named=text.is_named)
+    indices = _column_indices(text.file, columns, text.labels, is_named=text.is_named, rises=text.rises())
     times, values = _parse_rows(text.file, text.rows, indices).T
     headings = text.above(indices[0]), text.above(indices[1])
     return Columns(times, values, headings, tuple(text.lines), text.notes)
@@ -203,8 +209,8 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
     notes = list(text.notes)
     if step is not None and text.step is not None and abs(step / text.step - 1) > 1e-6:
         raise DataError(
-            f"{text.file} states a time step of {text.step:g} s in its first line of numbers, not {step:g} s",
-            "dt left out",
+            f"{text.file} states a time step of {text.step:g} s above its samples, not {step:g} s",
+            f'dt = "{text.step:g} s"',
         )
     if by_rows:
         values = _parse_by_rows(text.file, text.rows)
@@ -213,7 +219,10 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
         headings: list[str] = []
     else:
         is_named = text.is_named
-        (index,) = _column_indices(text.file, columns, text.labels, needed=1, is_named=is_named)
+        rises = text.rises()
+        (index,) = _column_indices(text.file, columns, text.labels, needed=1, is_named=is_named, rises=rises)
+        if rises and index == 0 and text.width > 1:
+            notes.append("column 1 increases as times do, and is read as values")
         by_name = columns is not None and isinstance(columns[0], str)
         if not by_name and text.goes_by_rows():
             raise _by_rows_error(text.file, text.width, _BY_ROWS)
@@ -225,6 +234,8 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
             notes.append(
                 f"column {index + 1} of {text.width} columns without names is read, one sample a row, {values.size} in all"
             )
+    if step is None and text.step is not None and not text.notes:
+        notes.append(f"the time step of {text.step:g} s is taken from the text above the samples")
     times = _even_times(text.file, values.size, step or text.step)
     return Columns(times, values, ([], headings), tuple(text.lines), tuple(notes))
 
@@ -250,9 +261,9 @@ def _continues(table: Array) -> bool:
     return 0.1 * inside <= across <= 10 * inside and inside + across < down
 
 
-def _rises(table: Array) -> bool:
-    """Return whether the first column of a table of two columns increases, as times do."""
-    return table.shape[1] == 2 and bool(np.all(np.diff(table[:, 0]) > 0))
+def _increases(table: Array) -> bool:
+    """Return whether the first column of a table increases, as times do."""
+    return len(table) > 2 and bool(np.all(np.diff(table[:, 0]) > 0))
 
 
 def _by_rows_error(file: Path, width: int, advice: str) -> DataError:
@@ -271,7 +282,8 @@ def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) ->
             notes = f"the samples are read row by row, {table.shape[1]} a row, {table.size} in all"
             return table.ravel(), (notes,)
         labels = [str(k + 1) for k in range(table.shape[1])]
-        (index,) = _column_indices(file, columns, labels, needed=1, is_named=False)
+        rises = table.shape[1] > 1 and _increases(table[:_PROBED])
+        (index,) = _column_indices(file, columns, labels, needed=1, is_named=False, rises=rises)
         return check_finite(table[:, index], f"{file}: column {index + 1}"), ()
     if columns == "rows":
         if len(arrays) != 1:
@@ -316,10 +328,12 @@ def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Colum
         if columns is None and table.ndim == 2 and table.shape[0] == 2 != table.shape[1]:
             table = table.T
         if table.ndim == 2:
-            if not _rises(table) and _continues(table[:_PROBED]):
+            if not (table.shape[1] == 2 and _increases(table)) and _continues(table[:_PROBED]):
                 raise _by_rows_error(file, table.shape[1], 'dt = "0.01 s" and columns = "rows"')
             names = [str(k + 1) for k in range(table.shape[1])]
-            first, second = (table[:, k] for k in _column_indices(file, columns, names, is_named=False))
+            first, second = (
+                table[:, k] for k in _column_indices(file, columns, names, is_named=False, rises=_increases(table))
+            )
             return check_finite(first, f"{file}: the times"), check_finite(second, f"{file}: the values")
     variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
     pair = [list(arrays.items())[k] for k in _column_indices(file, columns, list(arrays), variables)]
@@ -340,8 +354,12 @@ def _column_indices(
     variables: Sequence[str] | None = None,
     needed: int = 2,
     is_named: bool = True,
+    rises: bool = False,
 ) -> list[int]:
-    """Return the indices of columns, or of variables described by `variables`; None stands for the first ones."""
+    """Return the indices of columns, or of variables described by `variables`; None stands for the first ones.
+
+    The advice of messages depends on whether the columns have names, and whether the first one increases, as times do.
+    """
     what = "column" if variables is None else "variable"
     listed = enumerate(variables or names, start=1)
     available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in listed)
@@ -349,8 +367,10 @@ def _column_indices(
         if len(names) != needed:
             advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
             if len(names) > needed:
-                advice = f"columns = {list(range(1, needed + 1))}"
-            if len(names) > needed and not is_named:
+                advice = f"columns = {[2] if rises and needed == 1 else list(range(1, needed + 1))}"
+            if len(names) > needed == 1 and rises:
+                advice = f"dt left out, since the first column increases as times do; or {advice}"
+            elif len(names) > needed and not is_named and not rises:
                 advice = 'dt = "0.01 s" and ' if needed == 2 else ""
                 advice += f"{_BY_ROWS}, if the samples go on from row to row; else a line of names above the columns"
                 advice += ', and columns = ["time", "force"]' if needed == 2 else ', and columns = ["force"]'
@@ -457,6 +477,9 @@ def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] 
     if counted := _number_of_samples(file, rows):
         step, note = counted
         rows, notes = rows[1:], (note,)
+    if step is None:
+        stated = {float(match[1]) for row in lines[:start] for match in _STEP.finditer(row.content)}
+        step = stated.pop() if len(stated) == 1 and 0 < min(stated) < np.inf else None
     width = len(rows[0].cells)
     for row in lines[:start]:
         if len(row.cells) != width and set(row.cells) <= set(known):
@@ -586,6 +609,9 @@ def _first_data_line(lines: list[_Row]) -> int | None:
         widths = (len(lines[k].cells) for k in uncommented)
         first = next((p for p, width in enumerate(widths) if any(is_numeric(p, cell) for cell in range(width))), None)
     while first and is_numeric(first - 1, 0):
+        width = len(lines[uncommented[first - 1]].cells)
+        if 2 * sum(is_numeric(first - 1, cell) for cell in range(width)) < width:
+            break  # "203 points at equal spacing of 0.02 sec"
         first -= 1
     return None if first is None else uncommented[first]
 

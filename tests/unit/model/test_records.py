@@ -173,7 +173,7 @@ def test_a_unit_above_the_numbers_is_used_or_refused(tmp_path: Path, head: str) 
 def test_units_that_are_not_clear_are_refused(tmp_path: Path, head: str, words: str) -> None:
     """A unit that may be another quantity's is refused with the line, and the advised `unit` decides."""
     (tmp_path / "a.txt").write_text(table(head, 0.01))
-    with pytest.raises(rb.RattleboxError, match=r"try: .*unit = ") as error:
+    with pytest.raises(rb.RattleboxError, match=r"try: .*unit") as error:
         rb.Record.from_file(tmp_path / "a.txt")
     assert words in str(error.value)
     decided = rb.Record.from_file(tmp_path / "a.txt", unit="gal")
@@ -233,7 +233,48 @@ def test_a_number_of_samples_that_does_not_fit(tmp_path: Path) -> None:
     np.testing.assert_array_equal(record.values, SHAKE[1:])
     assert any("states 900 samples, but 202 rows follow" in note for note in record.notes())
     (tmp_path / "a.txt").write_text("203 0.01\n" + "\n".join(f"{a!r}" for a in SHAKE.tolist()))
-    with pytest.raises(rb.DataError, match=r"time step of 0\.01 s in its first line of numbers, not 0\.0125 s"):
+    with pytest.raises(rb.DataError, match=r"time step of 0\.01 s above its samples, not 0\.0125 s"):
+        rb.Record.from_file(tmp_path / "a.txt", dt=STEP)
+
+
+@pytest.mark.parametrize("head", ["NPTS= 203, DT= .0125 SEC\n", "dt=0.0125\nacc\n", "203 POINTS, DT: 1.25E-2 s\n"])
+@pytest.mark.parametrize("width", [1, 5])
+def test_a_time_step_in_the_text_above(tmp_path: Path, head: str, width: int) -> None:
+    """A time step that the lines above samples state is used, with a note, and a `dt` that contradicts it is refused."""
+    (tmp_path / "a.txt").write_text(by_rows(head, width))
+    record = rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2")
+    np.testing.assert_allclose(record.times, TIMES, rtol=1e-12)
+    np.testing.assert_allclose(record.values, SHAKE, rtol=1e-8, atol=1e-9)
+    assert any("the time step of 0.0125 s is taken from the text" in note for note in record.notes())
+    assert rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", dt=STEP).values == record.values
+    with pytest.raises(rb.DataError, match=r'0\.0125 s above its samples, not 0\.01 s\n  try: dt = "0\.0125 s"'):
+        rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", dt="10 ms")
+
+
+def test_a_column_of_times_is_not_advised_as_values(tmp_path: Path) -> None:
+    """The advice for a table with times and a time step is to leave one of them out, and following it is right."""
+    channels = np.column_stack([TIMES, SHAKE, 2 * SHAKE])
+    np.savetxt(tmp_path / "a.txt", channels)
+    np.save(tmp_path / "a.npy", channels)
+    for name in ("a.txt", "a.npy"):
+        with pytest.raises(
+            rb.DataError, match=r"try: dt left out, since the first column increases .* columns = \[2\]"
+        ):
+            rb.Record.from_file(tmp_path / name, dt=STEP, unit="m/s^2")
+        with pytest.raises(rb.DataError, match=r"try: columns = \[1, 2\]"):
+            rb.Record.from_file(tmp_path / name, unit="m/s^2")
+        np.testing.assert_allclose(rb.Record.from_file(tmp_path / name, columns=[1, 2], unit="m/s^2").values, SHAKE)
+    first = rb.Record.from_file(tmp_path / "a.txt", dt=STEP, columns=[1], unit="m/s^2")
+    assert any("increases as times do, and is read as values" in note for note in first.notes())
+
+
+@pytest.mark.parametrize(
+    "head", ["VELOCITY TIME SERIES IN UNITS OF CM/S", "UNITS OF CM/SEC", "unit: in/s", "units: mm/s"]
+)
+def test_velocities_are_refused(tmp_path: Path, head: str) -> None:
+    """A record of velocities, in capitals too, is refused."""
+    (tmp_path / "a.txt").write_text(by_rows(f"A\nB C\n{head}\n", 5))
+    with pytest.raises(rb.DataError, match="is not a unit of force or acceleration or length"):
         rb.Record.from_file(tmp_path / "a.txt", dt=STEP)
 
 
