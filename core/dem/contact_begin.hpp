@@ -103,7 +103,7 @@ struct alignas(64) RollingState {
 // Force of a contact in one step; one cache line.
 struct alignas(64) ContactForce {
     Row force;  // on the first partner, and 1, so that sums count contacts
-    Row couple; // torque on each partner over its radius, the same for both
+    Row couple; // torque on each partner over its radius, the same for both; and the share of a first step
 };
 
 // The state of a contact at its first step.

@@ -275,4 +275,60 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
     if (sampled) diagnostics.contacts[partner] += count;
 }
 
+// Adapts contacts to a change of the length of the next step: their springs, which are half a step ahead, and
+// the losses of the second half of the last step. The bed is in its state at the last step.
+template <bool rough, bool rolls, class Law, class View>
+void change_step(const Law& normal_law, ContactList& list, const View& view, const ContactLaws& laws,
+                 real dt_before, Partner partner, Diagnostics& diagnostics) {
+    const int count = list.touching_count;
+    const Group zero = Group::all(0), before = Group::all(dt_before), dt = Group::all(laws.dt);
+    const Group more = Group::all(0.5 * (laws.dt - dt_before));
+    alignas(64) real used[group];
+    for (int base = 0; base < count; base += group) {
+        const int part = base % lane_count;
+        int k[group], s[group];
+        for (int l = 0; l < group; ++l) {
+            k[l] = at(list.touching, std::min(base + l, count - 1));
+            s[l] = at(list.slot, k[l]);
+            used[l] = base + l < count;
+        }
+        const auto state = [&](Row ContactState::* row) {
+            return [&, row](int l) { return &(at(list.history.state, s[l]).*row); };
+        };
+        const auto rolling = [&](Row RollingState::* row) {
+            return [&, row](int l) { return &(at(list.history.rolling, s[l]).*row); };
+        };
+        const Group weight = pack<group>(used);
+        const auto m = view.template kinematics<rough>(k);
+        const auto law = columns(state(&ContactState::law));
+        Columns yield_history{};
+        if constexpr (Law::hysteretic)
+            yield_history = columns([&](int l) { return &at(list.history.yield_history, s[l]); });
+        const Group rate = dot(m.velocity, m.normal);
+        const Depth<Group> depth = depth_from_overlap(m.overlap);
+        auto normal = normal_force(normal_law, Coefficients<Group>{law.x, law.y}, depth, rate,
+                                   History<Group>{yield_history.x, yield_history.y, yield_history.z});
+        if (laws.repulsive_only) normal.total = larger(normal.total, zero);
+        group_of(diagnostics.normal[partner], part) += weight * more * (normal.total - normal.elastic) * rate;
+        const Group pushing = larger(normal.total, zero);
+        const auto change = [&](const auto& place, const Group& coefficient, const Vector<Group>& velocity,
+                                const Group& friction, Lanes& lost) {
+            const auto spring = columns(place);
+            const auto h = change_half_step(spring.vector(), spring.w,
+                                            tangential_dashpot(laws.tangential, coefficient, depth), velocity,
+                                            friction * pushing, before, dt);
+            store(Columns{h.next_spring.x, h.next_spring.y, h.next_spring.z, spring.w}, place);
+            group_of(lost, part) += weight * h.loss;
+        };
+        if constexpr (rough)
+            change(state(&ContactState::friction), law.w, slip_velocity(m, rate), view.friction(k),
+                   diagnostics.sliding[partner]);
+        if constexpr (rolls) {
+            const auto own = columns(rolling(&RollingState::law));
+            change(rolling(&RollingState::spring), own.z, rolling_velocity(m), own.x,
+                   diagnostics.rolling[partner]);
+        }
+    }
+}
+
 } // namespace rattlebox::dem

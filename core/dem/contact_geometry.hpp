@@ -124,6 +124,13 @@ template <class T> RATTLEBOX_INLINE T tangential_dashpot(int law, const T& coeff
     return c;
 }
 
+template <class T> RATTLEBOX_INLINE Vector<T> slip_velocity(const ContactKinematics<T>& m, const T& rate) {
+    return m.velocity - rate * m.normal + cross(m.surface_spin, m.normal);
+}
+template <class T> RATTLEBOX_INLINE Vector<T> rolling_velocity(const ContactKinematics<T>& m) {
+    return m.spin - dot(m.spin, m.normal) * m.normal;
+}
+
 template <class T> struct Tangential {
     Vector<T> force, couple; // on the first; the torque over its radius
     Vector4<T> spring;       // force half a step later, and compliance
@@ -139,7 +146,7 @@ RATTLEBOX_INLINE Tangential<T> tangential_force(const ContactKinematics<T>& m, c
                                                 int law, const T& dt) {
     const T zero = all(rate, 0);
     const T pushing = larger(normal_force, zero), stiffness = tangential_stiffness(law, spring, depth);
-    const Vector<T> slip = m.velocity - rate * m.normal + cross(m.surface_spin, m.normal);
+    const Vector<T> slip = slip_velocity(m, rate);
     const auto s =
         advance_spring_slider(history.vector(), history.w, m.normal, stiffness,
                               tangential_dashpot(law, dashpot, depth), slip, friction * pushing, dt);
@@ -164,7 +171,7 @@ RATTLEBOX_INLINE Rolling<T> rolling_torque(const ContactKinematics<T>& m, const 
                                            const T& tangential_stiffness, const Row& coefficients,
                                            const Depth<T>& depth, const Row& history, int law, const T& dt) {
     const T zero = all(normal_force, 0), pushing = larger(normal_force, zero);
-    const Vector<T> relative_spin = m.spin - dot(m.spin, m.normal) * m.normal;
+    const Vector<T> relative_spin = rolling_velocity(m);
     const auto s = advance_spring_slider(
         history.vector(), history.w, m.normal, coefficients.y * tangential_stiffness,
         tangential_dashpot(law, coefficients.z, depth), relative_spin, coefficients.x * pushing, dt);

@@ -52,6 +52,16 @@ class ContactLoop {
             diagnostics.enduring[partner] += first_lane(cost);
     }
 
+    // Calls f(normal law, whether there is friction, whether there is rolling resistance) with types for the
+    // last two.
+    template <class F> static void with_laws(const ContactLaws& laws, F&& f) {
+        constexpr std::true_type on;
+        constexpr std::false_type off;
+        laws.normal.visit([&](const auto& law) {
+            laws.rolls ? f(law, on, on) : laws.rough ? f(law, on, off) : f(law, off, off);
+        });
+    }
+
     template <class View>
     void compute(ContactList& list, const View& view, const ContactLaws& laws, Partner partner, bool sampled,
                  Chunk& chunk, const Prefetch& prefetch) {
@@ -85,17 +95,10 @@ class ContactLoop {
         find_touching(list, view, begun, ended, prefetch);
         prefetch.remaining(list.size(), list.touching_count);
         if (list.touching_count == 0) return list.contact_forces.all.clear();
-        laws.normal.visit([&](const auto& law) {
-            const auto update_curve = [&](int k) {
-                update_unloading_curve(list, k, laws, partner, diagnostics);
-            };
-            const auto compute = [&](auto rough, auto rolls) {
-                compute_contact_forces<rough.value, rolls.value>(law, list, view, laws, sampled, partner,
-                                                                 diagnostics, update_curve, prefetch);
-            };
-            constexpr std::true_type on;
-            constexpr std::false_type off;
-            laws.rolls ? compute(on, on) : laws.rough ? compute(on, off) : compute(off, off);
+        const auto update_curve = [&](int k) { update_unloading_curve(list, k, laws, partner, diagnostics); };
+        with_laws(laws, [&](const auto& law, auto rough, auto rolls) {
+            compute_contact_forces<rough.value, rolls.value>(law, list, view, laws, sampled, partner,
+                                                             diagnostics, update_curve, prefetch);
         });
         for (const auto& [k, first_step] : chunk.first_step) {
             const auto touching = list.touching.begin();
@@ -106,7 +109,35 @@ class ContactLoop {
                     first_lane(-first_step.share * problem_.dt * dot(contact_force.force, first_step.slip));
             contact_force.force *= row(1 + first_step.share);
             contact_force.couple *= row(1 + first_step.share);
+            contact_force.couple[3] = first_step.share;
         }
+    }
+
+    // The correction of a first step is an impulse for the former step `dt_before`, half of which acts in the
+    // next step.
+    void change_first_steps(const Chunk& chunk, real dt_before) {
+        const auto change = [&](const ContactList& list, auto&& apply) {
+            for (int a = 0; a < list.touching_count; ++a) {
+                const ContactForce& all = at(list.contact_forces.all, a);
+                const real share = all.couple[3];
+                if (share == 0) continue;
+                const Row more = row(share / (1 + share) * (dt_before / problem_.dt - 1));
+                apply(at(list.touching, a), all.force * more, all.couple * more);
+            }
+        };
+        const auto accelerate = [&](int i, Row force, Row couple) {
+            at(bed_.rates, i).velocity += force * at(bed_.velocity, i)[3];
+            at(bed_.rates, i).spin += couple * at(bed_.spin, i)[3];
+        };
+        change(chunk.pairs, [&](int k, Row force, Row couple) {
+            accelerate(at(chunk.pairs.first, k), force, couple);
+            accelerate(at(chunk.pairs.second, k), -force, couple);
+        });
+        change(chunk.walls, [&](int k, Row force, Row couple) {
+            accelerate(at(chunk.walls.first, k), force, couple);
+            ChunkMotion& motion = at(bed_.chunk_motion, chunk.begin / Bed::chunk_size);
+            for (int a = 0; a < 3; ++a) motion.force_on_cavity[a] -= force[a];
+        });
     }
 
     void add(ForceSums& sums, const ContactForces& contact_forces, int a, int i, real sign,
@@ -129,6 +160,21 @@ public:
     // Adapts the laws to the time step of the problem.
     void update_step() {
         for (ContactLaws* laws : {&pair_, &wall_}) set_step(*laws, problem_);
+    }
+
+    // Adapts the contacts of a chunk to a change of the step from `dt_before`. The bed is in its state at the
+    // last step; `has_forces` is whether the forces of this step are stored.
+    void change_step(Chunk& chunk, real dt_before, bool has_forces) {
+        if (has_forces) change_first_steps(chunk, dt_before);
+        const auto change = [&](ContactList& list, const auto& view, const ContactLaws& laws,
+                                Partner partner) {
+            with_laws(laws, [&](const auto& law, auto rough, auto rolls) {
+                dem::change_step<rough.value, rolls.value>(law, list, view, laws, dt_before, partner,
+                                                           chunk.diagnostics);
+            });
+        };
+        change(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, pair_, particle);
+        change(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall);
     }
 
     bool has_friction() const { return pair_.rough || wall_.rough; }

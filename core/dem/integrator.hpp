@@ -124,23 +124,36 @@ public:
 
     bool is_far() const { return far_; }
 
-    // Predicts the next step of the particles of a chunk again, which was predicted with another step
-    // dt_before and another acceleration without contacts.
-    void predict_again(Chunk& chunk, real dt_before, Row body_before, Row body) {
-        const Verlet before(dt_before, body_before, body_before, true), step(problem_.dt, body, body, true);
-        real max_speed_squared = 0;
+    // Returns the particles of a chunk to the last step, from which the next one was predicted with the step
+    // dt and the acceleration `body` without contacts.
+    void go_back(const Chunk& chunk, real dt, Row body) {
+        const Verlet step(dt, body, body, true);
         for (int i = chunk.begin; i < chunk.end; ++i) {
             Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
+            const bool touched = at(bed_.touched, i);
+            const Row a = touched ? at(bed_.rates, i).velocity : body;
+            u -= step.step * a;
+            x -= step.step * step.half_step(u, a);
+            if (touched && spins_) at(bed_.spin, i) -= step.step * at(bed_.rates, i).spin;
+        }
+    }
+
+    // Predicts the next step of the particles of a chunk from the last one, with another acceleration without
+    // contacts.
+    void predict(const Chunk& chunk, Row body_before, Row body) {
+        const Verlet step(problem_.dt, body, body, true);
+        real max_speed_squared = 0;
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            Row &x = at(bed_.position, i), &v = at(bed_.velocity, i);
             Rates& rates = at(bed_.rates, i);
             const bool touched = at(bed_.touched, i);
-            const Row a_before = touched ? rates.velocity : body_before,
-                      a = touched ? rates.velocity + (body - body_before) : body;
-            const Row v = u - before.step * a_before, middle = step.half_step(v, a);
-            x = step.drifted(x - before.step * before.half_step(v, a_before), middle);
-            u = step.predicted(v, a);
+            const Row a = touched ? rates.velocity + (body - body_before) : body,
+                      middle = step.half_step(v, a);
+            x = step.drifted(x, middle);
+            v = step.predicted(v, a);
             if (touched) {
                 rates.velocity = a;
-                if (spins_) at(bed_.spin, i) += (step.step - before.step) * rates.spin;
+                if (spins_) at(bed_.spin, i) += step.step * rates.spin;
             }
             const Row moved = middle - bed_.reference_velocity;
             max_speed_squared = larger(max_speed_squared, dot(moved, moved));

@@ -183,9 +183,14 @@ class Simulation {
         if (!holds) throw std::invalid_argument("the state is damaged");
     }
 
-    template <class Reader> void read(Reader& reader) {
-        const std::vector<RestartCheck> fixed(beds_.begin(), beds_.end());
+    template <class Reader> void read(Reader& reader, const std::vector<RestartCheck>& fixed) {
         serialize(reader);
+        check_state(reader, fixed);
+        for (Bed& bed : beds_) update_cavity_motion(bed);
+    }
+
+    template <class Reader>
+    void check_state(const Reader& reader, const std::vector<RestartCheck>& fixed) const {
         if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
         require(step_ >= 0 && steps_since_ >= 0);
         require(stopped_cavity_ >= 0 && stopped_cavity_ < static_cast<int>(beds_.size()));
@@ -198,7 +203,6 @@ class Simulation {
             require(size == problem_.modes.size());
         require(load_work_.size() == signals_.size() && base_work_.size() == signals_.size());
         for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], has_contact_forces());
-        for (Bed& bed : beds_) update_cavity_motion(bed);
     }
 
     // ---- neighbours
@@ -361,18 +365,24 @@ class Simulation {
     // Predicts the next step, which was predicted with another time step and other inputs, from the state at
     // the last step.
     void predict_again(real dt_before) {
+        const bool has_forces = has_contact_forces();
         modes_ = output_modes_;
         --step_, --steps_since_;
+        structure().clear_forces(); // the velocity of the cavities is then that at the last step
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            update_cavity_motion(beds_[b]);
+            for (const Chunk& c : beds_[b].chunks) integrators_[b].go_back(c, dt_before, body_before_);
+            if (dt_before != problem_.dt)
+                for (Chunk& c : beds_[b].chunks) contact_loops_[b].change_step(c, dt_before, has_forces);
+        }
         structure().load_values(now());
         compute_modal_force();
         Row momentum{};
         for (const Bed& bed : beds_) momentum += momentum_of(bed);
         structure().work_on_particles(momentum);
         const Row body = structure().body_acceleration();
-        for (std::size_t b = 0; b < beds_.size(); ++b) {
-            for (Chunk& c : beds_[b].chunks) integrators_[b].predict_again(c, dt_before, body_before_, body);
-            beds_[b].motion.displacement = beds_[b].output_displacement;
-        }
+        for (std::size_t b = 0; b < beds_.size(); ++b)
+            for (const Chunk& c : beds_[b].chunks) integrators_[b].predict(c, body_before_, body);
         body_before_ = body;
         advance_structure();
     }
@@ -534,17 +544,28 @@ public:
         for (ContactLoop& loop : contact_loops_) loop.update_step();
     }
 
-    // Reads a saved state. Throws if it is not a state of this case; the object must not be used after that.
-    template <class Reader> void restore(Reader& reader) {
-        read(reader);
+    // What a state of this case must agree with; of a new object, or one whose state is sound.
+    std::vector<RestartCheck> restart_check() const { return {beds_.begin(), beds_.end()}; }
+
+    // Reads a saved state. Throws if it is not a state of this case; go_back() must follow before the object
+    // is used.
+    template <class Reader> void restore(Reader& reader) { restore(reader, restart_check()); }
+    template <class Reader> void restore(Reader& reader, const std::vector<RestartCheck>& fixed) {
+        read(reader, fixed);
         require(step_ <= problem_.steps + 1);
+    }
+
+    // Reads a state that this object has saved, also after a restore() that threw.
+    template <class Reader> void go_back(Reader& reader) {
+        serialize(reader);
+        for (Bed& bed : beds_) update_cavity_motion(bed);
     }
 
     // Reads the state at the last sample of a run with the same particles and structure, but another time
     // step or other signals, and makes that sample the begin of this run: time, work and extremes count from
     // there. Losses continue.
     template <class Reader> void continue_from(Reader& reader, real dt_before) {
-        read(reader);
+        read(reader, restart_check());
         require(step_ > 0 && status_ == Status::finished && dt_before > 0 && dt_before < infinity);
         step_ = 1, forces_known_at_ = -1, rebuilds_ = 0;
         for (auto* sums : {&load_work_, &base_work_, &viscous_}) sums->assign(sums->size(), 0);

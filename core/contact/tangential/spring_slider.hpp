@@ -62,6 +62,31 @@ RATTLEBOX_INLINE SpringSlider<T> advance_spring_slider(const Vector<T>& before, 
     return s;
 }
 
+// The second half of a step after its length has changed.
+template <class T> struct ChangedHalfStep {
+    Vector<T> next_spring; // half a step later
+    T loss;                // change of the energy lost in this step
+};
+
+// The length of the step after this one has changed from `dt_before`: moves the spring from half of the
+// former step ahead to half of the new one. The loss is the energy that leaves the motion and is not stored.
+// It is not limited to positive values: while the spring exceeds the friction limit, parts of it come and go.
+template <class T>
+RATTLEBOX_INLINE ChangedHalfStep<T> change_half_step(const Vector<T>& next, const T& compliance,
+                                                     const T& damping, const Vector<T>& velocity,
+                                                     const T& limit, const T& dt_before, const T& dt) {
+    const T one = all(limit, 1), half = all(limit, 0.5), tiny = all(limit, 1e-290), zero = all(limit, 0);
+    const T stiffness = one / compliance, more = half * (dt - dt_before);
+    const Vector<T> force = next + (half * dt_before * stiffness) * velocity;
+    const T speed_squared = dot(velocity, velocity), drag = damping * root(speed_squared);
+    const T dashpot = damping * smaller(one, larger(limit - root(dot(force, force)), zero) / (drag + tiny));
+    ChangedHalfStep<T> s;
+    s.next_spring = next - (more * stiffness) * velocity;
+    s.loss = half * compliance * (dot(next, next) - dot(s.next_spring, s.next_spring)) +
+             more * (dashpot * speed_squared - dot(force, velocity));
+    return s;
+}
+
 // Energy of a spring whose force and compliance are in one row.
 inline real spring_energy(Row spring) { return 0.5 * dot(spring, spring) * spring[3]; }
 
