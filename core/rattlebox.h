@@ -64,7 +64,8 @@ RATTLEBOX_API double rattlebox_time(const rattlebox_stepper* stepper);
  * numbers. */
 RATTLEBOX_API void rattlebox_force(const rattlebox_stepper* stepper, int damper, double* force);
 RATTLEBOX_API void rattlebox_moment(const rattlebox_stepper* stepper, int damper, double* moment);
-/* Work and loss of the last step, and energy stored at its end [J]. */
+/* Work and loss of the last step, and energy stored at its end [J]. The change of the stored energy is work
+ * less loss; a step fails if the imbalance exceeds 1 % of the energy put in. */
 RATTLEBOX_API double rattlebox_work(const rattlebox_stepper* stepper);
 RATTLEBOX_API double rattlebox_loss(const rattlebox_stepper* stepper);
 RATTLEBOX_API double rattlebox_stored(const rattlebox_stepper* stepper);

@@ -4,6 +4,7 @@
 #include <nanobind/stl/array.h>
 
 #include "bindings/dem_problem.hpp"
+#include "bindings/jobs.hpp"
 #include "stepper/engines.hpp"
 #include "stepper/stepper.hpp"
 
@@ -21,6 +22,24 @@ inline nb::bytes as_bytes(const std::vector<std::uint8_t>& bytes) {
 }
 inline const std::uint8_t* data(const nb::bytes& bytes) {
     return static_cast<const std::uint8_t*>(bytes.data());
+}
+
+// Makes a step with advance(stop). A long step runs on another thread, while this one checks for Ctrl-C,
+// after which the stepper is where the step began.
+template <class Advance> Status interruptible(Stepper& stepper, real length, Advance&& advance) {
+    constexpr real noticeable = 0.1; // s
+    if (!(stepper.computing_time(length) > noticeable)) return advance(never);
+    const std::vector<std::uint8_t> before = stepper.save();
+    Status status{};
+    try {
+        run_jobs(
+            1, 1, 1, [&](std::size_t, int, const std::atomic<bool>& stop) { status = advance(stop); },
+            [](std::size_t) { return true; });
+    } catch (const nb::python_error&) {
+        stepper.restore(before.data(), before.size());
+        throw;
+    }
+    return status;
 }
 
 inline void add_stepper(nb::module_& module) {
@@ -68,15 +87,20 @@ inline void add_stepper(nb::module_& module) {
         .def(
             "advance",
             [inputs_of](S& s, double length, const Vector& inputs) {
-                return s.advance(length, inputs_of(inputs, static_cast<std::size_t>(s.inputs())));
+                const real* values = inputs_of(inputs, static_cast<std::size_t>(s.inputs()));
+                return interruptible(s, length, [&](const std::atomic<bool>& stop) {
+                    return s.advance(length, values, stop);
+                });
             },
             nb::arg("length"), nb::arg("inputs"),
             "Advance by a step with accelerations of the attachment or values of the loads.")
         .def(
             "advance_to_velocity",
             [inputs_of](S& s, double length, const Vector& velocity) {
-                return s.advance_to_velocity(length,
-                                             inputs_of(velocity, static_cast<std::size_t>(s.components())));
+                const real* values = inputs_of(velocity, static_cast<std::size_t>(s.components()));
+                return interruptible(s, length, [&](const std::atomic<bool>& stop) {
+                    return s.advance_to_velocity(length, values, stop);
+                });
             },
             nb::arg("length"), nb::arg("velocity"),
             "Advance by a step at whose end the attachment has this velocity.")
@@ -95,7 +119,17 @@ inline void add_stepper(nb::module_& module) {
             "largest_approach_speed", [](const S& s) { return owned<Doubles<1>>(s.extremes().speed); },
             nb::rv_policy::automatic,
             "Largest speed of approach by contact of impact dampers, or by particle damper [m/s].")
+        .def_prop_ro("start_jump", &S::start_jump,
+                     "Change of the attachment's velocity in the first step if it is not followed by another "
+                     "[m/s]; else 0.")
+        .def_prop_ro("energy_residual", &S::energy_residual,
+                     "Largest imbalance of the energies so far over the energy put in.")
         .def_prop_ro("status", &S::status)
+        .def_prop_ro(
+            "stopped",
+            [](const S& s) { return nb::make_tuple(s.stop().damper, s.stop().member, s.stop().value); },
+            nb::sig("def stopped(self) -> tuple[int, int, float]"),
+            "Damper, its contact or particle, and the value of the status: where the stepper stopped.")
         .def_prop_ro("restitution", [](const S& s) { return s.options().restitution; })
         .def_prop_ro("friction", [](const S& s) { return s.options().friction; })
         .def_prop_ro("gravity", &S::gravity)

@@ -44,12 +44,19 @@ template <class F> bool guarded(std::string& error, F&& f) noexcept {
     return false;
 }
 
-template <class F> int advance(rattlebox_stepper* s, F&& f) {
+void require(bool holds) {
+    if (!holds) throw std::invalid_argument("a pointer is NULL");
+}
+
+template <class F> int advance(rattlebox_stepper* s, const double* inputs, F&& f) {
+    if (!s) return 1;
     Status status = Status::finished;
-    if (!guarded(s->error, [&] { status = f(); })) return 1;
-    if (status == Status::finished) return 0;
-    s->error = rattlebox::stop_reason(status);
-    return 1;
+    const bool works = guarded(s->error, [&] {
+        require(inputs || s->stepper.inputs() == 0);
+        status = f();
+        if (status != Status::finished) s->error = rattlebox::stop_reason(status);
+    });
+    return !works || status != Status::finished;
 }
 
 void copy(const rattlebox::Components& from, double* to) { std::copy(from.begin(), from.end(), to); }
@@ -60,7 +67,10 @@ extern "C" {
 
 rattlebox_stepper* rattlebox_create(const void* packed_case, size_t size) {
     rattlebox_stepper* made = nullptr;
-    guarded(creation_error, [&] { made = new rattlebox_stepper(packed_case, size); });
+    guarded(creation_error, [&] {
+        require(packed_case);
+        made = new rattlebox_stepper(packed_case, size);
+    });
     return made;
 }
 void rattlebox_free(rattlebox_stepper* s) { delete s; }
@@ -76,7 +86,8 @@ int rattlebox_inputs(const rattlebox_stepper* s) { return s->stepper.inputs(); }
 int rattlebox_outputs(const rattlebox_stepper* s) { return s->stepper.outputs(); }
 
 int rattlebox_set_gravity(rattlebox_stepper* s, const double* gravity) {
-    return !guarded(s->error, [&] {
+    return !s || !guarded(s->error, [&] {
+        require(gravity);
         rattlebox::Components g{};
         for (std::size_t a = 0; a < (s->stepper.components() == 1 ? 1u : 3u); ++a) g[a] = gravity[a];
         s->stepper.set_gravity(g);
@@ -86,22 +97,22 @@ int rattlebox_set_gravity(rattlebox_stepper* s, const double* gravity) {
 double rattlebox_restitution(const rattlebox_stepper* s) { return s->stepper.options().restitution; }
 double rattlebox_friction(const rattlebox_stepper* s) { return s->stepper.options().friction; }
 int rattlebox_choose(rattlebox_stepper* s, double restitution, double friction, const double* velocity) {
-    return !guarded(s->error, [&] {
+    return !s || !guarded(s->error, [&] {
         if (s->stepper.time() > 0)
             throw std::invalid_argument("this can be chosen before the first step only");
         rattlebox::Options options{restitution, friction};
         if (velocity) std::copy_n(velocity, s->stepper.components() == 1 ? 1 : 3, options.velocity);
         const rattlebox::Components gravity = s->stepper.gravity();
         s->stepper = rattlebox::Stepper(s->packed.data(), s->packed.size(), options);
-        s->stepper.set_gravity(gravity);
+        if (gravity != s->stepper.gravity()) s->stepper.set_gravity(gravity);
     });
 }
 
 int rattlebox_advance(rattlebox_stepper* s, double length, const double* inputs) {
-    return advance(s, [&] { return s->stepper.advance(length, inputs); });
+    return advance(s, inputs, [&] { return s->stepper.advance(length, inputs); });
 }
 int rattlebox_advance_to_velocity(rattlebox_stepper* s, double length, const double* velocity) {
-    return advance(s, [&] {
+    return advance(s, velocity, [&] {
         if (!s->stepper.is_alone())
             throw std::invalid_argument("a structure with dampers is driven by its loads");
         return s->stepper.advance_to_velocity(length, velocity);
@@ -131,12 +142,19 @@ void rattlebox_motion(const rattlebox_stepper* s, double* displacement, double* 
 }
 
 const void* rattlebox_save(rattlebox_stepper* s, size_t* size) {
-    if (!guarded(s->error, [&] { s->saved = s->stepper.save(); })) return nullptr;
+    if (!s || !guarded(s->error, [&] {
+            require(size);
+            s->saved = s->stepper.save();
+        }))
+        return nullptr;
     *size = s->saved.size();
     return s->saved.data();
 }
 int rattlebox_restore(rattlebox_stepper* s, const void* state, size_t size) {
-    return !guarded(s->error, [&] { s->stepper.restore(static_cast<const std::uint8_t*>(state), size); });
+    return !s || !guarded(s->error, [&] {
+        require(state);
+        s->stepper.restore(static_cast<const std::uint8_t*>(state), size);
+    });
 }
 
 } // extern "C"

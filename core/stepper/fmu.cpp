@@ -2,7 +2,9 @@
 // (https://fmi-standard.org); only what an FMU of this kind needs is declared.
 #include "stepper/fmu.hpp"
 
+#include <atomic>
 #include <cstdio>
+#include <set>
 
 #if defined(_WIN32)
 #define FMU_EXPORT extern "C" __declspec(dllexport)
@@ -42,25 +44,66 @@ struct Instance {
     }
 };
 
-Instance* of(void* instance) { return static_cast<Instance*>(instance); }
+using State = std::vector<std::uint8_t>;
+
+// Objects that importers hold by pointers, so that a pointer that is NULL, foreign or was freed is found out.
+template <class T> class Registry {
+    std::set<const void*> all_;
+    std::atomic_flag lock_ = ATOMIC_FLAG_INIT;
+
+    template <class F> auto locked(F&& f) {
+        while (lock_.test_and_set(std::memory_order_acquire)) {
+        }
+        const auto unlock = [](std::atomic_flag* lock) { lock->clear(std::memory_order_release); };
+        const std::unique_ptr<std::atomic_flag, decltype(unlock)> guard(&lock_, unlock);
+        return f();
+    }
+
+public:
+    T* add(std::unique_ptr<T> made) {
+        locked([&] { all_.insert(made.get()); });
+        return made.release();
+    }
+    T* find(void* pointer) {
+        return locked([&] { return all_.count(pointer) > 0; }) ? static_cast<T*>(pointer) : nullptr;
+    }
+    // Returns whether there was such an object.
+    bool remove(void* pointer) {
+        if (!locked([&] { return all_.erase(pointer) > 0; })) return false;
+        delete static_cast<T*>(pointer);
+        return true;
+    }
+};
+
+Registry<Instance> instances;
+Registry<State> states;
+
+Instance* of(void* instance) { return instances.find(instance); }
+
+template <class T> T& needed(T* pointer, const char* name) {
+    if (!pointer) throw std::invalid_argument(std::string(name) + " is NULL, or was freed");
+    return *pointer;
+}
 
 // Calls f(instance) and reports an exception; no exception leaves the library.
-template <class F> int guarded(void* instance, F&& f) noexcept {
+template <class F> int guarded(void* handle, F&& f) noexcept {
+    Instance* instance = of(handle);
     if (!instance) return error;
     try {
-        f(*of(instance));
+        f(*instance);
         return ok;
     } catch (const std::exception& e) {
-        of(instance)->report(e.what());
+        instance->report(e.what());
     } catch (...) {
-        of(instance)->report("unknown error");
+        instance->report("unknown error");
     }
     return error;
 }
 
 int unsupported(void* instance, const char* function) {
-    if (instance) of(instance)->report((std::string(function) + " is not supported").c_str());
-    return error;
+    return guarded(instance, [&](Instance&) {
+        throw std::invalid_argument(std::string(function) + " is not supported");
+    });
 }
 
 // "file:///a%20b" -> "/a b"
@@ -87,7 +130,7 @@ std::string path_of(const char* uri) {
 template <class Report>
 Instance* instantiate(const char* name, const std::string& resources, Report&& report) {
     try {
-        return new Instance{Fmu(resources), name ? name : ""};
+        return instances.add(std::unique_ptr<Instance>(new Instance{Fmu(resources), name ? name : ""}));
     } catch (const std::exception& e) {
         report(e.what());
     } catch (...) {
@@ -96,69 +139,73 @@ Instance* instantiate(const char* name, const std::string& resources, Report&& r
     return nullptr;
 }
 
-using State = std::vector<std::uint8_t>;
+// Puts bytes into the state to which an importer points, which is a new one if that is NULL.
+void put(void** state, State&& bytes) {
+    if (needed(state, "the pointer to the state"))
+        needed(states.find(*state), "the state") = std::move(bytes);
+    else
+        *state = states.add(std::make_unique<State>(std::move(bytes)));
+}
 
 int save(void* instance, void** state) {
-    return guarded(instance, [&](Instance& i) {
-        State bytes = i.fmu.save();
-        if (!*state) *state = new State;
-        *static_cast<State*>(*state) = std::move(bytes);
-    });
+    return guarded(instance, [&](Instance& i) { put(state, i.fmu.save()); });
 }
 int restore(void* instance, void* state) {
     return guarded(instance, [&](Instance& i) {
-        if (!state) throw std::invalid_argument("there is no state");
-        const State& bytes = *static_cast<State*>(state);
+        const State& bytes = needed(states.find(state), "the state");
         i.fmu.restore(bytes.data(), bytes.size());
     });
 }
-int forget(void** state) {
-    if (state) {
-        delete static_cast<State*>(*state);
-        *state = nullptr;
-    }
-    return ok;
+// Freeing NULL does nothing, as the standard demands.
+int forget(void* instance, void** state) {
+    if (!state || !*state) return ok;
+    const bool removed = states.remove(*state);
+    *state = nullptr;
+    return removed ? ok : guarded(instance, [](Instance&) { needed<State>(nullptr, "the state"); });
 }
 int size_of(void* instance, void* state, std::size_t* size) {
-    return guarded(instance, [&](Instance&) { *size = static_cast<State*>(state)->size(); });
+    return guarded(instance, [&](Instance&) {
+        needed(size, "the pointer to the size") = needed(states.find(state), "the state").size();
+    });
 }
 int write(void* instance, void* state, void* bytes, std::size_t size) {
     return guarded(instance, [&](Instance&) {
-        const State& from = *static_cast<State*>(state);
+        const State& from = needed(states.find(state), "the state");
         if (size < from.size()) throw std::invalid_argument("the buffer is too small for the state");
+        needed(static_cast<std::uint8_t*>(bytes), "the buffer");
         std::memcpy(bytes, from.data(), from.size());
     });
 }
 int read(void* instance, const void* bytes, std::size_t size, void** state) {
     return guarded(instance, [&](Instance&) {
-        const auto* from = static_cast<const std::uint8_t*>(bytes);
-        State copy(from, from + size);
-        if (!*state) *state = new State;
-        *static_cast<State*>(*state) = std::move(copy);
+        const auto* from = &needed(static_cast<const std::uint8_t*>(bytes), "the buffer");
+        put(state, State(from, from + size));
     });
 }
 
-int get(void* instance, const unsigned* references, std::size_t n, double* values) {
+// Calls f(reference, value) for each variable.
+template <class Value, class F>
+int each(void* instance, const unsigned* references, std::size_t n, Value* values, F&& f) {
     return guarded(instance, [&](Instance& i) {
-        for (std::size_t k = 0; k < n; ++k) values[k] = i.fmu.get(references[k]);
+        if (n > 0) needed(references, "the list of variables"), needed(values, "the list of values");
+        for (std::size_t k = 0; k < n; ++k) f(i.fmu, references[k], values[k]);
     });
 }
+int get(void* instance, const unsigned* references, std::size_t n, double* values) {
+    return each(instance, references, n, values,
+                [](const Fmu& fmu, unsigned r, double& v) { v = fmu.get(r); });
+}
 int set(void* instance, const unsigned* references, std::size_t n, const double* values) {
-    return guarded(instance, [&](Instance& i) {
-        for (std::size_t k = 0; k < n; ++k) i.fmu.set(references[k], values[k]);
-    });
+    return each(instance, references, n, values, [](Fmu& fmu, unsigned r, double v) { fmu.set(r, v); });
 }
 template <class Integer>
 int choice(void* instance, const unsigned* references, std::size_t n, Integer* values) {
-    return guarded(instance, [&](Instance& i) {
-        for (std::size_t k = 0; k < n; ++k) values[k] = i.fmu.choice(references[k]);
-    });
+    return each(instance, references, n, values,
+                [](const Fmu& fmu, unsigned r, Integer& v) { v = fmu.choice(r); });
 }
 template <class Integer>
 int choose(void* instance, const unsigned* references, std::size_t n, const Integer* values) {
-    return guarded(instance, [&](Instance& i) {
-        for (std::size_t k = 0; k < n; ++k) i.fmu.choose(references[k], values[k]);
-    });
+    return each(instance, references, n, values, [](Fmu& fmu, unsigned r, Integer v) { fmu.choose(r, v); });
 }
 int step(void* instance, double time, double length) {
     return guarded(instance, [&](Instance& i) {
@@ -171,6 +218,9 @@ int begin(void* instance, double time) {
 }
 int initialize(void* instance) {
     return guarded(instance, [](Instance& i) { i.fmu.initialize(); });
+}
+int terminate(void* instance) {
+    return guarded(instance, [](Instance& i) { i.fmu.terminate(); });
 }
 int reset(void* instance) {
     return guarded(instance, [](Instance& i) { i.fmu.reset(); });
@@ -193,18 +243,18 @@ FMU_EXPORT void* fmi2Instantiate(const char* name, int kind, const char*, const 
     const Log2 log = callbacks ? callbacks->log : nullptr;
     void* environment = callbacks ? callbacks->environment : nullptr;
     const auto report = [&](const char* message) {
-        if (log) log(environment, name, error, "logStatusError", "%s", message);
+        if (log) log(environment, name ? name : "", error, "logStatusError", "%s", message);
     };
     if (kind != 1) return report("this FMU is for co-simulation"), nullptr;
     Instance* made = instantiate(name, path_of(resources), report);
     if (made) made->log2 = log, made->environment = environment;
     return made;
 }
-FMU_EXPORT void fmi2FreeInstance(void* i) { delete of(i); }
+FMU_EXPORT void fmi2FreeInstance(void* i) { instances.remove(i); }
 FMU_EXPORT int fmi2SetupExperiment(void* i, int, double, double from, int, double) { return begin(i, from); }
 FMU_EXPORT int fmi2EnterInitializationMode(void*) { return ok; }
 FMU_EXPORT int fmi2ExitInitializationMode(void* i) { return initialize(i); }
-FMU_EXPORT int fmi2Terminate(void*) { return ok; }
+FMU_EXPORT int fmi2Terminate(void* i) { return terminate(i); }
 FMU_EXPORT int fmi2Reset(void* i) { return reset(i); }
 FMU_EXPORT int fmi2GetReal(void* i, References r, Size n, double* v) { return get(i, r, n, v); }
 FMU_EXPORT int fmi2SetReal(void* i, References r, Size n, const double* v) { return set(i, r, n, v); }
@@ -216,7 +266,7 @@ FMU_EXPORT int fmi2GetString(void* i, References, Size n, const char**) { return
 FMU_EXPORT int fmi2SetString(void* i, References, Size n, const char* const*) { return n ? unsupported(i, __func__) : ok; }
 FMU_EXPORT int fmi2GetFMUstate(void* i, void** s) { return save(i, s); }
 FMU_EXPORT int fmi2SetFMUstate(void* i, void* s) { return restore(i, s); }
-FMU_EXPORT int fmi2FreeFMUstate(void*, void** s) { return forget(s); }
+FMU_EXPORT int fmi2FreeFMUstate(void* i, void** s) { return forget(i, s); }
 FMU_EXPORT int fmi2SerializedFMUstateSize(void* i, void* s, Size* n) { return size_of(i, s, n); }
 FMU_EXPORT int fmi2SerializeFMUstate(void* i, void* s, char* bytes, Size n) { return write(i, s, bytes, n); }
 FMU_EXPORT int fmi2DeSerializeFMUstate(void* i, const char* bytes, Size n, void** s) { return read(i, bytes, n, s); }
@@ -246,12 +296,12 @@ FMU_EXPORT void* fmi3InstantiateCoSimulation(const char* name, const char*, cons
 }
 FMU_EXPORT void* fmi3InstantiateModelExchange(const char*, const char*, const char*, bool, bool, void*, Log3) { return nullptr; }
 FMU_EXPORT void* fmi3InstantiateScheduledExecution(const char*, const char*, const char*, bool, bool, void*, Log3, void*, void*, void*) { return nullptr; }
-FMU_EXPORT void fmi3FreeInstance(void* i) { delete of(i); }
+FMU_EXPORT void fmi3FreeInstance(void* i) { instances.remove(i); }
 FMU_EXPORT int fmi3EnterInitializationMode(void* i, bool, double, double from, bool, double) { return begin(i, from); }
 FMU_EXPORT int fmi3ExitInitializationMode(void* i) { return initialize(i); }
 FMU_EXPORT int fmi3EnterEventMode(void* i) { return unsupported(i, __func__); }
 FMU_EXPORT int fmi3EnterStepMode(void* i) { return unsupported(i, __func__); }
-FMU_EXPORT int fmi3Terminate(void*) { return ok; }
+FMU_EXPORT int fmi3Terminate(void* i) { return terminate(i); }
 FMU_EXPORT int fmi3Reset(void* i) { return reset(i); }
 FMU_EXPORT int fmi3GetFloat64(void* i, References r, Size n, double* v, Size) { return get(i, r, n, v); }
 FMU_EXPORT int fmi3SetFloat64(void* i, References r, Size n, const double* v, Size) { return set(i, r, n, v); }
@@ -278,7 +328,7 @@ FMU_EXPORT int fmi3GetNumberOfVariableDependencies(void* i, unsigned, Size*) { r
 FMU_EXPORT int fmi3GetVariableDependencies(void* i, unsigned, Size*, unsigned*, Size*, int*, Size) { return unsupported(i, __func__); }
 FMU_EXPORT int fmi3GetFMUState(void* i, void** s) { return save(i, s); }
 FMU_EXPORT int fmi3SetFMUState(void* i, void* s) { return restore(i, s); }
-FMU_EXPORT int fmi3FreeFMUState(void*, void** s) { return forget(s); }
+FMU_EXPORT int fmi3FreeFMUState(void* i, void** s) { return forget(i, s); }
 FMU_EXPORT int fmi3SerializedFMUStateSize(void* i, void* s, Size* n) { return size_of(i, s, n); }
 FMU_EXPORT int fmi3SerializeFMUState(void* i, void* s, std::uint8_t* bytes, Size n) { return write(i, s, bytes, n); }
 FMU_EXPORT int fmi3DeserializeFMUState(void* i, const std::uint8_t* bytes, Size n, void** s) { return read(i, bytes, n, s); }
@@ -290,9 +340,10 @@ FMU_EXPORT int fmi3ExitConfigurationMode(void* i) { return unsupported(i, __func
 FMU_EXPORT int fmi3UpdateDiscreteStates(void* i, bool*, bool*, bool*, bool*, bool*, double*) { return unsupported(i, __func__); }
 FMU_EXPORT int fmi3EvaluateDiscreteStates(void* i) { return unsupported(i, __func__); }
 FMU_EXPORT int fmi3DoStep(void* i, double t, double length, bool, bool* event, bool* terminate, bool* early, double* last) {
-    *event = *terminate = *early = false;
+    for (bool* flag : {event, terminate, early})
+        if (flag) *flag = false;
     const int outcome = step(i, t, length);
-    if (i) *last = of(i)->fmu.get(rattlebox::fmu::time);
+    if (const Instance* instance = of(i); instance && last) *last = instance->fmu.get(rattlebox::fmu::time);
     return outcome;
 }
 

@@ -50,7 +50,7 @@ class Fmu {
     std::vector<real> input_, before_; // now, and at the end of the last step
     real length_ = 0;                  // of the last step
     real work_ = 0, loss_ = 0, origin_ = 0;
-    bool began_ = false;
+    bool began_ = false, ended_ = false, start_reported_ = false;
     Stepper stepper_;
 
     static std::vector<std::uint8_t> read(const std::string& path) {
@@ -91,12 +91,14 @@ class Fmu {
     }
 
     template <class Archive> void serialize(Archive& archive) {
-        archive(options_, gravity_, input_time_, input_, before_, length_, work_, loss_, origin_, began_);
+        archive(options_, gravity_, input_time_, input_, before_, length_, work_, loss_, origin_, began_,
+                ended_);
     }
 
     void make() {
         stepper_ = Stepper(packed_.data(), packed_.size(), options_);
-        stepper_.set_gravity(gravity_);
+        // Dampers of one case may have different gravity until the importer changes it.
+        if (gravity_ != stepper_.gravity()) stepper_.set_gravity(gravity_);
     }
 
     void read_state(const std::uint8_t* bytes, std::size_t size) {
@@ -104,7 +106,8 @@ class Fmu {
         std::vector<std::uint8_t> inner;
         serialize(reader);
         reader(inner);
-        if (!reader.at_end() || input_.size() != count() || before_.size() != count())
+        if (!reader.at_end() || input_.size() != count() || before_.size() != count() ||
+            (input_time_ != start && input_time_ != end))
             throw std::invalid_argument("the state is of another case");
         make();
         stepper_.restore(inner.data(), inner.size());
@@ -143,7 +146,8 @@ public:
         input_.assign(count(), 0.0);
         before_ = input_;
         length_ = work_ = loss_ = origin_ = 0;
-        began_ = false;
+        began_ = ended_ = false;
+        start_reported_ = false;
         for (Limit& limit : limits_) limit.exceeded = false;
     }
 
@@ -155,12 +159,16 @@ public:
 
     // Fixes the parameters and, from the inputs, the initial velocity of the attachment.
     void initialize() {
+        if (ended_)
+            throw std::invalid_argument("the simulation was terminated; reset the FMU to begin again");
         if (stepper_.is_alone() && by_velocity_)
             std::copy_n(input_.begin(), input_.size() == 1 ? 1 : 3, options_.velocity);
         make();
         before_ = input_;
         began_ = true;
     }
+
+    void terminate() { ended_ = true; }
 
     real get(unsigned reference) const {
         const auto within = [&](unsigned first, std::size_t n) {
@@ -218,6 +226,9 @@ public:
 
     void step(real from, real length) {
         if (!began_) throw std::invalid_argument("a step before the end of the initialization");
+        if (ended_)
+            throw std::invalid_argument(
+                "a step after the simulation was terminated; reset the FMU to begin again");
         if (!(length > 0 && length < infinity))
             throw std::invalid_argument("a step must be longer than zero, and finite");
         if (!(std::fabs(from - get(time)) <= 1e-3 * length + 1e-9 * std::fabs(from)))
@@ -237,6 +248,12 @@ public:
     // Returns the texts of the limits that contacts have exceeded since the last call; each of them once.
     std::vector<std::string> warnings() {
         std::vector<std::string> texts;
+        if (stepper_.start_jump() > 0 && !start_reported_) {
+            start_reported_ = true;
+            texts.push_back(
+                "the velocity of the attachment jumped in the first step, as if its initial value had been "
+                "forgotten: set the input velocity before the end of the initialization");
+        }
         const Extremes extremes = stepper_.extremes();
         for (Limit& limit : limits_) {
             const std::vector<real>& largest = limit.speed ? extremes.speed : extremes.overlap;

@@ -10,6 +10,42 @@ namespace rattlebox {
 class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
     Extremes extremes_;
 
+    // Throws unless every index and size in a restored state can be one of this case.
+    void check_state() const {
+        const auto require = [](bool holds) {
+            if (!holds) throw std::invalid_argument("the state is damaged");
+        };
+        const std::size_t contacts = problem.contacts.size(), dampers = problem.dampers.size();
+        const auto is_finite = [](const auto& values) {
+            return std::all_of(values.begin(), values.end(),
+                               [](real value) { return std::fabs(value) < infinity; });
+        };
+        const auto check_impact = [&](int impact) {
+            require(impact >= -1 && impact < static_cast<int>(result_.impacts.size()));
+        };
+        // A contact is in one of the lists at most.
+        std::vector<char> is_listed(contacts, false);
+        const auto check_contact = [&](int contact) {
+            require(contact >= 0 && contact < static_cast<int>(contacts));
+            char& listed = is_listed[static_cast<std::size_t>(contact)];
+            require(!listed);
+            listed = true;
+        };
+        require(state_.t >= 0 && state_.t < infinity && is_finite(state_.y));
+        require(state_.y.size() == 2 * (problem.modes.size() + problem.ball_mass.size()));
+        require(ledger_.normal.size() == dampers && ledger_.plastic.size() == dampers);
+        require(phase_.size() == contacts);
+        for (const Phase phase : phase_) require(phase >= Phase::open && phase <= Phase::released);
+        for (const auto& one : system_.active) check_contact(one.contact), check_impact(one.impact);
+        for (const auto& one : released_) check_contact(one.contact), check_impact(one.impact);
+        for (const int contact : system_.stuck) check_contact(contact);
+        for (const Impact& impact : result_.impacts)
+            require(impact.contact >= 0 && impact.contact < static_cast<int>(contacts));
+        require(result_.status == Status::finished);
+        require(extremes_.overlap.size() == contacts && extremes_.speed.size() == contacts);
+        for (const Damper& damper : problem.dampers) require(std::fabs(damper.gravity) < infinity);
+    }
+
     // Keeps the impacts in the log that are not complete.
     void forget_impacts() {
         for (const Impact& impact : result_.impacts) {
@@ -53,20 +89,40 @@ public:
     Components gravity() const override {
         return {problem.dampers.empty() ? 0 : problem.dampers[0].gravity, 0, 0};
     }
-    void set_gravity(Components g) override {
-        for (Damper& damper : problem.dampers) damper.gravity = g[0];
+    bool set_gravity(Components g) override {
+        bool changed = false;
+        for (Damper& damper : problem.dampers) {
+            changed |= damper.gravity != g[0];
+            damper.gravity = g[0];
+        }
+        return changed;
     }
 
-    Status advance(real length, const real* inputs) override {
+    Status advance(real length, const real* inputs, const std::atomic<bool>& stop) override {
         for (std::size_t l = 0; l < problem.loads.size(); ++l) problem.loads[l].signal.amplitude = inputs[l];
         loads_.advance(state_.t);
         until_ = state_.t + length;
         sample(until_);
         result_.counts = Counts{};
+        stop_ = &stop;
         Trajectory::advance();
+        stop_ = nullptr;
         forget_impacts();
         if (running() && result_.samples.time.empty()) fail(Status::not_finite);
         return result_.status;
+    }
+
+    real computing_time(real length) const override {
+        constexpr real for_one = 2; // for a contact and a second, if it touches often
+        return for_one * length * static_cast<real>(problem.contacts.size());
+    }
+
+    Stop stop() const override {
+        if (result_.stopped_contact < 0) return {};
+        const int damper = contact(result_.stopped_contact).damper;
+        return {damper,
+                result_.stopped_contact - problem.dampers[static_cast<std::size_t>(damper)].first_contact,
+                result_.stopped_value};
     }
 
     Extremes extremes() const override { return extremes_; }
@@ -99,14 +155,16 @@ public:
 
     template <class Archive> void serialize(Archive& archive) {
         Trajectory::serialize(archive);
-        Samples& s = result_.samples;
-        archive(s.time, s.given, s.state, s.load_work, s.base_work, s.viscous, s.normal, s.plastic, s.stored,
-                s.force);
         for (Damper& damper : problem.dampers) archive(damper.gravity);
         archive(extremes_.overlap, extremes_.speed);
     }
     void save(Writer& writer) override { serialize(writer); }
-    void restore(Reader& reader) override { serialize(reader); }
+    void go_back(Reader& reader) override { serialize(reader); }
+    void restore(Reader& reader) override {
+        serialize(reader);
+        check_state();
+        if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
+    }
 };
 
 } // namespace rattlebox

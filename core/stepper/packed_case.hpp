@@ -18,19 +18,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dem/problem.hpp"
-#include "impact/problem.hpp"
+#include "stepper/packed_check.hpp"
 
 namespace rattlebox {
 
 enum class Engine : std::int64_t { impact = 1, particles = 2 };
-
-// Data of a stepper in addition to the problem.
-struct Component {
-    bool alone = false;                  // a damper alone, driven by the motion of its attachment
-    real velocity[3] = {};               // of the attachment at the start, if alone
-    std::vector<std::vector<real>> rows; // displacement of each output for a unit of each mode
-};
 
 template <class Problem> struct PackedCase {
     Problem problem;
@@ -205,56 +197,6 @@ template <class Pack> void pack(Pack& p, Component& component) {
     p.integer(component.alone);
     for (real& v : component.velocity) p.number(v);
     p.list(component.rows, [&](std::vector<real>& row) { pack(p, row); });
-}
-
-// ---- checks of what was read
-
-inline void check(bool holds) {
-    if (!holds) throw std::invalid_argument("the packed case is damaged");
-}
-inline void check_index(int i, std::size_t count) { check(i >= 0 && i < static_cast<int>(count)); }
-
-template <class Problem> void check_structure(const Problem& problem, const Component& component) {
-    const std::size_t modes = problem.modes.size();
-    check(problem.start.size() == modes);
-    check(problem.coupling.empty() || problem.coupling.size() == modes * modes);
-    for (const Load& load : problem.loads) check(load.shape.size() == modes);
-    for (const auto& row : component.rows) check(row.size() == modes);
-}
-
-inline void check(const rattlebox::Problem& problem, const Component& component) {
-    check_structure(problem, component);
-    const std::size_t balls = problem.ball_mass.size();
-    check(problem.ball_position.size() == balls && problem.ball_velocity.size() == balls &&
-          problem.ball_damper.size() == balls);
-    for (const int damper : problem.ball_damper) check_index(damper, problem.dampers.size());
-    for (const Damper& damper : problem.dampers) check(damper.shape.size() == problem.modes.size());
-    for (const Contact& contact : problem.contacts) {
-        check_index(contact.damper, problem.dampers.size());
-        for (const int side : {contact.below, contact.above})
-            if (side != wall) check_index(side, balls);
-    }
-    check(!component.alone || problem.loads.size() == 1);
-}
-
-inline void check(const dem::Problem& problem, const Component& component) {
-    check_structure(problem, component);
-    check(problem.dt > 0 && problem.dt < infinity && problem.load_direction.size() == problem.loads.size());
-    for (const dem::Cavity& cavity : problem.cavities) {
-        const std::size_t n = cavity.position.size();
-        check(cavity.velocity.size() == n && cavity.spin.size() == n && cavity.mass.size() == n &&
-              cavity.inertia.size() == n && cavity.species.size() == n && n > 0);
-        check(cavity.shape.size() == problem.modes.size() && cavity.walls.size() <= 32);
-        const auto species = static_cast<std::size_t>(cavity.species_count),
-                   materials = static_cast<std::size_t>(cavity.wall_material_count);
-        check(cavity.particle_pair.size() == species * species &&
-              cavity.wall_pair.size() == species * materials);
-        for (const int s : cavity.species) check_index(s, species);
-        for (const dem::Wall& wall : cavity.walls) check_index(wall.material, materials);
-        for (const auto* pairs : {&cavity.particle_pair, &cavity.wall_pair})
-            for (const int pair : *pairs) check_index(pair, problem.pair_laws.size());
-    }
-    check(!component.alone || problem.loads.size() == 3);
 }
 
 // ---- header

@@ -10,6 +10,7 @@ class ParticleEngine : public StepEngine {
     std::deque<std::vector<real>> tables_;
     Component component_;
     dem::Simulation simulation_;
+    std::vector<dem::RestartCheck> restart_check_;
     real longest_step_;
     Row gravity_;
     dem::StructureWork work_;
@@ -73,19 +74,23 @@ class ParticleEngine : public StepEngine {
         simulation_.records() = dem::Records{};
     }
 
-    Status run() {
-        const std::atomic<bool> stop{false};
-        simulation_.run(simulation_.problem().steps, 1, stop);
-        if (simulation_.status() == Status::finished) read_end();
-        return simulation_.status();
+    Status run(const std::atomic<bool>& stop) {
+        const long last = simulation_.problem().steps;
+        simulation_.run(last, 1, stop);
+        if (simulation_.status() != Status::finished) return simulation_.status();
+        if (simulation_.step() <= last) return Status::interrupted;
+        read_end();
+        return Status::finished;
     }
 
 public:
     explicit ParticleEngine(PackedCase<dem::Problem>&& packed)
         : tables_(std::move(packed.tables)), component_(std::move(packed.component)),
-          simulation_(std::move(packed.problem)), longest_step_(simulation_.problem().dt),
-          gravity_(simulation_.problem().gravity) {
-        run();
+          simulation_(std::move(packed.problem)), restart_check_(simulation_.restart_check()),
+          longest_step_(simulation_.problem().dt), gravity_(simulation_.problem().gravity) {
+        const Status status = run(std::atomic<bool>{false});
+        if (status != Status::finished)
+            throw std::invalid_argument(std::string("the case cannot start: ") + stop_reason(status));
     }
 
     const Component& component() const override { return component_; }
@@ -98,15 +103,32 @@ public:
         return components(simulation_.problem().load_direction[static_cast<std::size_t>(input)]);
     }
     Components gravity() const override { return components(gravity_); }
-    void set_gravity(Components g) override { gravity_ = row(g[0], g[1], g[2]); }
+    bool set_gravity(Components g) override {
+        const bool changed = g != components(gravity_);
+        gravity_ = row(g[0], g[1], g[2]);
+        return changed;
+    }
 
-    Status advance(real length, const real* inputs) override {
+    Status advance(real length, const real* inputs, const std::atomic<bool>& stop) override {
         const real parts = std::ceil(length / longest_step_ * (1 - 1e-12));
         if (!(parts < 1e15)) return Status::too_many_events;
         const long steps = std::max(1L, static_cast<long>(parts));
         simulation_.change_inputs(length / static_cast<real>(steps), steps, gravity_,
                                   {inputs, inputs + this->inputs()}, work_);
-        return run();
+        return run(stop);
+    }
+
+    real computing_time(real length) const override {
+        constexpr real for_one = 2e-7; // for a particle and a step; measured
+        real particles = 0;
+        for (const dem::Bed& bed : simulation_.beds()) particles += bed.particles();
+        return for_one * particles * length / longest_step_;
+    }
+
+    Stop stop() const override {
+        const dem::StopReason& reason = simulation_.stop_reason();
+        if (reason.status == Status::finished) return {};
+        return {simulation_.stopped_cavity(), reason.particle, reason.value};
     }
 
     StepEnd end() const override { return end_; }
@@ -125,9 +147,7 @@ public:
     }
 
     template <class Archive> void serialize(Archive& archive) {
-        archive(longest_step_, gravity_, work_.load, work_.base, work_.viscous, end_.dampers,
-                end_.displacement, end_.velocity, end_.kinetic, end_.elastic, end_.potential, end_.work,
-                end_.loss);
+        archive(longest_step_, gravity_, work_.load, work_.base, work_.viscous);
         simulation_.serialize_inputs(archive);
     }
     void save(Writer& writer) override {
@@ -136,7 +156,16 @@ public:
     }
     void restore(Reader& reader) override {
         serialize(reader);
-        simulation_.restore(reader);
+        if (!(longest_step_ > 0 && longest_step_ < infinity) ||
+            work_.load.size() != simulation_.problem().loads.size() ||
+            work_.base.size() != work_.load.size() ||
+            work_.viscous.size() != simulation_.problem().modes.size())
+            throw std::invalid_argument("the state is damaged");
+        simulation_.restore(reader, restart_check_);
+    }
+    void go_back(Reader& reader) override {
+        serialize(reader);
+        simulation_.go_back(reader);
     }
 };
 

@@ -17,34 +17,17 @@
 #include <algorithm>
 #include <bit>
 
-#include "stepper/engine.hpp"
+#include "stepper/energy_audit.hpp"
 
 namespace rattlebox {
-
-inline const char* stop_reason(Status status) {
-    switch (status) {
-    case Status::law_domain:
-        return "an approach speed exceeds the range of the restitution law";
-    case Status::too_many_events:
-        return "too many events in one step";
-    case Status::step_too_small:
-        return "the error bound of a contact cannot be met";
-    case Status::not_finite:
-        return "the motion is not finite";
-    case Status::escaped:
-        return "a particle has left its cavity; shorten the time step or lower the softening";
-    case Status::no_rebound:
-        return "a dashpot cannot have a restitution of zero";
-    default:
-        return "the engine stopped";
-    }
-}
 
 struct StepResult {
     std::vector<Components> force, moment; // mean over the step, by damper; N, N m
     real work = 0, loss = 0;               // of the step, J
     real stored = 0;                       // at the end of the step, J
 };
+
+inline const std::atomic<bool> never{false};
 
 class Stepper {
     std::unique_ptr<StepEngine> engine_;
@@ -54,7 +37,13 @@ class Stepper {
     Components velocity_{}, displacement_{}; // of the attachment
     StepEnd end_;
     StepResult result_;
+    EnergyAudit audit_;
+    // To notice an initial velocity that was forgotten: steps so far whose velocity was given, and the first
+    // acceleration and change of velocity.
+    std::int64_t velocity_steps_ = 0;
+    real first_acceleration_ = 0, jump_ = 0;
     Status status_ = Status::finished;
+    Stop stop_; // if the status is not `finished`
 
     std::size_t axes() const { return static_cast<std::size_t>(engine_->axes()); }
     bool alone() const { return engine_->component().alone; }
@@ -107,8 +96,48 @@ class Stepper {
     }
 
     template <class Archive> void serialize(Archive& archive) {
-        archive(time_, velocity_, displacement_, status_, result_.force, result_.moment, result_.work,
-                result_.loss, result_.stored);
+        archive(time_, velocity_, displacement_, status_, stop_, result_.force, result_.moment, result_.work,
+                result_.loss, result_.stored, end_.dampers, end_.displacement, end_.velocity, end_.kinetic,
+                end_.elastic, end_.potential, end_.work, end_.loss, velocity_steps_, first_acceleration_,
+                jump_);
+        audit_.serialize(archive);
+    }
+
+    void watch_start(real length, const real* acceleration) {
+        constexpr real jump = 20; // ratio of the accelerations in the first two steps
+        const real* start = engine_->component().velocity;
+        const real size = std::hypot(acceleration[0], acceleration[1], acceleration[2]);
+        if (++velocity_steps_ == 1) {
+            first_acceleration_ = size;
+            jump_ = start[0] == 0 && start[1] == 0 && start[2] == 0 ? size * length : 0;
+        } else if (velocity_steps_ == 2 && !(first_acceleration_ > jump * size)) {
+            jump_ = 0;
+        }
+    }
+
+    void read(Reader& reader) {
+        const std::size_t dampers = end_.dampers.size(), modes = end_.displacement.size();
+        serialize(reader);
+        if (!(time_ >= 0 && time_ < infinity) ||
+            !(status_ >= Status::finished && status_ <= Status::refused) || result_.force.size() != dampers ||
+            result_.moment.size() != dampers || end_.dampers.size() != dampers ||
+            end_.displacement.size() != modes || end_.velocity.size() != modes)
+            throw std::invalid_argument("the state is damaged");
+        if (status_ == Status::finished)
+            engine_->restore(reader);
+        else if (!reader.at_end())
+            throw std::invalid_argument("the state is damaged");
+    }
+
+    // The state of an engine that has stopped is not needed, because it cannot continue.
+
+    std::vector<std::uint8_t> content() {
+        Sizer size;
+        serialize(size);
+        Writer writer(size.bytes);
+        serialize(writer);
+        if (status_ == Status::finished) engine_->save(writer);
+        return std::move(writer.bytes);
     }
 
 public:
@@ -119,6 +148,7 @@ public:
         end_ = engine_->end();
         result_.force.resize(end_.dampers.size()), result_.moment.resize(end_.dampers.size());
         result_.stored = stored_energy();
+        audit_ = EnergyAudit(end_);
     }
 
     bool is_alone() const { return alone(); }
@@ -132,6 +162,10 @@ public:
     Components velocity() const { return velocity_; }         // of the attachment
     Components displacement() const { return displacement_; } // of the attachment
     Status status() const { return status_; }
+    // Where the stepper stopped; the value of an energy error is the imbalance over the energy put in.
+    const Stop& stop() const { return stop_; }
+    real energy_residual() const { return audit_.worst(); }
+    real computing_time(real length) const { return engine_->computing_time(length); }
     const StepResult& result() const { return result_; }
     Extremes extremes() const { return engine_->extremes(); }
 
@@ -149,12 +183,19 @@ public:
     void set_gravity(Components g) {
         for (const real value : g)
             if (!(std::fabs(value) < infinity)) throw std::invalid_argument("gravity is not finite");
-        engine_->set_gravity(g);
+        if (!engine_->set_gravity(g)) return;
+        // The stored energy refers to the gravity of the next step.
+        real potential = 0;
+        for (const DamperSums& damper : end_.dampers)
+            for (std::size_t a = 0; a < axes(); ++a) potential -= g[a] * damper.mass_moment[a];
+        audit_.shift(potential - end_.potential);
+        end_.potential = potential;
+        result_.stored = stored_energy();
     }
 
     // Advances by a step. `inputs` are the accelerations of the attachment (damper alone) or the values of
-    // the loads, all constant in the step.
-    Status advance(real length, const real* inputs) {
+    // the loads, all constant in the step. If `stop` is set during the step, the status is `interrupted`.
+    Status advance(real length, const real* inputs, const std::atomic<bool>& stop = never) {
         if (status_ != Status::finished) return status_;
         if (!(length > 0 && length < infinity))
             throw std::invalid_argument("a step must be longer than zero, and finite");
@@ -163,8 +204,9 @@ public:
             if (!(std::fabs(value) < infinity)) throw std::invalid_argument("an input is not finite");
         const StepEnd before = end_;
         const real carried = carried_energy(before);
-        status_ = engine_->advance(length, given.data());
+        status_ = engine_->advance(length, given.data(), stop);
         time_ += length;
+        stop_ = engine_->stop();
         if (status_ != Status::finished) return status_;
         end_ = engine_->end();
         if (alone())
@@ -173,27 +215,34 @@ public:
                 velocity_[a] += length * given[a];
             }
         evaluate(before, carried, length, given);
+        if (!audit_.holds(end_)) {
+            status_ = std::isfinite(result_.stored - result_.work + result_.loss) ? Status::energy_error
+                                                                                  : Status::not_finite;
+            stop_ = {.value = audit_.worst()};
+        }
         return status_;
     }
 
     // Advances by a step at whose end the attachment has the velocity v.
-    Status advance_to_velocity(real length, const real* v) {
+    Status advance_to_velocity(real length, const real* v, const std::atomic<bool>& stop = never) {
         real acceleration[3] = {};
         for (std::size_t a = 0; a < axes(); ++a) acceleration[a] = (v[a] - velocity_[a]) / length;
-        const Status status = advance(length, acceleration);
+        const Status status = advance(length, acceleration, stop);
+        if (status != Status::finished) return status;
         for (std::size_t a = 0; a < axes(); ++a) velocity_[a] = v[a]; // without rounding
+        watch_start(length, acceleration);
         return status;
     }
 
+    // Change of the attachment's velocity in the first step [m/s] if it started from rest and the velocity
+    // hardly changed in the second step, as if the initial velocity had been forgotten; else 0.
+    real start_jump() const { return velocity_steps_ > 1 ? jump_ : 0; }
+
     // Returns the state: hash of the packed case, hash of the content, content.
     std::vector<std::uint8_t> save() {
-        Sizer size;
-        serialize(size);
-        Writer content(size.bytes);
-        serialize(content);
-        engine_->save(content);
-        Writer whole(content.bytes.size() + 24);
-        whole(case_hash_, pack_hash(content.bytes.data(), content.bytes.size()), content.bytes);
+        const std::vector<std::uint8_t> bytes = content();
+        Writer whole(bytes.size() + 24);
+        whole(case_hash_, pack_hash(bytes.data(), bytes.size()), bytes);
         return std::move(whole.bytes);
     }
 
@@ -206,10 +255,19 @@ public:
         if (case_hash != case_hash_) throw std::invalid_argument("the state is of another case");
         if (!whole.at_end() || content_hash != pack_hash(content.data(), content.size()))
             throw std::invalid_argument("the state is damaged");
-        Reader reader(reinterpret_cast<const char*>(content.data()), content.size());
-        serialize(reader);
-        engine_->restore(reader);
-        end_ = engine_->end();
+        const std::vector<std::uint8_t> now = this->content();
+        const auto reader_of = [](const std::vector<std::uint8_t>& from) {
+            return Reader(reinterpret_cast<const char*>(from.data()), from.size());
+        };
+        Reader reader = reader_of(content);
+        try {
+            read(reader);
+        } catch (...) {
+            Reader back = reader_of(now);
+            serialize(back);
+            if (status_ == Status::finished) engine_->go_back(back);
+            throw;
+        }
     }
 };
 

@@ -326,8 +326,8 @@ def test_contacts_beyond_the_model_are_reported_once(
 ) -> None:
     """The importer's log gets one warning when contacts leave the range of the model, and none before."""
     with unit(tmp_path, system(), fmi) as own:
-        own.initialize()
         velocity = "velocity" if "velocity" in own.reference else "velocity_z"
+        own.initialize(**{velocity: -gentle})
         for k in range(120):
             sign = 1 if k // 20 % 2 else -1
             if k == 60:

@@ -40,6 +40,8 @@ struct PowerLaw {
                                                  {"fixed_restitution", &PowerLaw::fixed_restitution}};
     static constexpr bool hysteretic = false;
 
+    bool is_possible() const { return exponent > 0; }
+
     // ---- the formula; k.stiffness = k, k.second = c
 
     template <class T>

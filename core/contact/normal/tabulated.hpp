@@ -23,6 +23,18 @@ struct PiecewiseCubic {
     Table knots, coefficients, integral; // integral from the first knot up to each knot
 
     bool empty() const { return knots.size == 0; }
+    // Whether the sizes fit, and the function increases from knot to knot.
+    bool is_possible() const {
+        if (knots.size < 2 || integral.size != knots.size || coefficients.size != 4 * (knots.size - 1))
+            return false;
+        for (int i = 0; i < coefficients.size; ++i)
+            if (!(std::fabs(coefficients[i]) < infinity)) return false;
+        for (int i = 1; i < knots.size; ++i)
+            if (!(knots[i - 1] < knots[i] && knots[i] < infinity && value(knots[i - 1]) <= value(knots[i]) &&
+                  integral[i - 1] <= integral[i] && integral[i] < infinity))
+                return false;
+        return value(first()) >= 0 && value(last()) > 0 && slope(last()) >= 0;
+    }
     real first() const { return knots[0]; }
     real last() const { return knots[knots.size - 1]; }
     int piece(real x) const {
@@ -75,6 +87,9 @@ struct TabulatedNormal {
         {"unloading_integral", &TabulatedNormal::unloading_integral}};
     static constexpr bool hysteretic = true;
 
+    bool is_possible() const {
+        return loading().is_possible() && (unloading().empty() || unloading().is_possible());
+    }
     PiecewiseCubic loading() const { return {loading_knots, loading_coefficients, loading_integral}; }
     PiecewiseCubic unloading() const { return {unloading_knots, unloading_coefficients, unloading_integral}; }
 

@@ -17,6 +17,12 @@ struct TabulatedRestitution {
     static constexpr TableField<TabulatedRestitution> tables[] = {{"speeds", &TabulatedRestitution::speeds},
                                                                   {"values", &TabulatedRestitution::values}};
 
+    bool is_possible() const {
+        const auto* last = speeds.data + speeds.size;
+        return speeds.size >= 1 && speeds.size == values.size &&
+               std::adjacent_find(speeds.data, last, [](real a, real b) { return !(a < b); }) == last &&
+               std::all_of(values.data, values.data + values.size, [](real e) { return e >= 0 && e <= 1; });
+    }
     real limit() const { return infinity; }
     bool beyond() const { return true; }
     real value(real speed) const {

@@ -1223,7 +1223,23 @@ class Stepper:
         """
 
     @property
+    def start_jump(self) -> float:
+        """
+        Change of the attachment's velocity in the first step if it is not followed by another [m/s]; else 0.
+        """
+
+    @property
+    def energy_residual(self) -> float:
+        """Largest imbalance of the energies so far over the energy put in."""
+
+    @property
     def status(self) -> Status: ...
+
+    @property
+    def stopped(self) -> tuple[int, int, float]:
+        """
+        Damper, its contact or particle, and the value of the status: where the stepper stopped.
+        """
 
     @property
     def restitution(self) -> float: ...

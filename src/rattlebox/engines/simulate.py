@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolation_notes, impact_notes
-from rattlebox.engines.status import describe, final_status
+from rattlebox.engines.status import contact_name, describe, final_status
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.plausibility import plausibility_notes
@@ -218,7 +218,7 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
         end = final_status(ledger, raw.energy_residual_limit, mass)
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     counts = [len(damper.balls) for damper in case.impact_dampers]
-    contact = _contact_name(arrays.dampers, counts, raw.stopped_contact)
+    contact = contact_name(arrays.dampers, counts, raw.stopped_contact)
     return describe(raw.status, raw.stopped_at, contact, raw.stopped_value, case.method.kind)
 
 
@@ -277,22 +277,6 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
         plastic_loss=raw.plastic_loss,
         impacts={name: getattr(raw.impacts, name) for name in raw.impacts.fields()},
     )
-
-
-def _contact_name(names: Sequence[str], counts: list[int], contact: int) -> str:
-    """Return damper and place of a contact, which is numbered over all dampers."""
-    for name, balls in zip(names, counts, strict=True):
-        if contact <= balls:
-            place = (
-                "trailing wall"
-                if contact == 0
-                else "leading wall"
-                if contact == balls
-                else f"ball {contact} - {contact + 1}"
-            )
-            return f"{name} ({place})"
-        contact -= balls + 1
-    return ""
 
 
 def _base_motion(case: Case, time: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,6 +92,16 @@ def final_status(ledger: Ledger, limit: float, mass: float) -> Status:
     if not np.isfinite(ledger.residual).all():
         return Status.not_finite
     return Status.finished if ledger.is_balanced(limit, mass * _core.speed_at_rest**2) else Status.energy_error
+
+
+def contact_name(dampers: Sequence[str], counts: Sequence[int], contact: int) -> str:
+    """Return damper and place of a contact, numbered over all dampers with these counts of balls; "" if there is none."""
+    for name, balls in zip(dampers, counts, strict=True):
+        if 0 <= contact <= balls:
+            between = f"ball {contact} - {contact + 1}"
+            return f"{name} ({'trailing wall' if contact == 0 else 'leading wall' if contact == balls else between})"
+        contact -= balls + 1
+    return ""
 
 
 def describe(

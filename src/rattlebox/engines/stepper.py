@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,9 +20,10 @@ from rattlebox.model.structures import Fixed, Shaker
 from rattlebox.model.units import in_si
 from rattlebox.prepare.component import damper_case, pack_component
 from rattlebox.prepare.time_step import step_diagnostics
+from rattlebox.results.quantities import quantity
 
 from .run_notes import component_notes, table_notes
-from .status import describe
+from .status import contact_name, describe
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,8 @@ class StepResult:
     loss
         Energy lost in the step [J].
     stored
-        Energy stored at the end of the step [J]: kinetic, elastic and potential, in the frame of the base.
+        Energy stored at the end of the step [J]: kinetic, elastic and potential, in the frame of the base. Its change in the
+        step is work - loss, which is checked in every step; see `Stepper`.
     """
 
     force: Any
@@ -107,15 +110,19 @@ class Stepper:
 
         F = M g - (P_1 - P_0) / H
 
+    At the end of every step the energy balance is checked, E - E_0 = W - L with the stored energy E, the work W and the loss
+    L. An imbalance above 1 % of the energy put in (that of the motion at the start, plus the largest work and the largest
+    change of potential energy so far) is the status `energy_error` and raises `StepError`, as in whole runs.
+
     Examples
     --------
     >>> import rattlebox as rb
     >>> ball = rb.Sphere(radius="10 mm", material="steel")
     >>> damper = rb.ImpactDamper(ball=ball, gap="2 mm", contact=rb.Tsuji(restitution=0.6))
-    >>> stepper = rb.Stepper(damper)
-    >>> abs(stepper.advance(0.01, velocity=0.3).force) < 1e-9  # the ball does not touch yet
+    >>> stepper = rb.Stepper(damper, velocity=0.3)
+    >>> abs(stepper.advance(0.005, velocity=0.3).force) < 1e-9  # the ball does not touch yet
     True
-    >>> stepper.advance(0.02, velocity=0.3).force < 0  # it has hit the trailing wall
+    >>> stepper.advance(0.01, velocity=0.3).force < 0  # it has hit the trailing wall
     True
     """
 
@@ -135,8 +142,10 @@ class Stepper:
         if not alone and start.any():
             raise Hint("velocity belongs to a damper alone", "the initial velocity of the structure")
         self._case = case
-        self._core = _core.Stepper(self._packed.data)
-        self._check()
+        try:
+            self._core = _core.Stepper(self._packed.data)
+        except ValueError as error:
+            raise StepError(str(error), "positions, velocities and laws with which a run starts") from None
 
     @property
     def time(self) -> float:
@@ -159,13 +168,31 @@ class Stepper:
         return self._packed.data
 
     @property
+    def energy_residual(self) -> float:
+        """Largest imbalance of the energies so far, over the energy put in."""
+        return float(self._core.energy_residual)
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """Choices that were made for the case, and warnings, like `Run.notes`.
 
-        Warnings are about a structure that is light against the damper, and about contacts since the start: overlaps beyond
-        the range of the contact laws, speeds beyond a table of restitution, and a time step that is too long for contacts
-        of particles, because they move faster than with `motion`.
+        Warnings are about a structure that is light against the damper, about an initial velocity that was probably
+        forgotten, and about contacts since the start: overlaps beyond the range of the contact laws, speeds beyond a table
+        of restitution, and a time step that is too long for contacts of particles, because they move faster than with
+        `motion`.
         """
+        return (*self._start_notes(), *self._contact_notes())
+
+    def _start_notes(self) -> Iterator[str]:
+        """Yield a warning if the velocity of the attachment jumped in the first step, and did not change in the second."""
+        jump = self._core.start_jump
+        if jump > 0:
+            yield (
+                f"warning: the velocity of the attachment changed by {quantity(jump, 'm/s', 3)} in the first step and "
+                "hardly in the second, as if its initial value had been forgotten: give it as Stepper(..., velocity=...)"
+            )
+
+    def _contact_notes(self) -> tuple[str, ...]:
         overlaps, speeds = self._core.largest_overlap, self._core.largest_approach_speed
         prepared = self._packed.prepared
         if prepared is None:
@@ -199,8 +226,10 @@ class Stepper:
         CaseError
             If the time is not after the current one, or an input is missing or not finite.
         StepError
-            If the engine stopped, for instance because a particle left its cavity. The stepper cannot continue; an earlier
-            state can be restored.
+            If the engine stopped, for instance because a particle left its cavity, or if the energies do not balance. The
+            stepper cannot continue; an earlier state can be restored.
+        KeyboardInterrupt
+            After Ctrl-C during a long step; the stepper is then where the step began.
         """
         length = float(to if isinstance(to, float) else in_si(to, "s")) - self.time
         if not 0 < length < np.inf:
@@ -308,7 +337,28 @@ class Stepper:
         return StepResult(force, self._core.moment[0], self._core.work, self._core.loss, self._core.stored)
 
     def _check(self) -> None:
-        status = self._core.status
-        if status != _core.Status.finished:
-            name, message = describe(status, self.time, "A contact", float("nan"), self._case.method.kind)
-            raise StepError(f"the stepper stopped at t = {self.time:.6g} s ({name}). {message}")
+        """Raise an error if the core has stopped."""
+        if self._core.status != _core.Status.finished:
+            raise StepError(
+                f"the stepper stopped at t = {self.time:.6g} s ({self._core.status.name}). {self._reason()}"
+            )
+
+    def _reason(self) -> str:
+        """Return the message of the status with which the core has stopped."""
+        status, (damper, member, value) = self._core.status, self._core.stopped
+        particles, balls = self._case.particle_dampers, self._case.impact_dampers
+        if status == _core.Status.energy_error:
+            shorter = "lower `fraction` of Dem, or give a larger `motion`" if particles else "lower the tolerance"
+            return (
+                f"The change of the stored energy differs from work - loss by {value:.2g} of the energy put in; the limit "
+                f"is {_core.worst_energy_residual:g}. Do not use the results; {shorter}."
+            )
+        if damper < 0:
+            where = ""
+        elif particles:
+            number = member + sum(each.contents.radius.size for each in particles[:damper])
+            where = f"Particle {number}, in {particles[damper].label(damper)!r},"
+        else:
+            where = contact_name([balls[damper].label(damper)], [len(balls[damper].balls)], member)
+        softened = damper >= 0 and bool(particles) and particles[damper].softening_factor > 1
+        return describe(status, self.time, where, value, self._case.method.kind, softened=softened)[1]
