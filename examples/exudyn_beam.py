@@ -71,7 +71,8 @@ def coupled(damped=True, step=STEP):
     tip = system.AddMarker(MarkerNodePosition(nodeNumber=nodes[-1]))
     load = system.AddLoad(LoadForceVector(markerNumber=tip))
     system.Assemble()
-    damper, force = rb.Stepper(balls(), motion=rb.Harmonic(amplitude="3 mm", frequency="20 Hz")), 0.0
+    motion = rb.Harmonic(amplitude="3 mm", frequency="20 Hz")
+    damper, force = rb.Stepper(balls(), motion=motion, velocity=(0, 0, 0)), 0.0  # the beam starts at rest
     times, path = [0.0], [0.0]
 
     def before_step(system, end):

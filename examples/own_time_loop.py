@@ -32,9 +32,10 @@ def ball():
 
 def newmark(steps, exchanges=1):
     """Return the displacements after the free decay, by Newmark's method with constant average acceleration [m]."""
-    h, damper = DURATION / steps, rb.Stepper(ball().model_copy(update={"point": None}), structure_mass=M[1, 1])
-    inverse = np.linalg.inv(M + h**2 / 4 * K)
     x, v, force = START, np.zeros(2), 0.0
+    alone = ball().model_copy(update={"point": None})
+    h, damper = DURATION / steps, rb.Stepper(alone, structure_mass=M[1, 1], velocity=TOP @ v)
+    inverse = np.linalg.inv(M + h**2 / 4 * K)
     for k in range(1, steps + 1):
         before = damper.save() if exchanges > 1 else b""
         for exchange in range(exchanges):
