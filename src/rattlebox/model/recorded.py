@@ -21,7 +21,7 @@ from .errors import Hint, at, several
 from .files import absolute, existing
 from .records import Column, Columns, as_columns, read_columns
 from .signals import UNIT_NAMES, UNITS, Sampled, Unit
-from .units import STANDARD_GRAVITY, Number, PositiveTime, factor_of, numbers, parse
+from .units import SI, STANDARD_GRAVITY, Number, PositiveTime, factor_of, numbers, parse
 from .units_in_text import unit_above, units_in_lines
 
 _UNIVERSAL = (".uff", ".unv", ".uf")
@@ -227,7 +227,7 @@ class Record(FilePart, Sampled):
     columns: tuple[Column, Column] | tuple[Column] | Literal["rows"] | None = None
     dt: PositiveTime | None = None
     scale: Number = 1.0
-    time_zero: Annotated[Literal["first"] | float | None, BeforeValidator(_as_time_zero)] = None
+    time_zero: Annotated[Literal["first"] | float | None, SI("s"), BeforeValidator(_as_time_zero)] = None
     _unit_as_given: str | None = PrivateAttr(default=None)
     _unit_is_assumed: bool = PrivateAttr(default=False)
     _notes: tuple[str, ...] = PrivateAttr(default=())

@@ -363,6 +363,18 @@ def test_a_record_that_does_not_begin_at_zero(tmp_path: Path, begin: float) -> N
         assert f"with a peak of {peak:.4g} m/s^2" in note
 
 
+def test_the_begin_of_a_record_is_an_axis(tmp_path: Path) -> None:
+    """A study may vary the time of the record at which the run begins, in its unit."""
+    written(tmp_path)
+    base = case(rb.Record.from_file(tmp_path / "gal.csv")).replaced({"duration": "1 s"})
+    peaks = rb.sweep(base, {"base.time_zero": ["0 s", "500 ms", "1 s"]}, ["peak"], progress=False)
+    assert peaks["base.time_zero"].attrs["units"] == "s"
+    later = base.replaced({"base.time_zero": "500 ms"})
+    np.testing.assert_allclose(later.base[0].evaluate([0.1]), np.interp(0.6, TIMES, SHAKE), rtol=1e-9)
+    alone = float(np.abs(rb.simulate(later, progress=False).motion.displacement).max())
+    assert peaks.peak.values[1] == pytest.approx(alone, rel=5e-3)
+
+
 def test_a_universal_file_is_shifted_with_a_note() -> None:
     """The time history of a universal file begins with its first point; a run notes it if that is not at 0 s."""
     folder = Path(__file__).parents[2] / "data/uff"
