@@ -255,7 +255,7 @@ def _read_each(files: dict[str, Any]) -> tuple[dict[str, str], dict[str, Vector]
     for name, file in files.items():
         with at(name):
             paths[name] = absolute(file)
-            matrices[name] = read_matrix(existing(paths[name]))
+            matrices[name] = check_finite(read_matrix(existing(paths[name])), paths[name])
     return paths, matrices
 
 

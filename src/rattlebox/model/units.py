@@ -288,6 +288,8 @@ def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
     unit = _spelt(_in_words(unit.strip().strip(".\"'")))
     if "m/s^2" in units and unit.lower() in ("g", "g0", "g_0", "gn", "gal"):
         unit = unit.lower().replace("g0", "g_0")
+    if "m/s^2" in units and unit.lower() in ("ms-2", "ms^-2"):  # pint reads milliseconds
+        unit = "m/s^2"
     for spelling in (unit, *_other_case(unit)):
         is_known = any(spelling in _COMMON.get(si, {}) for si in units)
         if is_known or (spelling == unit and "/" in unit):  # pint would read a(t) and F (rod) as year and rod
@@ -348,11 +350,12 @@ def _in_words(unit: str) -> str:
 
 def _spelt(unit: str) -> str:
     """Return the normalised spelling of a unit: m/s², m/s2, m/s**2, m/s/s, m/sec^2 and m s^-2 are m/s^2."""
+    unit = unit.replace("⁻²", "^-2").replace("^{2}", "^2").replace("^{-2}", "^-2")
     unit = unit.replace("**", "^").replace("²", "^2").replace("μ", "µ").replace("·", " ")
     unit = re.sub(r"/\s*sec\b|/\s*sec(?=[\d^])", "/s", unit)
     unit = re.sub(r"/s(?:2|/s)$", "/s^2", unit)
     unit = re.sub(r"^sqrt\((\w+)\)$|^(\w+)\^\(?1/2\)?$", r"\1\2^0.5", unit)
-    return re.sub(r"(?<=[a-z])[ *]s\^?-2$", "/s^2", unit)
+    return re.sub(r"(?<=[a-z])[ *.]s\^?-2$", "/s^2", unit)
 
 
 def _check_comma(text: str) -> None:

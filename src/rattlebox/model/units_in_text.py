@@ -19,9 +19,8 @@ _LABELS = re.compile(r"[txyzTXYZ]|\d*")
 # A unit in running text: "g", "cm/s^2", "CM/SEC/SEC", "m s^-2", "cm / s2". Words and numbers next to it are not part of it.
 _UNIT = r"(?:[^\W\d_]+(?:\s+s\^?-2|\s?/\s?\(?s(?:ec)?[\d^*²)]*(?:\s?/\s?s(?:ec)?)?)?|[^\s,;:()\[\]\"']+)"
 _END = r"(?=$|[\s,;:.()\[\]\"'])"
-_MARKED = re.compile(
-    rf"(?<![^\W_])units?(?:[ _]label)?\s*(?:of|is|are|in)?\s*[:=;,]?\s*[(\[\"']?\s*({_UNIT}){_END}", re.I
-)
+_WORD = r"(?<![^\W_])(?:units?|einheit(?:en)?|unit[eé]s?|unidad(?:es)?)(?:[ _-](?:label|[xyz\d])(?![^\W_]))?"
+_MARKED = re.compile(rf"{_WORD}\s*(?:of|is|are|in)?\s*[:=;,]?\s*[(\[\"']?\s*({_UNIT}){_END}", re.I)
 _IN = re.compile(rf"\bin\s+[(\[]?({_UNIT}){_END}", re.I)
 _BARE = re.compile(r"(?<![\w/^.-])([^\W\d_]+\s?/\s?\(?s(?:ec)?[\d^*²)]*(?:\s?/\s?s(?:ec)?)?|m?gals?)(?![\w/^])", re.I)
 _CLOSING = re.compile(r"[,;)\]]")

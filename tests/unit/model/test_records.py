@@ -132,13 +132,15 @@ HEADS = {
     "time (s), acceleration ({})": " ", "t\ta ({})": " ", "t (s)\tacceleration, filtered ({})": "\t",
     "time,acc in {}": ",", "t/s,a/({})": ",", "t,a\ns,{}": ",", "t;a [{}]": ";",
     "UNIT: {}": " ", "Units of {}": " ", "units = {}": ",", "The units are ({})": " ", "# unit {}": " ",
-    "Y_Unit_Label\t{}": " ", "EW component, acceleration in {}, dt = 0.0125 s": " ", "# {}": " ", "[{}]": " ",
+    "Y_Unit_Label\t{}": " ", "Unit Y: {}": " ", "acceleration_unit: {}": ",", "Einheit: {}": " ",
+    "EW component, acceleration in {}, dt = 0.0125 s": " ", "# {}": " ", "[{}]": " ",
     "STATION 17\nPEAK 2.7 AT 1.1 SEC\nCORRECTED ACCELERATION  UNIT: {}\nDEPTH 9 KM": " ",
 }  # fmt: skip
 UNITS = {
     "g": G, "G": G, "cm/s^2": 0.01, "CM/SEC/SEC": 0.01, "CM/S/S": 0.01, "M/S2": 1.0, "m/s²": 1.0, "cm/sec2": 0.01,
     "gal": 0.01, "Gal": 0.01, "GAL": 0.01, "gals": 0.01, "MM/S^2": 1e-3, "in/s^2": 0.0254, "FT/SEC^2": 0.3048, "m s^-2": 1.0,
     "cm/s**2": 0.01, "meters per second squared": 1.0, "cm/second^2": 0.01, "g's": G,
+    "m·s⁻²": 1.0, "m.s-2": 1.0, "ms^-2": 1.0, "Cm/Sec²": 0.01, "m/s^{2}": 1.0, "MG": G / 1e3,
 }  # fmt: skip
 
 
