@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rattlebox._util.settling import settled_after
+
 from .signals import FloatArray, finite, positive, sampled
 
 
@@ -49,20 +51,7 @@ def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, ref
     size = np.abs(x)
     peak = float(size.max()) if reference is None else positive("reference", reference, "")
     limit = positive("band", band, "") * peak
-    side = np.where(size > limit, np.sign(x), 0.0)
-    begins = np.flatnonzero(np.diff(side, prepend=np.nan))  # of intervals on one side, or within the band
-    if side[-1]:
-        return float("nan")
-    if begins.size == 1:
-        return float(t[0])
-    k = int(begins[-1]) - 1
-    # A fast oscillation may cross zero between two samples; signed values give the time at the edge of the band.
-    out = np.copysign(limit, x[k])
-    passed = float(t[k] + (t[k + 1] - t[k]) * (out - x[k]) / (x[k + 1] - x[k]))
-    swings = [begin for begin in begins[:-1] if side[begin]][-2:]
-    if len(swings) < 2 or side[swings[0]] == side[swings[1]]:
-        return passed
-    return float("nan") if t[-1] - passed < t[swings[1]] - t[swings[0]] else passed
+    return settled_after(t, x, limit)
 
 
 def peak_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:

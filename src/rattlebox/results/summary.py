@@ -13,6 +13,7 @@ import numpy as np
 from rattlebox._util.batch_means import mean_interval
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.html import bullets, paragraph, table
+from rattlebox._util.settling import settled_after
 
 from .damper_force import mean_damper_force
 from .free_decay import free_decay
@@ -32,6 +33,8 @@ _MAX_POINTS = 4
 """Points of a structure with all their lines."""
 _MAX_PEAKS = 20
 """Points of a structure with a line of their peak."""
+SETTLED = 0.05
+"""Displacement of a motion that has settled, over the peak of the first run of a comparison."""
 _ROUNDING = 1e-9
 """Motion over the largest motion of any point, below which a point counts as at rest."""
 _CHANNEL_LABELS = {
@@ -70,6 +73,8 @@ class _Row:
         if value is None:
             return MISSING
         if isinstance(value, float):
+            if self.key.startswith("settling_time") and math.isnan(value):
+                return "not reached"
             if self.unit == "order":
                 return f"{value:.1e}" if value else "0"
             if self.unit == "kg^0.5 m":  # has no prefixes
@@ -256,6 +261,16 @@ def _reductions(reference: Mapping[str, Value], values: Mapping[str, Value]) -> 
     return found
 
 
+def _settling_times(reference: Mapping[str, Value], arrays: RunArrays) -> dict[str, Value]:
+    """Return the times after which displacements are within the band around zero that the peaks of a reference set."""
+    found: dict[str, Value] = {}
+    for k, point in enumerate(arrays.points):
+        peak = reference.get(f"peak_displacement[{point}]")
+        if isinstance(peak, float) and peak > 0 and math.isfinite(peak):
+            found[f"settling_time[{point}]"] = settled_after(arrays.time, arrays.displacement[:, k], SETTLED * peak)
+    return found
+
+
 def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
     """Return the peak drift of each storey of a shear building: the displacement of its floor over that of the one below."""
     values: dict[str, Value] = {}
@@ -345,6 +360,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         if key not in detailed:
             continue
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
+        rows.append(_Row(f"settling_time[{point}]", f"settles to {100 * SETTLED:g} % of the peak{where}", "s"))
         rows.append(_steady_row(f"steady_rms_displacement[{point}]", f"RMS displacement, second half{where}", "m"))
         rows.append(_Row(f"peak_acceleration[{point}]", f"peak acceleration{where}", "m/s^2"))
         rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
@@ -529,7 +545,9 @@ class Comparison(_Report):
         The runs.
     values : dict
         For each name the `values` of that run's summary; for all but the first also `peak_reduction[point]` and
-        `rms_reduction[point]`, one minus the ratio to the first.
+        `rms_reduction[point]`, one minus the ratio to the first. If no load or base motion acts at the end of any run,
+        `settling_time[point]`, after which the displacement is at most 5 % of the peak of the first run; NaN if that is not
+        reached.
 
     Raises
     ------
@@ -547,6 +565,9 @@ class Comparison(_Report):
         reference, *others = self.values.values()
         for values in others:
             values |= _reductions(reference, values)
+        if not any(is_driven(run.arrays) for run in runs.values()):
+            for name, run in runs.items():
+                self.values[name] |= _settling_times(reference, run.arrays)
 
     def _cells(self) -> list[tuple[str, ...]]:
         every = tuple(self.values.values())

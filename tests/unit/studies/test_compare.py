@@ -36,6 +36,25 @@ def test_compare_simulates_cases_and_takes_runs() -> None:
     assert rb.plot_comparison(result.runs).axes
 
 
+def test_settling_times_are_those_to_the_peak_of_the_first_run() -> None:
+    """Struck structures are compared by one band, so that a heavier one does not settle sooner by its smaller peak."""
+    pulse = rb.HalfSine(amplitude="4 kN", duration="1.5 ms")
+    struck = {
+        name: case(load=pulse, duration="3 s", structure=rb.SDOF(mass=mass, stiffness="90 kN/m", damping_ratio=0.03))
+        for name, mass in (("light", "20 kg"), ("heavy", "29 kg"))
+    }
+    result = rb.compare({**struck, "short": struck["light"].replaced({"duration": "0.6 s"})})
+    peak = result.values["light"]["peak_displacement[mass]"]
+    for name in ("light", "heavy"):
+        motion = result.runs[name].motion
+        expected = rb.analysis.settling_time(motion.time, motion.displacement.sel(point="mass"), reference=peak)
+        assert result.values[name]["settling_time[mass]"] == expected
+    assert math.isnan(result.values["short"]["settling_time[mass]"])
+    (row,) = [line for line in str(result).splitlines() if line.startswith("settles to 5 % of the peak")]
+    assert row.endswith("not reached")
+    assert "settling_time[mass]" not in rb.compare({**struck, "driven": case()}).values["light"]
+
+
 def test_steady_values_carry_an_interval() -> None:
     """The RMS of the second half of a driven run lies within its interval of the exact one; a short run has none."""
     omega, k, m = 20 * math.pi, 80e3, 20.0
