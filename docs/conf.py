@@ -1,5 +1,6 @@
 import re
 import sys
+import tomllib
 from pathlib import Path
 
 from docutils import nodes
@@ -19,6 +20,11 @@ from rattlebox.engines.status import ADVICE, MESSAGES
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
 
+ROOT = Path(__file__).parents[1]
+REPOSITORY = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]["Repository"]
+PACKAGE = "."
+"""What pip installs: the folder of the source; "rattlebox" once there is a release on PyPI."""
+
 project = "Rattlebox"
 author = "Rattlebox developers"
 release = rattlebox.__version__
@@ -29,12 +35,12 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
 ]
-myst_enable_extensions = ["deflist", "dollarmath"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 exclude_patterns = ["_build", "validation/verification_table.md", "validation/paper_table.md"]
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
-html_title = "Rattlebox"
+html_title = f"Rattlebox {release}"
 html_show_copyright = False
 html_math_renderer = "mathml"
 bibtex_bibfiles = ["theory/sources.bib"]
@@ -158,6 +164,12 @@ def formula(latex, display):
     return re.sub(r"(<mrow>|<math[^>]*>|<mo[^>]*>[=(,]</mo>)<mo>&#x02212;</mo>", sign, text)
 
 
+def fill_in(app, name, content):
+    """Fill in the version, the address of the repository and what pip installs."""
+    text = content[0].replace("@VERSION@", release).replace("@REPOSITORY@", REPOSITORY)
+    content[0] = re.sub(r"(pip install (?:-\S+ )*'?)\.(?=['\[\s])", rf"\g<1>{PACKAGE}", text)
+
+
 def setup(app):
     """Prepare the gallery, add tables of output variables, and write formulas as MathML.
 
@@ -165,6 +177,7 @@ def setup(app):
     """
     gallery_of_examples.prepare()
     app.connect("source-read", gallery_of_examples.show_figure)
+    app.connect("source-read", fill_in)
     app.add_directive("schema", SchemaTable)
     app.add_directive("statuses", Statuses)
     app.add_directive("validity-limits", ValidityLimits)

@@ -5,7 +5,7 @@ For users of Exudyn: a box of balls at the tip of a flexible beam.
 
 Exudyn integrates a cantilever of ANCF elements with an empty box as tip mass, Rattlebox the balls in the box; after each
 step they exchange the velocity of the tip and the force of the balls. For the small deflections here the beam is linear,
-so that `rb.simulate` checks the result. Needs `pip install 'rattlebox[examples]'`.
+so that `rb.simulate` checks the result. Needs `pip install '.[examples]'`.
 
 :doc:`/how-to/stepper` explains it.
 """

@@ -5,7 +5,7 @@ For users of MuJoCo: an impact damper at the tip of a robot arm.
 
 The arm turns about a hinge with the stiffness of its drive and vibrates after a stop. MuJoCo integrates the arm, Rattlebox
 the ball; after each step they exchange the velocity of the tip and the force of the ball. For the small angles here the
-arm is a mass on a spring, so that `rb.simulate` checks the result. Needs `pip install 'rattlebox[examples]'`.
+arm is a mass on a spring, so that `rb.simulate` checks the result. Needs `pip install '.[examples]'`.
 
 :doc:`/how-to/stepper` explains it.
 """

@@ -14,6 +14,8 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 import rattlebox as rb
+from rattlebox.app.draft import FIRST, template
+from rattlebox.cli.demo import BARE, DAMPED, demo_cases
 from rattlebox.studies.design.trial_store import count_trials
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -23,6 +25,7 @@ SCRIPTS = sorted(path for path in EXAMPLES.rglob("*.py") if path.name != "write_
 def test_all_examples_are_checked_here() -> None:
     """No example escapes the checks below."""
     assert {path.stem for path in EXAMPLES.glob("*.toml")} == {
+        "struck",
         "steel_ball",
         "steel_ball_jackson_green",
         "row_on_beam",
@@ -42,6 +45,18 @@ def test_scripts_are_in_the_gallery(script: Path) -> None:
     assert tags and all(isinstance(tag, str) for tag in ast.literal_eval(tags[1]))
     assert re.search(r"^ *assert ", code, re.MULTILINE)
     assert (EXAMPLES.parent / "docs" / "_static" / f"{script.stem}.png").exists()
+
+
+def test_the_first_example_is_the_damper_that_damps() -> None:
+    """Examples, application and demonstration begin with one case, whose ball stops the structure."""
+    case = rb.Case.from_file(EXAMPLES / "struck.toml")
+    assert (EXAMPLES / "struck.toml").read_text(encoding="utf-8") == template(FIRST)
+    demo = demo_cases()
+    assert case.replaced({"name": ""}) == demo[DAMPED].replaced({"name": ""})
+    values = rb.compare({BARE: demo[BARE], DAMPED: case}).values
+    assert values[DAMPED]["settling_time[mass]"] < 0.9 < 4.7 < values[BARE]["settling_time[mass]"]
+    wide = rb.simulate(case.replaced({"damper.gap": 3e-3, "duration": 0.5}))
+    assert not len(wide.arrays.impacts) and any("touched anything" in note for note in wide.notes)
 
 
 @pytest.mark.parametrize("name", ["steel_ball", "steel_ball_jackson_green"])

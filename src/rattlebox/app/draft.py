@@ -16,6 +16,7 @@ import rattlebox as rb
 MOST_CHARACTERS = 400_000
 DEEPEST = 20
 TEMPLATES = {
+    "struck": "Struck structure with a ball",
     "steel_ball": "Ball of the reference paper",
     "row": "Row of three balls",
     "box": "Shaken box of balls",
@@ -24,6 +25,8 @@ TEMPLATES = {
     "building": "Building on moving ground",
 }
 """Titles of the templates, by the name of their file."""
+FIRST = "struck"
+"""Template of a new page."""
 
 Path_ = tuple[str | int, ...]
 
@@ -65,7 +68,7 @@ class Draft:
         self.case: rb.Case | None = None
         self.errors: dict[str, str] = {}
         self.given: dict[str, Any] = {}
-        self.set_text(template("steel_ball"))
+        self.set_text(template(FIRST))
 
     def set_text(self, text: str) -> None:
         """Replace the whole case by the text of a case file."""

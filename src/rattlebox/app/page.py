@@ -16,7 +16,7 @@ from nicegui import run as threads
 import rattlebox as rb
 
 from .binary import decode
-from .draft import TEMPLATES, Draft, Path_, python_script, template
+from .draft import FIRST, TEMPLATES, Draft, Path_, python_script, template
 from .elements import Balls, Charts, Particles
 from .form import Form
 from .jobs import Live, TaskFailed, Worker
@@ -109,7 +109,7 @@ class Page:
         ui.add_head_html(f"<style>{STYLE}</style>")
         with ui.header().classes("items-center bg-slate-800 text-white py-1 gap-3"):
             ui.label("Rattlebox").classes("text-lg font-bold")
-            self._templates = ui.select(TEMPLATES, value="steel_ball", label="template").classes("w-64")
+            self._templates = ui.select(TEMPLATES, value=FIRST, label="template").classes("w-64")
             self._templates.props("dark dense options-dense").on_value_change(self._use_template)
             offer, draft = ui.download.content, self.draft
             for title, icon, action in (

@@ -7,11 +7,12 @@ from typing import Any
 
 from nicegui import ui
 
-from .draft import Draft, Path_, dotted, numeric_paths, quantity, rounded
+from .draft import FIRST, Draft, Path_, dotted, numeric_paths, quantity, rounded
 from .form import written
 
 MOST_SLIDERS = 4
 PINNED = {
+    "struck": ("damper.gap", "damper.contact.restitution", "load.amplitude", "damper.start"),
     "steel_ball": ("damper.gap", "load.amplitude", "damper.start", "damper.ball.radius"),
     "row": ("damper.gap", "load.amplitude", "damper.contact.restitution"),
     "building": ("damper.gap", "damper.contact.restitution", "damper.ball.mass"),
@@ -26,7 +27,7 @@ class Sliders:
 
     def __init__(self, draft: Draft, moved: Callable[[Path_], object]) -> None:
         self._draft, self._moved = draft, moved
-        self.pinned: Sequence[str] = PINNED["steel_ball"]
+        self.pinned: Sequence[str] = PINNED[FIRST]
         self._shown: tuple[list[str], dict[str, Any]] = [], {}
         self.row = ui.row().classes("w-full items-center gap-4")
         self.follow_case()

@@ -18,7 +18,7 @@ from typing import Any
 
 import rattlebox as rb
 
-from .draft import FAILURES, said, template
+from .draft import FAILURES, FIRST, said, template
 from .results import save_run
 from .views import view_of_run
 
@@ -33,7 +33,7 @@ def main(connection: Connection) -> None:
     """Do the tasks of a connection until it closes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the server, which ends its workers
     threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True).start()
-    live(lambda *_: None, template("steel_ball"), ".", False)  # loads all libraries before the first task
+    live(lambda *_: None, template(FIRST), ".", False)  # loads all libraries before the first task
     while True:
         try:
             name, *arguments = connection.recv()

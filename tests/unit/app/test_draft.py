@@ -45,7 +45,7 @@ def test_errors_are_found_by_their_field(draft):
 
 def test_unknown_field_is_reported(draft):
     """A field that does not exist is reported with the one that is meant."""
-    draft.set_text(draft.text.replace('gap = "0.4 mm"', 'gapp = "0.4 mm"'))
+    draft.set_text(draft.text.replace('gap = "2 mm"', 'gapp = "2 mm"'))
     assert any("gap" in text for text in draft.errors.values())
 
 

@@ -6,10 +6,12 @@ import sys
 from pathlib import Path
 from unittest.mock import Mock
 
+import numpy as np
 import pytest
 
 import rattlebox as rb
 from rattlebox.cli import commands
+from rattlebox.cli.demo import BARE, DAMPED, demo_cases
 
 from .conftest import RunCli
 
@@ -54,15 +56,30 @@ def test_run_prints_the_unit_assumed_for_a_record(tmp_path: Path, run_cli: RunCl
     assert "straight lines" in printed
 
 
-def test_demo_compares_both_models(tmp_path: Path, run_cli: RunCli) -> None:
-    """The demo prints one column per model and writes a figure, netCDF files and case files that reproduce its runs."""
+def test_demo_states_the_gain_in_one_sentence(tmp_path: Path, run_cli: RunCli) -> None:
+    """The demo prints the gain with numbers, and writes a figure, netCDF files and case files that reproduce its runs."""
     code, printed, error = run_cli("demo", "-o", tmp_path)
     assert code == 0, error
-    assert "constant alpha" in printed
-    assert "Jackson-Green" in printed
+    bare, damped = (rb.load(tmp_path / f"{name}.nc") for name in ("without_damper", "with_the_ball"))
+    motion = [run.motion.displacement.sel(point="mass") for run in (bare, damped)]
+    peak = float(abs(motion[0]).max())
+    before, after = (rb.analysis.settling_time(each.time, each, reference=peak) for each in motion)
+    lost = 100 * damped.summary().values["share_normal"]
+    line = f"stops the structure in {after:.2g} s instead of {before:.2g} s; {lost:.0f} % of the energy is lost"
+    assert f"A loose steel ball of 6 % of the mass {line} in impacts.\n" in printed
+    assert after < before / 5
     assert (tmp_path / "demo.png").stat().st_size > 10_000
-    again = rb.simulate(rb.Case.from_file(tmp_path / "jackson_green.toml"))
-    assert again.arrays.impacts == rb.load(tmp_path / "jackson_green.nc").arrays.impacts
+    again = rb.simulate(rb.Case.from_file(tmp_path / "with_the_ball.toml"))
+    assert again.arrays.impacts == damped.arrays.impacts
+
+
+def test_the_gain_of_the_demo_does_not_depend_on_the_start_of_the_ball() -> None:
+    """From each start position the ball of the demo stops the structure at least three times as soon."""
+    case = demo_cases()[DAMPED]
+    runs = rb.simulate_many([case.replaced({"damper.start": start}) for start in np.linspace(-0.95, 0.95, 8)])
+    compared = rb.compare({BARE: demo_cases()[BARE], **{str(number): run for number, run in enumerate(runs)}})
+    bare, *damped = (values["settling_time[mass]"] for values in compared.values.values())
+    assert max(damped) < bare / 3
 
 
 @pytest.mark.parametrize(

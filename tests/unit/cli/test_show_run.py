@@ -126,7 +126,7 @@ def test_names_with_markup(run_cli: RunCli) -> None:
     assert "in run.checkpoint." in errors
     assert f"\n{ODD}/fast/run.checkpoint remains" in errors
     assert run_cli("demo", "-o", f"{ODD}/demo")[1].endswith(
-        f"written to {ODD}/demo: demo.png, and a netCDF and a case file of each model\n"
+        f"written to {ODD}/demo: demo.png, and a netCDF and a case file of each run\n"
     )
 
 
