@@ -25,7 +25,7 @@ NARROW = "0.2 mm"
 SPAN, FRAMES = 1.6, 320
 """Time that the animation shows [s], and its number of positions."""
 STYLE = """
-text { font: 15px sans-serif; fill: #1a1a1a; }
+text { font: 19px sans-serif; fill: #1a1a1a; }
 .mark { fill: none; stroke: #6b6b6b; }
 .structure { fill: #e3ecf3; stroke: #0b3d6b; }
 .cavity { fill: #fff; stroke: #0b3d6b; }
@@ -61,7 +61,7 @@ def animation(shown: dict[str, rb.Run]) -> str:
 
     text = film([row(name, run) for name, run in shown.items()], SPAN)
     head = re.sub(r'<svg id="film" ', '<svg xmlns="http://www.w3.org/2000/svg" ', text, count=1)
-    note = f'<text x="560" y="290" style="font-size:12px">{SLOWER} times slower; motion magnified</text>'
+    note = f'<text x="510" y="288" style="font-size:15px">{SLOWER} times slower; motion magnified</text>'
     start = head.index(">") + 1
     end = head.rindex("</svg>")
     paper = '<rect width="100%" height="100%" fill="#fff"/>'
