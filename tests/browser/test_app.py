@@ -416,7 +416,7 @@ def test_map_fills_block_by_block(page):
 def test_saved_runs_are_compared(page, server, tmp_path):
     """Two ticked runs are drawn in one figure, with the differences of their cases and their results."""
     text = rb.Case.from_toml(toml(page)).to_toml().replace('duration = "5.0 s"', 'duration = "1.0 s"')
-    files = stored(server[1], "narrow", text) + stored(server[1], "wide", text.replace('"0.0004 m"', '"0.0008 m"'))
+    files = stored(server[1], "narrow", text) + stored(server[1], "wide", text.replace('"0.002 m"', '"0.001 m"'))
     page.get_by_role("tab", name="Saved runs").click()
     for name in ("narrow", "wide"):
         page.get_by_role("checkbox", name=name).click()
@@ -424,7 +424,7 @@ def test_saved_runs_are_compared(page, server, tmp_path):
     table = page.locator(".q-tab-panel .font-mono", has_text="Differences of the cases")
     table.wait_for()
     lines = [line.split() for line in table.inner_text().splitlines()]
-    assert ["dampers[0].gap", "0.0004", "m", "0.0008", "m"] in lines
+    assert ["dampers[0].gap", "0.002", "m", "0.001", "m"] in lines
     assert lines[1] == ["narrow", "wide"]
     page.wait_for_function(
         "[...document.querySelectorAll('.rb-charts canvas')].filter((c) => c.offsetParent).length === 2"
@@ -451,7 +451,7 @@ def test_case_files_are_opened(page, tmp_path):
     """A case file from elsewhere is opened; one with an unknown key has its message in the page, and loses nothing."""
     page.get_by_text("finished at t = 5 s").wait_for()
     good, bad, binary = (tmp_path / name for name in ("good.toml", "bad.toml", "binary.toml"))
-    text = toml(page).replace('"0.4 mm"', '"0.6 mm"')
+    text = toml(page).replace('"2 mm"', '"1.6 mm"')
     good.write_text(text)
     bad.write_text(text.replace("gap =", "gapp ="))
     binary.write_bytes(b"\x89PNG\xff")
@@ -463,7 +463,7 @@ def test_case_files_are_opened(page, tmp_path):
         page.wait_for_function("!Object.values(mounted_app.elements).some(({tag}) => tag.includes('dialog'))")
 
     choose_file(good)
-    page.wait_for_function("document.querySelector('textarea').value.includes('0.6 mm')")
+    page.wait_for_function("document.querySelector('textarea').value.includes('1.6 mm')")
     page.get_by_text("finished at t = 5 s").wait_for()
     choose_file(bad)
     page.get_by_text("gapp: there is no such field here").first.wait_for()

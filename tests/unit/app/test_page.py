@@ -230,7 +230,7 @@ def test_full_disk_loses_no_result(tmp_path, monkeypatch):
             await user.should_see("computed, but not saved")
             assert [path.name for path in folder.iterdir()] == ["run-001.toml"]  # keeps the name
             with user.client:
-                page.use_text(page.draft.text.replace('"0.4 mm"', '"0.5 mm"'))  # does not end the process
+                page.use_text(page.draft.text.replace('"2 mm"', '"2.5 mm"'))  # does not end the process
                 await page._save_again()
             await user.should_see("no space is left on the disk")
             flag.unlink()
@@ -238,7 +238,7 @@ def test_full_disk_loses_no_result(tmp_path, monkeypatch):
             await until(lambda: "saved as" in page._status.text)
             await user.should_see("saved as run-001")
             assert not page._not_saved.text
-            assert rb.load(folder / "run-001.nc").case.dampers[0].gap == pytest.approx(0.4e-3)
+            assert rb.load(folder / "run-001.nc").case.dampers[0].gap == pytest.approx(2e-3)
 
     asyncio.run(visit())
 
