@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import rattlebox
 from rattlebox._util.narrow import instance
@@ -17,6 +17,7 @@ from rattlebox.model.dampers import ImpactDamper, Sphere
 from rattlebox.model.shocks import HalfSine
 from rattlebox.model.structures import SDOF
 from rattlebox.plots.gain import plot_gain
+from rattlebox.results.run import Run
 from rattlebox.results.summary import Comparison
 from rattlebox.studies.compare import compare
 
@@ -30,14 +31,14 @@ UNTIL = 2.0
 
 def demo_cases() -> dict[str, Case]:
     """Return a structure that a pulse hits, without and with a steel ball in a cavity."""
-    common = {
+    common: dict[str, Any] = {
         "structure": SDOF(mass="20 kg", stiffness="80 kN/m", damping="25.3 N s/m"),
         "load": HalfSine(amplitude="5 kN", duration="1 ms"),
         "duration": "5 s",
     }
     ball = Sphere(radius="33.17 mm", material="steel")
-    damper = ImpactDamper(ball=ball, gap="2 mm", contact=Tsuji(restitution=0.6))
-    return {BARE: Case(**common), DAMPED: Case(**common, damper=damper)}
+    damper = ImpactDamper(balls=(ball,), gap="2 mm", contact=Tsuji(restitution=0.6))
+    return {BARE: Case(**common), DAMPED: Case(**common, dampers=(damper,))}
 
 
 def gain(result: Comparison) -> str:
@@ -54,6 +55,11 @@ def gain(result: Comparison) -> str:
     return f"A loose steel ball of {share:.0f} % of the mass stops the structure in {after} instead of {before}"
 
 
+def runs_of(result: Comparison) -> dict[str, Run]:
+    """Return the runs of the comparison."""
+    return {name: instance(result.runs[name], Run) for name in (BARE, DAMPED)}
+
+
 def figure(result: Comparison) -> Figure:
     """Return the figure of the comparison.
 
@@ -63,7 +69,7 @@ def figure(result: Comparison) -> Figure:
         Comparison of the cases of the demonstration.
     """
     text = "20 kg on a spring, struck once by 5 kN for 1 ms. Eight moments of the first oscillation, motion magnified:"
-    return plot_gain(result.runs[BARE], result.runs[DAMPED], gain(result), text, until=UNTIL)
+    return plot_gain(*runs_of(result).values(), gain(result), text, until=UNTIL)
 
 
 def run_demo(out: Path) -> None:
@@ -85,7 +91,7 @@ def run_demo(out: Path) -> None:
         share = 100 * float(result.values[DAMPED]["share_normal"])
         console.print(f"{gain(result)}; {share:.0f} % of the energy is lost in impacts.", soft_wrap=True)
         list_files(out, rattlebox.__version__, dict.fromkeys(files, ""))
-        for name, run in result.runs.items():
+        for name, run in runs_of(result).items():
             run.save(out / f"{stems[name]}.nc")
             cases[name].to_file(out / f"{stems[name]}.toml")
         figure(result).savefig(out / "demo.png")

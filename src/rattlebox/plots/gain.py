@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -59,7 +61,7 @@ def _draw_moments(axes: Axes, run: Run) -> None:
     axes.set_xlim(-0.5 * _DISTANCE, (MOMENTS - 0.5) * _DISTANCE)
     axes.set_ylim(-0.62, 0.5)
     axes.set_aspect("equal", anchor="W")
-    thin = {"edgecolor": CHANNEL_COLOURS["viscous"], "linewidth": pen(0.8)}
+    thin: dict[str, Any] = {"edgecolor": CHANNEL_COLOURS["viscous"], "linewidth": pen(0.8)}
     for k, moment in enumerate(np.linspace(0.01, 1.0, MOMENTS) * period):
         x, b = (float(np.interp(moment, time, values)) for values in (place, ball))
         rest = k * _DISTANCE
