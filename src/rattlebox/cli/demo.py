@@ -69,7 +69,8 @@ def figure(result: Comparison) -> Figure:
         Comparison of the cases of the demonstration.
     """
     text = "20 kg on a spring, struck once by 5 kN for 1 ms. Eight moments of the first oscillation, motion magnified:"
-    return plot_gain(*runs_of(result).values(), gain(result), text, until=UNTIL)
+    runs = runs_of(result)
+    return plot_gain(runs[BARE], runs[DAMPED], gain(result), text, until=UNTIL)
 
 
 def run_demo(out: Path) -> None:
