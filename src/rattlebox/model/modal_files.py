@@ -119,8 +119,11 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
             masses = _modal_masses(given["modal_masses"], given, in_kg=True)
     if isinstance(modes, dict):
         if masses is None and "modal_masses" in modes:
-            with at("file"):
-                masses = _modal_masses(modes["modal_masses"], given, in_kg=False)
+            with at("file"), errors_of(path, "a table of modes"):
+                try:
+                    masses = _modal_masses(modes["modal_masses"], given, in_kg=False)
+                except Hint as hint:
+                    raise Hint(f"{path}: {hint.complaint}", hint.suggestion or 'modal_masses = ["1 kg", ...]') from None
         modes = _modes_of_toml(modes, path, masses, has_mass_unit=given.get("mass_unit") is not None)
     elif masses is not None:
         modes = replace(modes, modal_masses=masses, mass_unit=1.0)
@@ -167,8 +170,11 @@ def _check_numbers(modes: ModesInFile, path: str) -> None:
     arrays |= {"damping_ratios": modes.damping_ratios, "modal_masses": modes.modal_masses}
     arrays |= {"participation": modes.participation, "total_mass": modes.total_mass}
     for what, array in arrays.items():
-        if array is not None:
-            check_finite(np.asarray(array, dtype=float), f"{path}: {what}")
+        if array is None:
+            continue
+        array = check_finite(np.asarray(array, dtype=float), f"{path}: {what}")
+        if what in ("frequencies", "damping_ratios") and np.any(array < 0):
+            raise DataError(f"{path}: {what} contains {array.min():g}, which is negative", "numbers of zero and more")
 
 
 def _modes_of_toml(table: dict[str, Any], path: str, masses: Vector | None, *, has_mass_unit: bool) -> ModesInFile:
