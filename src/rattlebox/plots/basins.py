@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _COLOURED = 6
-_OTHER, _NONE, _FAILED = _COLOURED, _COLOURED + 1, _COLOURED + 2
+_OTHER, _NONE, _FAILED, _TRANSIENT = _COLOURED, _COLOURED + 1, _COLOURED + 2, _COLOURED + 3
 
 
 def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
@@ -57,8 +57,9 @@ def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
         attractor = maps["attractor"].values.T
         kinds = np.where(attractor > _COLOURED, _OTHER, attractor - 1)
         kinds = np.where(attractor == 0, _NONE, np.where(attractor < 0, _FAILED, kinds))
+        kinds = np.where(attractor == -2, _TRANSIENT, kinds)
         palette = _palette()
-        norm = BoundaryNorm(np.arange(-0.5, _FAILED + 1), _FAILED + 1)
+        norm = BoundaryNorm(np.arange(-0.5, _TRANSIENT + 1), _TRANSIENT + 1)
         axes.pcolormesh(x.edges, y.edges, kinds, cmap=palette, norm=norm, rasterized=True)
         x.label(axes, "x")
         y.label(axes, "y")
@@ -102,14 +103,19 @@ class _Axis:
 
 
 def _palette() -> ListedColormap:
-    """Return colours in even steps of lightness for the attractors, and grey, black and white for other motions."""
+    """Return colours in even steps of lightness for the attractors, and greys, black and white for other motions."""
     order = [0.08, 0.62, 0.86, 0.36, 0.74, 0.22]  # attractors of similar size differ most
-    return ListedColormap([*map_colours()(order), FAINT, INK, "white"])
+    return ListedColormap([*map_colours()(order), FAINT, INK, "white", "0.9"])
 
 
 def _legend_text(maps: xr.Dataset, kind: int, kinds: Any) -> str:
     if kind >= _OTHER:
-        text = {_OTHER: "smaller basins", _NONE: "no period found", _FAILED: "did not finish"}[kind]
+        text = {
+            _OTHER: "smaller basins",
+            _NONE: "no period found",
+            _FAILED: "did not finish",
+            _TRANSIENT: "still transient",
+        }[kind]
         return f"{text}, {_percent(float(np.mean(kinds == kind)))}"
     orbit = maps.isel(orbit=kind)
     period, hits = int(orbit["orbit_period"]), float(orbit["orbit_impacts_per_cycle"])

@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from rattlebox._util.narrow import present
 
 from ..model.errors import Hint, nearest
+from ..studies.orbits import Motion
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen, scaled
 
 if TYPE_CHECKING:
@@ -26,15 +27,19 @@ TEXTS = {
     "approach_speed": "Approach speed",
     "impact_phase": "Phase of the load at impact",
 }
-_PERIODS = ("1", "2", "3", "4", "more", "none")
+_PERIODS = ("1", "2", "3", "4", "more", "none", "transient")
+_NONE, _TRANSIENT = 5, 6
+_LABELS = {"status", "period", "motion"}
+"""Variables over direction and parameter that are no measures."""
 _PHASES = 0.5 * np.pi * np.arange(5)
 _PHASE_NAMES = ("0", "π/2", "π", "3π/2", "2π")
 
 
 def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, size: Size = "column") -> Figure:
-    """Draw a bifurcation diagram: each stroboscopic point or impact is a dot over the parameter.
+    """Draw a bifurcation diagram: each stroboscopic point, impact or measure is a dot over the parameter.
 
-    The strip below shows the period of the motion in cycles, one row for each direction.
+    The strip below shows the period of the motion in cycles, one row for each direction, and where the motion is still
+    transient.
 
     Parameters
     ----------
@@ -42,8 +47,8 @@ def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, 
         Dataset from `rb.bifurcation`.
     of
         At the strobes "relative_position" or "relative_velocity" of a ball, or "displacement" or "velocity" of the
-        structure; of the impacts "approach_speed" or "impact_phase". Default: the approach speed, or the position of the
-        ball if the dataset has no impacts.
+        structure; of the impacts "approach_speed" or "impact_phase"; or "impacts_per_cycle" and other measures of the
+        dataset. Default: the approach speed, or the position of the ball if the dataset has no impacts.
     ball
         Index of the ball, for a quantity of balls.
     size
@@ -61,7 +66,8 @@ def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, 
     ValueError
         If the size is unknown.
     """
-    known = [name for name in TEXTS if name in maps]
+    measures = [str(name) for name, one in maps.items() if one.dims == maps["period"].dims and name not in _LABELS]
+    known = [*(name for name in TEXTS if name in maps), *measures]
     of = of or ("approach_speed" if "approach_speed" in known else "relative_position")
     if of not in known:
         raise Hint(f"of = {of!r}: the diagram has no such quantity", nearest(of, known))
@@ -97,7 +103,7 @@ def _x_values(parameter: xr.DataArray) -> tuple[Any, str]:
 
 def _draw_points(axes: Axes, x: Any, values: xr.DataArray, directions: list[str]) -> None:
     unit = str(values.attrs.get("units", "1"))
-    divisor, prefixed = (1.0, "rad") if unit == "rad" else scaled(values.values, unit)
+    divisor, prefixed = (1.0, unit) if unit in ("rad", "1") else scaled(values.values, unit)
     for number, direction in reversed(list(enumerate(directions))):  # the first one is drawn on top
         y = values.isel(direction=number).values / divisor
         axes.plot(
@@ -111,7 +117,8 @@ def _draw_points(axes: Axes, x: Any, values: xr.DataArray, directions: list[str]
             label=direction,
             rasterized=True,
         )
-    label(axes, "y", TEXTS[str(values.name)], prefixed)
+    text = TEXTS.get(str(values.name)) or _capitalise(str(values.attrs.get("long_name", values.name)))
+    label(axes, "y", text, "" if prefixed == "1" else prefixed)
     axes.margins(y=0.04)
     if unit == "rad":
         axes.set_yticks(_PHASES, _PHASE_NAMES)
@@ -124,10 +131,11 @@ def _draw_periods(axes: Axes, x: Any, maps: xr.Dataset) -> None:
     """Draw the period of the motion in cycles."""
     from cmcrameri import cm  # type: ignore[import-untyped]
 
-    palette = ListedColormap([*cm.devon(np.linspace(0.95, 0.35, len(_PERIODS) - 1)), INK])
+    palette = ListedColormap([*cm.devon(np.linspace(0.95, 0.35, _NONE)), INK, FAINT])
     period = maps["period"].transpose("direction", ...).values
-    last = len(_PERIODS) - 1
-    kinds = np.where(period == 0, last, np.minimum(period, last) - 1).astype(float)
+    kinds = np.where(period == 0, _NONE, np.minimum(period, _NONE) - 1).astype(float)
+    if "motion" in maps:
+        kinds[maps["motion"].transpose("direction", ...).values == Motion.TRANSIENT] = _TRANSIENT
     kinds[maps["status"].transpose("direction", ...).values != 0] = np.nan
     edges = (
         np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]]) if len(x) > 1 else np.array([x[0] - 0.5, x[0] + 0.5])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import nearest
+from ..studies.orbits import Motion
 from .labels import log_ticks
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
 
@@ -35,7 +36,8 @@ def plot_frequency_response(
     """Draw measures of the steady motion over frequency, one colour per level and one panel per measure.
 
     Upward sweeps are solid lines and downward sweeps dashed; the area between two coexisting motions is shaded, and so are
-    the 95 % intervals. Crosses mark motions of impact dampers that are not periodic.
+    the 95 % intervals. Crosses mark motions of impact dampers that are not periodic, triangles those that are still
+    transient.
 
     Parameters
     ----------
@@ -106,8 +108,10 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
                 half = half / level if per_level else half
                 axes.fill_between(frequency, line - half, line + half, color=colour, alpha=0.4, lw=0)
             if _has_impacts(response):
-                irregular = line.where(response.period.sel(level=level, direction=direction) == 0)
-                axes.plot(frequency, irregular, "x", ms=pen(2.5), mew=pen(0.5), color=colour)
+                one = response.sel(level=level, direction=direction)
+                transient = _is_transient(one)
+                axes.plot(frequency, line.where((one.period == 0) & ~transient), "x", color=colour, **_mark())
+                axes.plot(frequency, line.where(transient), "v", color=colour, mfc="none", **_mark())
     text = str(response[name].attrs["long_name"])
     label(axes, "y", text[0].upper() + text[1:] + " over level" * per_level, prefixed)
 
@@ -129,8 +133,21 @@ def _line_handles(response: xarray.Dataset) -> list[Line2D | Patch]:
     if {"up", "down"} <= set(directions):
         handles.append(Patch(color=INK, alpha=0.25, lw=0, label="coexisting"))
     if _has_impacts(response):
-        handles.append(Line2D([], [], color=INK, ls="", marker="x", ms=pen(2.5), mew=pen(0.5), label="irregular"))
+        handles.append(Line2D([], [], color=INK, ls="", marker="x", label="irregular", **_mark()))
+        if _is_transient(response).any():
+            handles.append(Line2D([], [], color=INK, ls="", marker="v", mfc="none", label="transient", **_mark()))
     return [*handles, Line2D([], [], color=FAINT, lw=pen(0.8), label="no damper")]
+
+
+def _mark() -> dict[str, Any]:
+    """Return the size of marks."""
+    return {"ms": pen(2.5), "mew": pen(0.5)}
+
+
+def _is_transient(response: xarray.Dataset) -> xarray.DataArray:
+    """Return where motions still come closer to a periodic one."""
+    found: xarray.DataArray = response.motion == Motion.TRANSIENT if "motion" in response else response.period < 0
+    return found
 
 
 def _has_impacts(response: xarray.Dataset) -> bool:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import json
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +16,53 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 Whole = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 _MAX_ATTRACTORS = 256
+_ROWS = 2048
+"""Motions classified at once, which bounds the memory."""
+_ROUNDING = 1e-9
+"""Differences of dimensionless states that are not examined for a trend."""
+_GOOD, _NEARLY_EXACT = 0.02, 1e-6
+"""Share of the differences that a linear map may leave: to be a description at all, and to need one multiplier only."""
+_EXACTLY = 1e-3
+"""Standard error of a multiplier below which the differences need not be seen to fall."""
+_FALL = 0.03
+"""Ratio of the last to the first differences below which a motion contracts, whatever map it follows."""
 
 
-def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) -> Vector:
-    """Return stroboscopic states in dimensionless numbers of order one.
+class Motion(IntEnum):
+    """Kind of a motion: not finished, periodic, contracting towards a periodic one, or neither."""
+
+    NOT_FINISHED = 0
+    PERIODIC = 1
+    TRANSIENT = 2
+    IRREGULAR = 3
+
+
+class Orbits(NamedTuple):
+    """Classification of motions.
+
+    Attributes
+    ----------
+    period : (...) int
+        Period in cycles; 0 for motions that are not periodic.
+    motion : (...) int
+        Kind, see `Motion`.
+    multiplier : (...) float
+        Factor by which the distance to the periodic motion changes in a cycle, of a motion that contracts; otherwise NaN.
+    residual : (...) float
+        Largest difference between states one period apart, or the smallest such difference of all numbers of cycles.
+    """
+
+    period: Whole
+    motion: Whole
+    multiplier: Vector
+    residual: Vector
+
+
+def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) -> tuple[Vector, Vector]:
+    """Return stroboscopic states with velocities as lengths, and the range of each component, in gaps.
 
     Lengths are divided by the gap of the damper (of the first one for the structure), velocities by gap times angular
     frequency. In motions without impacts, in which balls drift freely, positions and velocities of balls are zero.
@@ -28,7 +71,7 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
     ----------
     maps
         Strobes over a grid: `displacement`, `velocity` (..., sample), `relative_position`, `relative_velocity`
-        (..., sample, ball), and `impacts`.
+        (..., sample, ball), `impacts` and `largest_approach_speed`.
     packed
         The variants of the grid.
     period
@@ -36,64 +79,263 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
 
     Returns
     -------
-    (..., sample, 2 + 2 balls) float
-        Dimensionless states.
+    tuple of array
+        States, (..., sample, 2 + 2 balls), and ranges of motion, (..., 2 + 2 balls). That of the structure is its amplitude
+        at the strobes. That of the velocity of balls is the largest approach speed; of their position the length that
+        belongs to this speed, at most the gap.
     """
     shape = maps.status.shape
     gaps = [np.broadcast_to(0.5 * np.asarray(d.clearance), shape) for d in packed.dampers for _ in d.mass]
     omega = np.broadcast_to(2 * np.pi / np.asarray(period), shape)
     hit = (maps.impacts.values > 0)[..., None]
     parts = [maps.displacement.values / gaps[0][..., None], maps.velocity.values / (gaps[0] * omega)[..., None]]
+    amplitude = np.hypot(*parts).max(axis=-1)
+    ranges = [amplitude, amplitude]
+    speed = maps.largest_approach_speed.values
     for ball, gap in enumerate(gaps):
-        place, speed = maps.relative_position.values[..., ball], maps.relative_velocity.values[..., ball]
-        parts += [np.where(hit, place / gap[..., None], 0.0), np.where(hit, speed / (gap * omega)[..., None], 0.0)]
-    return np.stack(parts, axis=-1)
+        place, rate = maps.relative_position.values[..., ball], maps.relative_velocity.values[..., ball]
+        parts += [np.where(hit, place / gap[..., None], 0.0), np.where(hit, rate / (gap * omega)[..., None], 0.0)]
+        reach = speed / (gap * omega)
+        ranges += [np.minimum(reach, 1.0), reach]
+    # A component at rest, and a ball that rests on its wall, move by rounding only.
+    return np.stack(parts, axis=-1), np.maximum(np.nan_to_num(np.stack(ranges, axis=-1)), 1e-6)
 
 
-def period_of(strobes: Vector, tolerance: float) -> tuple[Whole, Vector]:
-    """Determine the period of motions in cycles.
+def classify(strobes: Vector, tolerance: float, apart: float) -> Orbits:
+    """Classify motions as periodic, transient or irregular.
 
     Parameters
     ----------
     strobes : (..., sample, component) float
-        Dimensionless states.
+        States over the range of the motion.
     tolerance
-        Largest difference between states one period apart.
+        Largest difference between states one period apart, and largest distance to the periodic motion at the end.
+    apart
+        Difference between states of a motion above which they count as different.
+
+    Returns
+    -------
+    Orbits
+        Periods up to half of the number of samples. `rb.basins` states the rule.
+    """
+    shape = strobes.shape[:-2]
+    flat = strobes.reshape(-1, *strobes.shape[-2:])
+    parts = [_classify(flat[k : k + _ROWS], tolerance, apart) for k in range(0, len(flat), _ROWS)]
+    return Orbits(*(np.concatenate(column).reshape(shape) for column in zip(*parts, strict=True)))
+
+
+def _classify(strobes: Vector, tolerance: float, apart: float) -> Orbits:
+    """Classify motions, (n, sample, component)."""
+    rows, count = strobes.shape[:2]
+    longest = max(count // 2, 1)
+    finite: Mask = np.asarray(np.isfinite(strobes).all(axis=(1, 2)))
+    strobes = np.where(finite[:, None, None], strobes, 0.0)
+    largest = np.empty((longest + 1, rows))
+    period = np.zeros(rows, np.int64)
+    motion = np.where(finite, Motion.IRREGULAR, Motion.NOT_FINISHED).astype(np.int64)
+    multiplier = np.full(rows, np.nan)
+    open_ = finite.copy()
+    for n in range(1, longest + 1):
+        steps = strobes[:, n:] - strobes[:, :-n]
+        largest[n] = np.abs(steps).max(axis=(1, 2))
+        if not open_.any():
+            continue
+        verdict = _settled(steps[open_], strobes[open_], n, tolerance)
+        settled, contracting, factor = (np.zeros(rows, kind) for kind in (bool, bool, float))
+        settled[open_], contracting[open_], factor[open_] = verdict
+        period[settled] = n
+        motion[settled] = Motion.PERIODIC
+        motion[contracting] = Motion.TRANSIENT
+        multiplier[contracting] = factor[contracting]
+        open_ &= ~(settled | contracting)
+    falling, factor = _falls(strobes)
+    late = open_ & falling
+    motion[late], multiplier[late] = Motion.TRANSIENT, factor[late]
+    # States closer than `apart` are one: the period is the smallest divisor after which the motion is that close.
+    for n in np.unique(period[period > 0]):
+        for divisor in range(1, n):
+            if n % divisor == 0:
+                period[(period == n) & (largest[divisor] <= apart)] = divisor
+    residual = np.where(period > 0, largest[np.maximum(period, 1), np.arange(rows)], largest[1:].min(axis=0))
+    return Orbits(period, motion, multiplier, np.where(finite, residual, np.nan))
+
+
+def _settled(steps: Vector, strobes: Vector, n: int, tolerance: float) -> tuple[Mask, Mask, Vector]:
+    """Return which motions have the period n, which contract towards one, and the multiplier per cycle of the latter.
+
+    Parameters
+    ----------
+    steps : (k, sample - n, component) float
+        Differences of states n cycles apart.
+    strobes : (k, sample, component) float
+        The states.
+    n
+        Number of cycles.
+    tolerance
+        See `classify`.
+    """
+    size = np.abs(steps).max(axis=2)
+    close = size.max(axis=1) <= tolerance
+    exact = size.max(axis=1) <= _ROUNDING
+    samples = steps.shape[1]
+    if samples < n + 2:
+        # Too few returns to see whether the differences fall: they must be far below the tolerance.
+        return exact | (size.max(axis=1) <= 0.01 * tolerance), np.zeros(len(steps), bool), np.full(len(steps), np.nan)
+    good, factor, error, gain = _linear_map(steps, n)
+    parts = np.array([part.max(axis=1) for part in np.array_split(size, 3 if samples >= 6 else 2, axis=1)])
+    falls = (np.diff(parts, axis=0) < 0).all(axis=0)
+    contracting = good & (falls | (error < _EXACTLY)) & (factor < 1 - 3 * error)
+    # Chaotic and quasi-periodic motion may come closer to itself for once: longer periods must be seen several times.
+    clear = contracting & (n == 1 or samples >= 4 * n + 2) & ((n == 1) | (parts[-1] < 0.5 * parts[0]))
+    # The distance to the limit follows from the last differences, which are (map - 1) times the distance.
+    end = size[:, -max(n, samples // 4) :].max(axis=1)
+    near = end <= tolerance * gain
+    # Differences that no linear map describes are noise, if the states stay together over the whole window.
+    whole = strobes[:, strobes.shape[1] % n :]
+    spread = np.ptp(whole.reshape(len(whole), -1, n, whole.shape[2]), axis=1).max(axis=(1, 2))
+    settled = exact | (contracting & close & near) | (~good & close & (spread <= tolerance))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return settled, clear & ~settled, factor ** (1 / n)
+
+
+def _linear_map(steps: Vector, n: int) -> tuple[Mask, Vector, Vector, Vector]:
+    """Fit differences of states by a linear map of n cycles with one or two multipliers, by least squares.
 
     Returns
     -------
     tuple of array
-        Period, up to half the number of samples, and 0 if there is none; largest difference between states one period
-        apart, or the smallest such difference of all numbers of cycles if there is no period. `rb.basins` states the rule.
+        Whether a map describes the differences; modulus of its largest multiplier, with its standard error; and the
+        smallest modulus of (multiplier - 1).
     """
-    count = strobes.shape[-2]
-    difference = np.stack(
-        [
-            np.abs(strobes[..., n:, :] - strobes[..., : count - n, :]).max(axis=(-2, -1))
-            for n in range(1, max(count // 2, 1) + 1)
-        ]
-    )
-    close = difference <= tolerance
-    period = np.where(close.any(axis=0), close.argmax(axis=0) + 1, 0)
-    residual = np.where(
-        period > 0,
-        np.take_along_axis(difference, np.maximum(period - 1, 0)[None], axis=0)[0],
-        difference.min(axis=0),
-    )
-    return period, residual
+    now, before = steps[:, n:], steps[:, :-n]
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        power = (now * now).sum(axis=(1, 2))
+        slope = (now * before).sum(axis=(1, 2)) / (before * before).sum(axis=(1, 2))
+        left = 1 - slope * (now * before).sum(axis=(1, 2)) / power
+        factor, gain, freedom = np.abs(slope), np.abs(slope - 1), now.shape[1] - 1
+        freedoms = np.full(len(steps), float(max(freedom, 1)))
+        if steps.shape[1] >= 2 * n + 4:
+            new, mid, old = steps[:, 2 * n :], steps[:, n:-n], steps[:, : -2 * n]
+            a11, a12, a22 = ((p * q).sum(axis=(1, 2)) for p, q in ((mid, mid), (mid, old), (old, old)))
+            b1, b2, total = ((new * q).sum(axis=(1, 2)) for q in (mid, old, new))
+            det = a11 * a22 - a12 * a12
+            p, q = (b1 * a22 - b2 * a12) / det, (b2 * a11 - b1 * a12) / det
+            rest = 1 - (p * b1 + q * b2) / total
+            # Two multipliers, as of a spiral, only where one is not enough: the second would be arbitrary.
+            two = (left > _NEARLY_EXACT) & (det > 1e-12 * a11 * a22) & np.isfinite(rest)
+            root = np.sqrt((p * p + 4 * q).astype(complex))
+            roots = np.stack([(p + root) / 2, (p - root) / 2])
+            factor = np.where(two, np.abs(roots).max(axis=0), factor)
+            gain = np.where(two, np.abs(roots - 1).min(axis=0), gain)
+            left = np.where(two, rest, left)
+            freedoms = np.where(two, float(max(new.shape[1] - 2, 1)), freedoms)
+        error = np.sqrt(np.maximum(left, 1e-12) / freedoms)
+    good = np.isfinite(factor) & (left < _GOOD)
+    return good, np.where(good, factor, np.inf), error, np.where(good, gain, 0.0)
 
 
-def attractors(strobes: Vector, period: Whole, residual: Vector, apart: float) -> tuple[Whole, Whole]:
+def _falls(strobes: Vector) -> tuple[Mask, Vector]:
+    """Return which motions come together for any number of cycles, and the factor per cycle."""
+    count = strobes.shape[1]
+    falling, factor = np.zeros(len(strobes), bool), np.full(len(strobes), np.nan)
+    for n in range(1, count // 8 + 1):
+        size = np.abs(strobes[:, n:] - strobes[:, :-n]).max(axis=2)
+        third = size.shape[1] // 3
+        first, last = size[:, :third].max(axis=1), size[:, -third:].max(axis=1)
+        new = ~falling & (last < _FALL * first)
+        falling |= new
+        factor[new] = (np.maximum(last[new], 1e-300) / first[new]) ** (1 / (size.shape[1] - third))
+    return falling, factor
+
+
+def labels(over: tuple[Any, ...], orbits: Orbits) -> dict[str, Any]:
+    """Return the variables `period`, `motion` and `multiplier` of a study.
+
+    Parameters
+    ----------
+    over
+        Dimensions of the study.
+    orbits
+        The classification.
+    """
+    kinds = {
+        "flag_values": [int(kind) for kind in Motion],
+        "flag_meanings": " ".join(kind.name.lower() for kind in Motion),
+    }
+    attrs: dict[str, dict[str, Any]] = {
+        "period": {"long_name": "cycles after which the motion repeats"},
+        "motion": {"long_name": "kind of motion", **kinds},
+        "multiplier": {"long_name": "estimated factor per cycle of the distance to the periodic motion"},
+    }
+    return {name: (over, getattr(orbits, name), {"units": "1", **more}) for name, more in attrs.items()}
+
+
+def without_speed(runs: xarray.Dataset, measures: Any) -> xarray.Dataset:
+    """Return runs without the largest approach speed, which `reduced_strobes` needs, unless it was requested.
+
+    Parameters
+    ----------
+    runs
+        Result of the runs.
+    measures
+        Requested measures.
+    """
+    name = "largest_approach_speed"
+    if name in list(measures):
+        return runs
+    found = runs.drop_vars(name)
+    if "measures" in found.attrs:
+        found.attrs["measures"] = json.dumps([each for each in json.loads(found.attrs["measures"]) if each != name])
+    return found
+
+
+def unsettled(orbits: Orbits, cycles: tuple[int, int], tolerance: float) -> dict[str, str]:
+    """Return the attribute `unsettled`, a sentence about motions that are not periodic; empty if all are.
+
+    Parameters
+    ----------
+    orbits
+        The classification.
+    cycles
+        Numbers of cycles that were skipped and evaluated.
+    tolerance
+        See `classify`.
+    """
+    total = np.count_nonzero(orbits.motion != Motion.NOT_FINISHED)
+    transient, irregular = orbits.motion == Motion.TRANSIENT, orbits.motion == Motion.IRREGULAR
+    parts = []
+    if transient.any():
+        rate = np.clip(orbits.multiplier[transient], 1e-3, 1 - 1e-6)
+        # The distance to the limit is above the difference that one cycle makes.
+        distance = np.maximum(orbits.residual[transient] / (1 - rate), tolerance)
+        more = int(np.ceil(np.max(np.log(distance / (0.1 * tolerance)) / -np.log(rate))))
+        parts.append(
+            f"{np.count_nonzero(transient)} of {total} motions still come closer to a periodic motion, by a factor of up to "
+            f"{rate.max():.4g} in each cycle; try: cycles = ({cycles[0] + more}, {cycles[1]})"
+        )
+    if irregular.any():
+        parts.append(
+            f"{np.count_nonzero(irregular)} of {total} motions do not repeat: they are chaotic, quasi-periodic, have a "
+            f"period of more than {max(cycles[1] // 2, 1)} cycles, or are long transients, whose averages change with the "
+            "cycles; "
+            f"try: cycles = ({10 * max(cycles[0], 1)}, {cycles[1]}) and compare"
+        )
+    return {"unsettled": ". ".join(parts)} if parts else {}
+
+
+def attractors(strobes: Vector, ranges: Vector, period: Whole, residual: Vector, apart: float) -> tuple[Whole, Whole]:
     """Group periodic motions by attractor, independent of their phase.
 
     Parameters
     ----------
     strobes : (n, sample, component) float
-        Dimensionless states.
+        States.
+    ranges : (n, component) float
+        Ranges of motion of the components.
     period, residual : (n,)
-        Results of `period_of`.
+        Results of `classify`.
     apart
-        Largest difference between states of one attractor.
+        Largest difference between states of one attractor, over the range of motion.
 
     Returns
     -------
@@ -111,8 +353,9 @@ def attractors(strobes: Vector, period: Whole, residual: Vector, apart: float) -
         n = int(period[first])
         orbit = strobes[first, -n:]
         alike = left[period[left] == n]
-        ends = strobes[alike, -n:]
-        distance = np.min([np.abs(ends - np.roll(orbit, k, axis=0)).max(axis=(-2, -1)) for k in range(n)], axis=0)
+        away = strobes[alike, -n:] / ranges[first]
+        orbit = orbit / ranges[first]
+        distance = np.min([np.abs(away - np.roll(orbit, k, axis=0)).max(axis=(-2, -1)) for k in range(n)], axis=0)
         members = alike[distance <= apart]
         label[members] = len(best)
         left = left[label[left] == 0]

@@ -134,8 +134,7 @@ def warning_lines(study: xr.Dataset) -> list[str]:
         One line for each validity limit that at least one run exceeded, after a line about short runs.
     """
     lines = [f"warning: {study.attrs['stopped']}"] if "stopped" in study.attrs else []
-    if "too_short" in study.attrs:
-        lines.append(f"warning: {study.attrs['too_short']}")
+    lines += [f"warning: {study.attrs[name]}" for name in ("too_short", "unsettled") if name in study.attrs]
     if "flagged" in study.attrs:
         lines.append(f"warning: the best designs exceed validity limits: {study.attrs['flagged']}")
     if "warnings" not in study or "flag_masks" not in study.warnings.attrs:

@@ -20,7 +20,7 @@ from rattlebox.prepare.particles import settle_all
 from .along_last import AlongLast
 from .case_work import Extra
 from .measures import INTERVAL
-from .orbits import period_of
+from .orbits import Motion, classify
 from .particle_work import ParticleWork
 from .work import Cancelled, Values, proceed_unless
 
@@ -37,8 +37,14 @@ QUANTITIES: dict[str, tuple[str, str, str]] = {
     "phase" + INTERVAL: ("float64", "rad", "half of the 95 % interval, phase to the load"),
     "spread": ("float64", "1", "spread of strobes over the range of motion"),
     "period": ("int64", "1", "cycles after which the motion repeats"),
+    "motion": ("int64", "1", "kind of motion: " + ", ".join(f"{kind:d} {kind.name.lower()}" for kind in Motion)),
+    "multiplier": ("float64", "1", "estimated factor per cycle of the distance to the periodic motion"),
 }
 """Number type, unit and meaning of the quantities of a steady motion."""
+
+
+_APART = 10
+"""Difference of states that count as different, over the tolerance."""
 
 
 def steady_motion(
@@ -62,8 +68,8 @@ def steady_motion(
     Returns
     -------
     dict of str to (...) array
-        `QUANTITIES`. Intervals are those of batch means over the complex amplitudes of the cycles, in the direction of their
-        mean and across it.
+        `QUANTITIES`. Intervals are those of the means of the complex amplitudes of the cycles, in the direction of
+        their mean and across it.
     """
     cycles = (displacement.shape[-1] - 1) // samples
     turns = np.exp(-2j * np.pi * np.arange(samples) / samples)
@@ -77,9 +83,18 @@ def steady_motion(
         )
         positions = np.concatenate([displacement[..., None], others], axis=-1)
         strobes = positions[..., ::samples, :] / np.ptp(positions, axis=-2).max(axis=-1)[..., None, None]
-        period, _ = period_of(strobes, tolerance)
+        orbits = classify(strobes, tolerance, _APART * tolerance)
         spread = np.abs(np.diff(strobes, axis=-2)).max(axis=(-2, -1))
-    values = np.abs(mean), np.abs(mean) * along, np.angle(mean), across, spread, period
+    values = (
+        np.abs(mean),
+        np.abs(mean) * along,
+        np.angle(mean),
+        across,
+        spread,
+        orbits.period,
+        orbits.motion,
+        orbits.multiplier,
+    )
     return dict(zip(QUANTITIES, values, strict=True))
 
 

@@ -9,6 +9,7 @@ import pytest
 import rattlebox as rb
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.continuation import ContinuationWork
+from rattlebox.studies.orbits import Motion
 from rattlebox.studies.runner import run_work
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "bifurcation.py"
@@ -100,6 +101,7 @@ def test_names_can_vary_without_continuation():
         (AMPLITUDE, [1e-3], {"cycles": (5, 1)}, "to evaluate, >= 2"),
         (AMPLITUDE, [1e-3], {"workers": 0}, "workers = 0"),
         (AMPLITUDE, [1e-3], {"tolerance": 0}, "tolerance = 0"),
+        (AMPLITUDE, [1e-3], {"apart": 2}, "apart = 2"),
     ],
 )
 def test_bad_arguments_are_refused(path, values, options, message):
@@ -138,6 +140,30 @@ def test_every_quantity_is_drawn(of, size):
     assert up.size == down.size == values.isel(direction=0).size
     box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
     assert box.x0 > -0.01 and box.y0 > -0.01 and box.x1 < width + 0.01 and box.y1 < height + 0.01
+
+
+@pytest.mark.parametrize("of", ["impacts_per_cycle", "loss_per_cycle", "multiplier"])
+def test_every_measure_is_drawn(of):
+    """Measures over the parameter are drawn with one dot for each value; only quantities over cycles were accepted."""
+    maps = rb.bifurcation(
+        shaken(), AMPLITUDE, [0.5e-3, 1e-3, 1.5e-3], cycles=(20, 8), measure="loss_per_cycle", **QUIET
+    )
+    figure = rb.plot_bifurcation(maps, of)
+    figure.draw_without_rendering()
+    down, up = (line.get_ydata() for line in figure.axes[0].lines)
+    assert down.shape == up.shape == (3,)
+    assert figure.axes[0].get_ylabel().startswith(maps[of].attrs["long_name"].capitalize()[:6])
+    with pytest.raises(rb.CaseError, match="no such quantity"):
+        rb.plot_bifurcation(maps, "period")
+
+
+def test_transient_motions_are_drawn_as_such():
+    """The strip of periods names motions that still contract, and the note of the dataset counts them."""
+    maps = rb.bifurcation(shaken(), AMPLITUDE, [0.2e-3, 0.25e-3, 0.3e-3], cycles=(8, 12), direction="fresh", **QUIET)
+    assert (maps.motion == Motion.TRANSIENT).any() and "come closer" in maps.attrs["unsettled"]
+    assert (maps.period.values[maps.motion.values == Motion.TRANSIENT] == 0).all()
+    figure = rb.plot_bifurcation(maps)
+    assert "transient" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_unknown_quantity_is_refused():

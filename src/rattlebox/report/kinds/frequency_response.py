@@ -14,6 +14,7 @@ from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Picture, Table
 from rattlebox.results.quantities import MISSING, amount
+from rattlebox.studies.orbits import Motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,7 +70,9 @@ def _answer(response: xr.Dataset) -> Iterator[str]:
     irregular = float((response.period == 0).mean())
     if irregular > 0:
         where = amount(irregular, "%", 2)
-        yield f"At {where} of the points the motion is not periodic; amplitudes there are first harmonics."
+        transient = float((response.motion == Motion.TRANSIENT).mean()) if "motion" in response else 0.0
+        still = f", at {amount(transient, '%', 2)} because it is still transient" if transient else ""
+        yield f"At {where} of the points the motion is not periodic{still}; amplitudes there are first harmonics."
 
 
 def _agreement(amplitude: xr.DataArray) -> Iterator[str]:

@@ -17,6 +17,7 @@ from rattlebox.report.kinds.sweep import axes_argument, measures_argument, optio
 from rattlebox.report.parts import Call, Kind, Picture
 from rattlebox.results.case_words import counted
 from rattlebox.results.quantities import amount
+from rattlebox.studies.orbits import Motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,12 +32,27 @@ def _bifurcation_answer(study: xr.Dataset) -> Iterator[str]:
         yield unfinished
     if "period" not in study:
         return
-    periods, counts = np.unique(study.period.values[study.status.values == 0], return_counts=True)
+    finished = study.status.values == 0
+    shown = np.where(_transient(study), _TRANSIENT, study.period.values)[finished]
+    periods, counts = np.unique(shown, return_counts=True)
     for period, count in sorted(zip(periods.tolist(), counts.tolist(), strict=True), key=lambda each: -each[1]):
         what = (
-            f"a period of {counted(int(period), 'cycle')}" if period else "no period, or a longer one than was examined"
+            f"a period of {counted(int(period), 'cycle')}"
+            if period > 0
+            else "no period, or a longer one than was examined"
         )
+        if period == _TRANSIENT:
+            yield f"{amount(count / counts.sum(), '%', 3)} of the motions are still transient."
+            continue
         yield f"{amount(count / counts.sum(), '%', 3)} of the motions have {what}."
+
+
+_TRANSIENT = -2
+
+
+def _transient(study: xr.Dataset) -> Any:
+    """Return where a motion still comes closer to a periodic one."""
+    return study.motion.values == Motion.TRANSIENT if "motion" in study else np.zeros(study.status.shape, bool)
 
 
 def _bifurcation_call(study: xr.Dataset) -> Call | None:
@@ -47,7 +63,7 @@ def _bifurcation_call(study: xr.Dataset) -> Call | None:
     if not isinstance(values, list):
         return None
     given = {"path": path, "values": values, "direction": "both" if len(directions) > 1 else directions[0]}
-    given |= options_of(study, "cycles", "point", "tolerance")
+    given |= options_of(study, "cycles", "point", "tolerance", "apart")
     if "approach_speed" in study:
         given["show"] = "impacts"
     return _with_measures("bifurcation", study, given)
@@ -84,6 +100,8 @@ def _basins_answer(study: xr.Dataset) -> Iterator[str]:
     rest = float((study.attractor == 0).mean())
     if rest:
         yield f"{amount(rest, '%', 3)} of the starts lead to motions without a detected period."
+    if transient := float(_transient(study).mean()):
+        yield f"{amount(transient, '%', 3)} of the starts lead to motions that are still transient."
 
 
 def _lyapunov_question(study: xr.Dataset) -> str:

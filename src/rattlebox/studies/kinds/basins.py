@@ -14,7 +14,16 @@ from rattlebox.model.case import Case
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import with_required
-from rattlebox.studies.orbits import attractors, period_of, reduced_strobes
+from rattlebox.studies.orbits import (
+    Motion,
+    Orbits,
+    attractors,
+    classify,
+    labels,
+    reduced_strobes,
+    unsettled,
+    without_speed,
+)
 from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
@@ -29,7 +38,7 @@ from rattlebox.studies.study import (
 if TYPE_CHECKING:
     import xarray
 
-NO_PERIOD, NOT_FINISHED = 0, -1
+NO_PERIOD, NOT_FINISHED, TRANSIENT = 0, -1, -2
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -53,10 +62,10 @@ class Basins(Study):
     measure
         Names of further measures (`rb.MEASURES`).
     tolerance
-        Largest difference between states one period apart, over the gap (positions) and over gap times angular frequency
-        (velocities).
+        Largest difference between states one period apart, and largest distance to the periodic motion, over the range of
+        the motion.
     apart
-        Largest difference between states of one attractor, in the same units.
+        Largest difference between states that count as the same, over the range of the motion.
     point
         Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     workers, backend, store, progress
@@ -66,8 +75,11 @@ class Basins(Study):
     -------
     xarray.Dataset
         Over the initial values: `status`; `attractor`, 1 for the one with the most initial states, 0 if no period was
-        detected (chaos, a longer period, a motion not yet steady, or more than 256 attractors), -1 if the run did not
-        finish; `period` in cycles, 0 if none was detected; `impacts_per_cycle` and the requested measures. Over `orbit`,
+        detected (chaos, transient chaos, quasi-periodic motion, a longer period, or more than 256 attractors), -1 if the run
+        did not finish, -2 if the motion still contracts towards a periodic one; `period` in cycles, 0 if none was detected;
+        `motion`, whether it is periodic, transient or irregular; `multiplier`, the estimated factor by which a transient
+        motion comes closer to its limit in each cycle; `impacts_per_cycle` and the requested measures. `attrs["unsettled"]`
+        states how many cycles transient motions need. Over `orbit`,
         the attractors: `share` of all initial states, `orbit_period`, `orbit_impacts_per_cycle`; over `strobe` also
         `orbit_displacement`, `orbit_velocity`, and over `ball` `orbit_relative_position`, `orbit_relative_velocity` of the
         member with the smallest residual, NaN beyond its period.
@@ -79,13 +91,22 @@ class Basins(Study):
 
     Notes
     -----
-    With the dimensionless state s_k at the end of cycle k, the period is the smallest number n of cycles for which
+    With the state s_k at the end of cycle k, over the range of the motion, the period is the smallest number n of cycles for
+    which
 
         max over k and components of abs(s_(k + n) - s_k) <= tolerance
 
-    and two motions of period n have the same attractor if for one of the shifts j = 0 ... n - 1
+    and which does not contract: the differences d_k = s_(k + n) - s_k are fitted by d_(k + 2n) = a d_(k + n) + b d_k. With
+    the roots m of m^2 = a m + b, the distance to the periodic motion is at most max abs(d_k) / min abs(m - 1) over the last
+    differences. While it is above `tolerance` and the largest abs(m) is below 1, the motion is transient, and its
+    `multiplier` is abs(m)^(1/n). States that differ by less than `apart` count as the same, so that the period is the
+    smallest divisor of n for which max abs(s_(k + n) - s_k) <= apart. Two motions of period n have the same attractor if for
+    one of the shifts j = 0 ... n - 1
 
         max over k and components of abs(s_k - r_(k + j)) <= apart
+
+    The range is the amplitude of the structure at the strobes, for velocities times the angular frequency; for balls
+    the largest approach speed, and the length that belongs to it, at most the gap.
 
     References
     ----------
@@ -125,7 +146,7 @@ class Basins(Study):
         return ImpactWork(
             self.case,
             read_axes(self.case, self.starts, source="basins"),
-            measures=with_required(("impacts", "impacts_per_cycle"), self.measure),
+            measures=with_required(("impacts", "impacts_per_cycle", "largest_approach_speed"), self.measure),
             cycles=self.cycles,
             samples=self.cycles[1] + 1,
             point=self.point,
@@ -144,10 +165,11 @@ class Basins(Study):
         """Run all initial states and determine their attractors; see `Study.compute`."""
         work, grid = self.work, self.work.grid
         runs = self.run_work(work).load().isel(instant=slice(1, None)).rename(instant="strobe")
-        strobes = reduced_strobes(runs, work.packed, work.output.period)
-        period, residual = period_of(strobes, self.tolerance)
-        flat = strobes.reshape(grid.size, self.cycles[1], -1)
-        label, best = attractors(flat, period.ravel(), residual.ravel(), self.apart)
+        strobes, ranges = reduced_strobes(runs, work.packed, work.output.period)
+        orbits = classify(strobes / ranges[..., None, :], self.tolerance, self.apart)
+        flat, scale = strobes.reshape(grid.size, self.cycles[1], -1), ranges.reshape(grid.size, -1)
+        label, best = attractors(flat, scale, orbits.period.ravel(), orbits.residual.ravel(), self.apart)
+        label[orbits.motion.ravel() == Motion.TRANSIENT] = TRANSIENT
         label[runs.status.values.ravel() != 0] = NOT_FINISHED
         about = {
             "title": "Basins of attraction",
@@ -156,7 +178,10 @@ class Basins(Study):
             "tolerance": self.tolerance,
             "apart": self.apart,
         }
-        found = _with_orbits(runs, label.reshape(grid.shape), period, best).assign_attrs(about, **_plane(self.case))
+        about |= unsettled(orbits, self.cycles, self.tolerance)
+        found = _with_orbits(without_speed(runs, self.measure), label.reshape(grid.shape), orbits, best).assign_attrs(
+            about, **_plane(self.case)
+        )
         return save_result(found, self.kind, self.store)
 
 
@@ -170,7 +195,7 @@ def _plane(case: Case) -> dict[str, float]:
     return {"gap": 0.5 * case.impact_dampers[0].clearance} if alone else {}
 
 
-def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xarray.Dataset:
+def _with_orbits(maps: xarray.Dataset, label: Any, orbits: Orbits, best: Any) -> xarray.Dataset:
     """Add attractors and periods to the runs, and the orbit of each attractor."""
     over = maps.status.dims
     strobes = ("displacement", "velocity", "relative_position", "relative_velocity")
@@ -178,12 +203,12 @@ def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xa
         maps.drop_dims("strobe")
         .drop_vars("impacts")
         .assign(
-            attractor=(over, label, {"units": "1", "long_name": "attractor", "flag_values": [-1, 0]}),
-            period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),
+            attractor=(over, label, {"units": "1", "long_name": "attractor", "flag_values": [-2, -1, 0]}),
+            **labels(over, orbits),
         )
     )
-    found.attractor.attrs["flag_meanings"] = "not_finished no_period"
-    lasts = period.ravel()[best]
+    found.attractor.attrs["flag_meanings"] = "transient not_finished no_period"
+    lasts = orbits.period.ravel()[best]
     share = np.array([np.mean(label == number) for number in range(1, len(best) + 1)])
     own = {
         "share": (share, "share of all starts"),

@@ -18,7 +18,7 @@ from rattlebox.studies.continuation import ContinuationWork, without_states
 from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import with_required
-from rattlebox.studies.orbits import period_of, reduced_strobes
+from rattlebox.studies.orbits import classify, labels, reduced_strobes, unsettled, without_speed
 from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
@@ -66,8 +66,10 @@ class Bifurcation(Study):
     measure
         Names of further measures (`rb.MEASURES`).
     tolerance
-        Largest difference between states one period apart, over the gap (positions) and over gap times angular frequency
-        (velocities).
+        Largest difference between states one period apart, and largest distance to the periodic motion, over the range of
+        the motion.
+    apart
+        Largest difference between states that count as the same, over the range of the motion.
     point
         Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     workers, backend, store, progress
@@ -77,7 +79,8 @@ class Bifurcation(Study):
     -------
     xarray.Dataset
         Over `direction` and the parameter: `status`; `period` in cycles, 0 if it exceeds half of the evaluated cycles or
-        does not exist; `impacts_per_cycle` and the requested measures. Also over `cycle`: `displacement` and `velocity`
+        does not exist; `motion`, `multiplier` and `attrs["unsettled"]` as in `rb.basins`; `impacts_per_cycle` and the
+        requested measures. Also over `cycle`: `displacement` and `velocity`
         of the point, and over `ball`: `relative_position` and `relative_velocity` in the cavity. With show="impacts" over
         `impact`, the last 8 per evaluated cycle, NaN if there are fewer: `impact_phase` of the load [rad],
         `approach_speed` and `contact`.
@@ -90,7 +93,7 @@ class Bifurcation(Study):
     Notes
     -----
     The state once per cycle is a point of the Poincare section at a constant phase of the load, s_k = s(t_0 + k T). The
-    period is determined as in `rb.basins`.
+    period is determined as in `rb.basins`: a motion that still contracts is transient and has no period.
 
     References
     ----------
@@ -124,6 +127,7 @@ class Bifurcation(Study):
     direction: Literal["up", "down", "both", "fresh"] = "both"
     measure: Measures = ()
     tolerance: Fraction = 1e-4
+    apart: Fraction = 1e-2
     point: str | None = None
 
     @cached_property
@@ -136,7 +140,7 @@ class Bifurcation(Study):
         """Runs of all values."""
         count = self.cycles[1]
         options: dict[str, Any] = {
-            "measures": with_required(("impacts", "impacts_per_cycle"), self.measure),
+            "measures": with_required(("impacts", "impacts_per_cycle", "largest_approach_speed"), self.measure),
             "cycles": self.cycles,
             "samples": count + 1,
             "motion": True,
@@ -174,9 +178,28 @@ class Bifurcation(Study):
             "case": self.case.to_toml(),
             "cycles": list(self.cycles),
             "tolerance": self.tolerance,
+            "apart": self.apart,
         }
-        found = _evaluate(runs.load(), self._values, self.tolerance).assign_attrs(about)
+        found = self._evaluate(runs.load()).assign_attrs(about)
         return save_result(found, self.kind, self.store)
+
+    def _evaluate(self, maps: xarray.Dataset) -> xarray.Dataset:
+        """Return the states and impacts of the evaluated cycles with the periods of the motions."""
+        task = self._values
+        over, period = maps.status.dims, np.asarray(task.output.period)
+        maps = maps.isel(instant=slice(1, None)).rename(instant="cycle")
+        strobes, ranges = reduced_strobes(maps, task.packed, period)
+        orbits = classify(strobes / ranges[..., None, :], self.tolerance, self.apart)
+        maps = maps.assign(labels(over, orbits)).assign_attrs(unsettled(orbits, self.cycles, self.tolerance))
+        if "last_time" in maps:
+            load = next(load.signal for load in task.packed.loads if isinstance(load.signal, _core.Harmonic))
+            time = maps.last_time.where(maps.last_time >= _column(task.output.start))
+            phase = (_column(load.frequency) * time + _column(load.phase)) % (2 * np.pi)
+            maps = maps.rename(last="impact", last_approach_speed="approach_speed", last_contact="contact")
+            maps["impact_phase"] = (*over, "impact"), phase.values, {"units": "rad", "long_name": "phase of the load"}
+            for name in ("approach_speed", "contact"):
+                maps[name] = maps[name].where(np.isfinite(maps.impact_phase))
+        return without_speed(maps, self.measure).drop_vars(["impacts", "last_time"], errors="ignore")
 
 
 bifurcation = study_function(Bifurcation)
@@ -191,23 +214,6 @@ def _check_order(design: Grid, direction: str) -> None:
             raise Hint(f"{path}: the values must be strictly rising", "numpy.unique")
     elif direction != "fresh":
         raise Hint(f"{path}: its values are not numbers and have no order", 'direction = "fresh"')
-
-
-def _evaluate(maps: xarray.Dataset, task: ImpactWork, tolerance: float) -> xarray.Dataset:
-    """Return the states and impacts of the evaluated cycles with the periods of the motions."""
-    over, period = maps.status.dims, np.asarray(task.output.period)
-    maps = maps.isel(instant=slice(1, None)).rename(instant="cycle")
-    repeats, _ = period_of(reduced_strobes(maps, task.packed, period), tolerance)
-    maps["period"] = over, repeats, {"units": "1", "long_name": "cycles after which the motion repeats"}
-    if "last_time" in maps:
-        load = next(load.signal for load in task.packed.loads if isinstance(load.signal, _core.Harmonic))
-        time = maps.last_time.where(maps.last_time >= _column(task.output.start))
-        phase = (_column(load.frequency) * time + _column(load.phase)) % (2 * np.pi)
-        maps = maps.rename(last="impact", last_approach_speed="approach_speed", last_contact="contact")
-        maps["impact_phase"] = (*over, "impact"), phase.values, {"units": "rad", "long_name": "phase of the load"}
-        for name in ("approach_speed", "contact"):
-            maps[name] = maps[name].where(np.isfinite(maps.impact_phase))
-    return maps.drop_vars(["impacts", "last_time"], errors="ignore")
 
 
 def _column(number: Any) -> Any:
