@@ -151,7 +151,7 @@ def estimate(study: xr.Dataset, name: str) -> Estimate:
     """Return a measure with its 95 % interval.
 
     Repeated runs are averaged; the interval of their mean is that of Student. Otherwise it is the one of the time average in
-    the run, by batch means.
+    the run.
 
     Parameters
     ----------
@@ -320,7 +320,7 @@ def study_limits(study: xr.Dataset) -> Iterator[Limit]:
         )
     elif case is None or case.dampers:
         has_intervals = any(str(name).endswith(INTERVAL) for name in study.data_vars)
-        what = "Intervals are those of time averages in one run (batch means, 95 %); o" if has_intervals else "O"
+        what = "Intervals are those of time averages in one run (95 %); o" if has_intervals else "O"
         yield Limit(
             "statistical error",
             "1 run of each variant",

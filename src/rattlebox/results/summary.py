@@ -513,7 +513,8 @@ class Summary(_Report):
         `interface_force`, `base_acceleration`, `load[load]` and, with several modes, `modal_displacement[mode 1]`;
         `peak_drift[storey 2]` of shear buildings, `computing_time`. For runs
         that are driven to their end `steady_rms_displacement[point]` over the second half, and
-        `steady_rms_displacement_error[point]`, half of its 95 % interval by batch means (NaN: the run is too short). For
+        `steady_rms_displacement_error[point]`, half of its 95 % interval, see `rattlebox.analysis.mean_interval` (NaN: the
+        run is too short). For
         runs that end in a free decay `equivalent_damping_ratio` of the mode with the largest energy, and
         `damping_amplitude`, at which it holds: see `rattlebox.analysis.equivalent_damping`.
         For 3-D runs instead of the impacts: `particles`, `particle_mass`,

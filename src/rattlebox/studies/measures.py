@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.batch_means import half_widths
+from rattlebox._util.batch_means import FEWEST_VALUES, half_widths
 from rattlebox._util.html import Catalogue
 from rattlebox.model.errors import Hint
 from rattlebox.results.schema import OUTCOMES
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from rattlebox.model.case import Case
 
 
 class Measure(NamedTuple):
@@ -127,6 +129,9 @@ MEASURES = Measures(_MEASURES)
 
 MOST_BATCHES = 64
 """Largest number of parts of a window for the interval of a measure; the same as in the core."""
+_LONG = 63.0
+"""Length of a window that suffices for most intervals, times the decay rate of the least damped mode: 10 cycles over the
+damping ratio."""
 INTERVAL = "_interval"
 """Suffix of the name of the half width of an interval."""
 
@@ -152,8 +157,8 @@ def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: ND
 
     Notes
     -----
-    The method is batch means (see `rattlebox.analysis.mean_interval`) of the measure, of its square for "root mean square",
-    with the half width divided by twice the value, or of its rate for "total".
+    The method is that of `rattlebox.analysis.mean_interval`, for the measure in the parts, of its square for "root mean
+    square", with the half width divided by twice the value, or of its rate for "total".
     """
     average = MEASURES[name].average
     value = np.asarray(value, dtype=float)
@@ -174,13 +179,15 @@ def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: ND
     return half
 
 
-def interval_warning(found: xr.Dataset) -> dict[str, str]:
+def interval_warning(found: xr.Dataset, case: Case) -> dict[str, str]:
     """Return the attribute `too_short` if measures of finished runs lack an interval; otherwise an empty dictionary.
 
     Parameters
     ----------
     found
         Result of a study.
+    case
+        Its case, whose least damped mode determines how long a motion is correlated at most.
     """
     lacking = {}
     for name in map(str, found.data_vars):
@@ -191,9 +198,13 @@ def interval_warning(found: xr.Dataset) -> dict[str, str]:
     if not lacking:
         return {}
     which = ", ".join(f"{name} ({count} of {size} variants)" for name, (count, size) in lacking.items())
+    decay = np.asarray(case.modes.decay)
+    decay = decay[decay > 0]
+    length = f" of {_LONG / decay.min():.3g} s after the transient" if decay.size else ""
     return {
-        "too_short": f"no 95 % interval of {which}: the window holds fewer than ten independent parts, or the motion is not "
-        "steady; try: more cycles to skip and to evaluate, or a longer duration"
+        "too_short": f"no 95 % interval of {which}: the window must have {FEWEST_VALUES} parts and be much longer than the "
+        "correlation of the motion, which must be steady; try: more cycles to skip and to evaluate, or a window"
+        f"{length or ' that is ten times as long'}"
     }
 
 

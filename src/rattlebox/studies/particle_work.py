@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
-from rattlebox._util.batch_means import FEWEST_BATCHES
+from rattlebox._util.batch_means import FEWEST_VALUES
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time
 from rattlebox.analysis.cycle_loss import UNSTEADY, CycleLoss, cycle_loss
@@ -491,7 +491,7 @@ def _batch_limits(start: float, end: float, frequency: float, times: NDArray[np.
         if whole < 1:
             return np.zeros(1)
         # Beds often repeat after two cycles, whose losses alternate: batches of two cycles do not count that as scatter.
-        least = 2 if whole >= 4 * FEWEST_BATCHES else 1
+        least = 2 if whole >= 2 * FEWEST_VALUES else 1
         each = max(least, math.ceil(whole / MOST_BATCHES))
         limits = end - np.arange(whole // each, -1, -1) * each / frequency
     return limits if np.count_nonzero(times >= start) > limits.size else np.zeros(1)

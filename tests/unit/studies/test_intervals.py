@@ -54,6 +54,7 @@ def test_periodic_motion_has_a_narrow_interval():
     short = rb.sweep(ball(), {"load.frequency": ["34.4 Hz"]}, STEADY, cycles=(300, 9), progress=False)
     assert np.isnan(short.rms_interval).all() and np.isfinite(short.rms).all()
     assert "rms (1 of 1 variants)" in short.attrs["too_short"]
+    assert "a window of 31.5 s" in short.attrs["too_short"]  # 10 cycles of the mode over its damping ratio
 
 
 def test_a_free_decay_has_no_interval():
@@ -75,7 +76,7 @@ def test_intervals_do_not_change_what_is_measured():
 
 
 def test_intervals_in_stores_and_responses(tmp_path):
-    """A store returns intervals and the note; a frequency response in both directions has intervals."""
+    """A store returns intervals and the note; a frequency response has intervals where the motion is periodic."""
     result = rb.sweep(
         ball(), {"damper.gap": ["1 mm", "2 mm"]}, ["rms"], cycles=(5, 12), store=tmp_path / "s.zarr", progress=False
     )
@@ -83,9 +84,10 @@ def test_intervals_in_stores_and_responses(tmp_path):
     assert again.rms_interval.load().identical(result.rms_interval.load())
     assert again.attrs.get("too_short") == result.attrs.get("too_short")
     again.load().to_netcdf(tmp_path / "s.nc")
-    response = rb.frequency_response(ball(), rb.linspace("28 Hz", "35 Hz", 4), cycles=(60, 32), progress=False)
+    response = rb.frequency_response(ball(), ["28 Hz", "34.4 Hz"], cycles=(300, 32), direction="up", progress=False)
     assert response.rms_interval.dims == response.rms.dims
-    assert np.isfinite(response.rms_interval).any()
+    assert np.isfinite(response.rms_interval).values.ravel().tolist() == [False, True]
+    assert response.period.values.ravel().tolist() == [0, 1]
 
 
 def test_random_vibration():
@@ -121,11 +123,13 @@ def test_particles_on_a_shaker():
     )
     axes = {"damper.packing.seed": [1, 2, 3, 4, 5, 6]}
     names = ["loss_per_cycle", "reduced_loss", "loss_factor", "impact_loss"]
-    result = rb.sweep(case, axes, names, cycles=(5, 60), progress=False)
+    result = rb.sweep(case, axes, names, cycles=(5, 120), progress=False)
     for name in names:
         half = result[f"{name}_interval"]
         assert np.isfinite(half).mean() > 0.6, name
-        assert 0.3 < float(half.median()) / (1.96 * float(result[name].std())) < 4, name
+        # The effective mass of some parts is near zero: their loss factors scatter more than that of the whole.
+        most = 12 if name == "loss_factor" else 4
+        assert 0.3 < float(half.median()) / (1.96 * float(result[name].std())) < most, name
     short = rb.sweep(case, {"damper.packing.seed": [1]}, names, cycles=(5, 6), progress=False)
     assert np.isnan(short.loss_per_cycle_interval).all() and "loss_per_cycle" in short.attrs["too_short"]
 

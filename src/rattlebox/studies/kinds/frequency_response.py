@@ -25,6 +25,7 @@ from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.kinds.sweep import result_notes
 from rattlebox.studies.measures import interval_warning, with_required
 from rattlebox.studies.observed import Observed
+from rattlebox.studies.orbits import Orbits, unsettled
 from rattlebox.studies.response_work import QUANTITIES, ParticleContinuation, ParticleResponse, steady_motion
 from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
@@ -82,11 +83,13 @@ class FrequencyResponse(Study):
         Over `direction`, `level` and `frequency` [Hz]: `status`; `peak` and `rms` [m]; `amplitude` [m] and `phase` [rad] of
         the first harmonic, amplitude sin(2 pi f t + phase of the load + phase); `impacts_per_cycle` (impact dampers only);
         `spread`, the largest difference of positions one cycle apart, over their range; `period` in cycles, 0 if it exceeds
-        half of the evaluated cycles or does not exist; the requested measures. Averages have a companion such as
-        `amplitude_interval`, half of the width of their 95 % interval; if the cycles are too few it is NaN, and
-        `attrs["too_short"]` names them. With particle dampers also `warnings`, the exceeded validity limits of each run
-        (`flag_meanings`); see `rb.sweep` for frequencies that cannot run. Over level and frequency: `bare_amplitude` [m] of
-        the structure without dampers.
+        half of the evaluated cycles or does not exist; `motion` (1: periodic, 2: transient, which still comes closer to a
+        periodic motion, by the factor `multiplier` in each cycle, 3: neither); the requested measures. Averages have a
+        companion such as `amplitude_interval`, half of the width of their 95 % interval; if the cycles are too few it is
+        NaN, and `attrs["too_short"]` names them; `attrs["unsettled"]` counts motions of impact dampers that are not
+        periodic. With particle dampers also `warnings`, the exceeded validity limits of each run (`flag_meanings`); see
+        `rb.sweep` for frequencies that cannot run. Over level and frequency: `bare_amplitude` [m] of the structure without
+        dampers.
 
     Raises
     ------
@@ -209,7 +212,10 @@ class FrequencyResponse(Study):
             "tolerance": self.tolerance,
         }
         about |= {name: runs.attrs[name] for name in ("measures", "point") if name in runs.attrs}
-        found.attrs = about | notes | interval_warning(found)
+        if not self.case.particle_dampers:
+            orbits = Orbits(found.period.values, found.motion.values, found.multiplier.values, found.spread.values)
+            notes |= unsettled(orbits, self.cycles, self.tolerance)
+        found.attrs = about | notes | interval_warning(found, self.case)
         return save_result(found, self.kind, self.store)
 
 

@@ -150,4 +150,4 @@ def result_notes(work: ImpactWork | ParticleWork, result: xarray.Dataset) -> dic
         Its result.
     """
     refused = first_refused(work, result)
-    return interval_warning(result) | ({"refused": refused} if refused else {})
+    return interval_warning(result, work.case) | ({"refused": refused} if refused else {})
