@@ -4,20 +4,16 @@ import asyncio
 import os
 import re
 import signal
-import time
-from contextlib import asynccontextmanager
 from functools import partial
 
 import pytest
-from nicegui.testing import user_simulation
 from support import full_disk as full_disk_worker
+from support.pages import opened, until
 
 import rattlebox as rb
 from rattlebox.app import jobs, maps, worker
 from rattlebox.app.binary import decode
 from rattlebox.app.draft import template
-from rattlebox.app.jobs import Worker
-from rattlebox.app.page import Page
 
 SHORT_BOX = (
     template("box")
@@ -36,36 +32,6 @@ FAST = template("steel_ball").replace('duration = "5 s"', 'duration = "5 s"\nout
 """A case with terabytes of output."""
 
 pytestmark = pytest.mark.filterwarnings("ignore")  # of the libraries of the server
-
-
-@asynccontextmanager
-async def opened(folder):
-    """Open the page and yield it with the simulated user and the bodies that it publishes."""
-    pages, bodies = [], {}
-
-    def root():
-        pages.append(Page(folder, bodies))
-
-    failure = None
-    async with user_simulation(root=root) as user:
-        await user.open("/")
-        try:
-            yield pages[0], user, bodies
-        except Exception as error:  # the simulation ends only without an exception
-            failure = error
-        pages[0].close()
-        Worker.stop_spare()
-        await asyncio.sleep(0.05)  # a task that is cancelled as it sends the last changes would end only after 2 s
-    if failure is not None:
-        raise failure
-
-
-async def until(condition, longest=60.0):
-    """Wait for a condition."""
-    end = time.monotonic() + longest
-    while not condition():
-        assert time.monotonic() < end, "it took too long"
-        await asyncio.sleep(0.05)
 
 
 def test_case_is_computed_run_and_mapped(tmp_path):
