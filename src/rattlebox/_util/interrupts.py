@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import TypeVar
+
+Result = TypeVar("Result")
 
 _pressed = threading.Event()
 
@@ -68,3 +72,53 @@ def raise_if_pressed() -> None:
         raise KeyboardInterrupt
     if _pressed.is_set() and threading.current_thread() is threading.main_thread():
         raise KeyboardInterrupt
+
+
+class _Stopped(BaseException):
+    """Raised in a call that `StoppableCalls.stop` ends."""
+
+
+class StoppableCalls:
+    """Calls in threads of a pool, which `stop` ends.
+
+    A study that is stopped would otherwise wait for the evaluation of the runs in progress, since Python waits for its
+    threads when it ends.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._threads: set[int] = set()
+        self._stopped = False
+
+    def is_stopped(self) -> bool:
+        """Return whether the calls were stopped; loops in compiled code ask for it."""
+        return self._stopped
+
+    def call(self, function: Callable[[], Result]) -> Result | None:
+        """Return the result of a function; None if the calls are stopped.
+
+        Parameters
+        ----------
+        function
+            The function.
+        """
+        own = threading.get_ident()
+        try:
+            with self._lock:
+                if self._stopped:
+                    return None
+                self._threads.add(own)
+            try:
+                return function()
+            finally:
+                with self._lock:
+                    self._threads.discard(own)
+        except _Stopped:
+            return None
+
+    def stop(self) -> None:
+        """Raise an exception in all calls, at their next line of Python."""
+        with self._lock:
+            self._stopped = True
+            for thread in self._threads:
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(_Stopped))

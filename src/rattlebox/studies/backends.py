@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Protocol, TypeVar
 
 from rattlebox._util.exceptions import CaseError, ResourceError
-from rattlebox._util.interrupts import raise_if_pressed
+from rattlebox._util.interrupts import StoppableCalls, raise_if_pressed
 from rattlebox.model.errors import Hint
 
 from .work import Block, Cancelled, Chain, Values, Work, last_values, run_block
@@ -111,13 +111,15 @@ class Threads:
 
     def run(self, work: Work, chains: Sequence[Chain]) -> Results:
         """Run blocks; see `Backend.run`."""
-        parallel = max(1, min(self.count, len(chains)))
-        stop = threading.Event()
+        parallel, calls = max(1, min(self.count, len(chains))), StoppableCalls()
 
         def submit(block: Block, before: Values | None) -> Future[Values | None]:
-            return pool.submit(run_block, work, block, before, threads=self.count // parallel, cancelled=stop.is_set)
+            def run() -> Values | None:
+                return run_block(work, block, before, threads=self.count // parallel, cancelled=calls.is_stopped)
 
-        with _cancel_on_exit(ThreadPoolExecutor(parallel), stop.set) as pool:
+            return pool.submit(calls.call, run)
+
+        with _cancel_on_exit(ThreadPoolExecutor(parallel), calls.stop) as pool:
             yield from _run_chains(work, chains, parallel, submit)
 
 
