@@ -38,11 +38,10 @@ from .shocks import Shock
 from .signals import Sampled, Signal, Unit, as_several, signals_in
 from .structures import Shaker
 from .tuned_mass import TunedMass, with_tuned_masses
-from .units import PositiveTime, Whole
+from .units import MOST_MEMORY, PositiveTime, Whole
 
 _LONG = 12  # items of a list
 _LONG_TEXT = 300  # characters
-_MEMORY = 16e9  # bytes
 _NOT_COMPUTABLE = "cannot be computed for bodies of these sizes, masses and moduli"
 _USUAL = "numbers of usual sizes"
 
@@ -240,10 +239,10 @@ class Case(Part):
         samples = self.duration * (self.output.rate or 0.0)
         columns = 20 + 6 * self.modes.decay.size + 10 * sum(len(damper.balls) for damper in self.impact_dampers)
         columns += 50 * len(self.particle_dampers)
-        if 8 * samples * columns > _MEMORY:
+        if 8 * samples * columns > MOST_MEMORY:
             raise ResourceError(
                 f"{samples:.3g} samples would take {8e-9 * samples * columns:.0f} GB",
-                f'rate = "{_MEMORY / (80 * columns * self.duration):.1g} Hz", or times',
+                f'rate = "{MOST_MEMORY / (80 * columns * self.duration):.1g} Hz", or times',
                 ["output", "rate"],
             )
 

@@ -11,16 +11,29 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, WithJsonSchema, model_validator
 
+from rattlebox._util.exceptions import ResourceError
+
 from .elementwise import Vector
 from .errors import Hint, at, nearest
 from .signals import UNIT_NAMES, UNITS, Points, Sampled
-from .units import STANDARD_GRAVITY, PositiveFrequency, PositiveTime, Whole, factor_of, parse, parse_density
+from .units import (
+    MOST_MEMORY,
+    STANDARD_GRAVITY,
+    PositiveFrequency,
+    PositiveTime,
+    Whole,
+    factor_of,
+    parse,
+    parse_density,
+)
 
 if TYPE_CHECKING:
     from typing import Self
 
 POINTS_PER_PERIOD = 16
 """Fewest points in a period of the highest frequency of random vibration."""
+
+_BYTES = 60  # memory of a point during the transform
 
 LEVELS: dict[str, tuple[tuple[float, float], ...]] = {
     "gevs_qualification": ((20.0, 0.026), (50.0, 0.16), (800.0, 0.16), (2000.0, 0.026)),
@@ -123,6 +136,13 @@ class Random(Sampled):
 
     @model_validator(mode="after")
     def _in_the_band(self) -> Self:
+        rate, count = self._sampling
+        if _BYTES * count > MOST_MEMORY:  # before any array is made
+            raise ResourceError(
+                f"{count:.3g} points at {rate:g} Hz would take {1e-9 * _BYTES * count:.3g} GB",
+                f'duration = "{0.9 * MOST_MEMORY / (_BYTES * rate):.2g} s", or a lower highest frequency in psd',
+                ["duration"],
+            )
         if not self._harmonics.size:
             raise Hint(
                 f"a signal of {self.duration:g} s has no frequency in the band: its frequencies are multiples of"

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, the unit g [m/s^2]."""
 
+MOST_MEMORY = 16e9
+"""Largest size of the arrays of a signal or of the output of a run [bytes]."""
+
 LARGEST = 1e30
 """Largest number in SI units; its inverse is the smallest positive one. Powers of other numbers would overflow."""
 

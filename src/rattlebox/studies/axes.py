@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -21,7 +22,7 @@ from rattlebox.model.plausibility import plausibility_notes
 
 from .grid import Column, Grid, labels
 from .parameter import Parameter, Values, objects
-from .sampling import RandomDesign, Replicas
+from .sampling import RandomDesign, Replicas, number_of_variants
 
 Axes = (
     Mapping[Any, Any] | RandomDesign | Replicas | Sequence["Mapping[Any, Any] | RandomDesign | Replicas | ParsedAxes"]
@@ -135,6 +136,7 @@ class ParsedAxes:
             a variant is not valid.
         """
         try:
+            number_of_variants(math.prod(direction.size for direction in self.directions), "number of variants")
             directions = [direction.of(case) for direction in self.directions]
             columns = _Columns(case, directions).columns()
             names = [direction.name for direction in directions]

@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import ResourceError
+from rattlebox.model.particle_damper import memory
+
 from .blocks import Blocks
 from .work import Output
 
@@ -112,6 +115,13 @@ class MemoryResult:
         self.blocks = blocks
         self.finished = np.zeros(len(blocks), bool)
         self._plan = plan
+        size = plan.bytes_each * math.prod(plan.shape)
+        if size > memory():
+            raise ResourceError(
+                f"the results of {math.prod(plan.shape):.3g} variants take {1e-9 * size:.3g} GB, and this machine has "
+                f"{1e-9 * memory():.3g} GB",
+                'a store, store="study.zarr", or fewer variants',
+            )
         self._arrays = {variable.name: np.empty(variable.shape, variable.dtype) for variable in plan.variables()}
 
     def __enter__(self) -> Self:

@@ -17,6 +17,27 @@ Method = Literal["sobol", "halton", "lhs", "random"]
 _SOBOL_DIMENSIONS = 21201
 
 
+MOST_VARIANTS = 10**8
+"""Most values of an axis and most variants of a study; the results of one measure then take 1 GB."""
+
+
+def number_of_variants(value: Any, name: str = "count") -> int:
+    """Return a number of values or variants.
+
+    Raises
+    ------
+    CaseError
+        If it is not a whole number from 1 to `MOST_VARIANTS`.
+    """
+    count = whole_number(value, name, 1)
+    if count > MOST_VARIANTS:
+        raise Hint(
+            f"{name} = {count:.3g}: a study has at most {MOST_VARIANTS:.0e} variants",
+            "fewer values, or several studies",
+        )
+    return count
+
+
 @dataclass(frozen=True)
 class Spaced:
     """Values between two quantities; see `linspace` and `geomspace`."""
@@ -35,11 +56,12 @@ class Spaced:
         CaseError
             If `log` is set and an end is zero or the signs differ.
         """
+        count = number_of_variants(self.count)  # also of study files
         if not self.log:
-            return np.linspace(start, stop, self.count)
+            return np.linspace(start, stop, count)
         if not start * stop > 0:
             raise Hint("the ends of geometric spacing must not be zero and must have the same sign", "linear spacing")
-        return np.geomspace(start, stop, self.count)
+        return np.geomspace(start, stop, count)
 
 
 def linspace(start: Any, stop: Any, count: int) -> Spaced:
@@ -108,7 +130,7 @@ def _spaced(start: Any, stop: Any, count: Any, *, log: bool = False) -> Spaced:
             raise Hint(
                 f"{ends}: the ends of geometric spacing must not be zero and must have the same sign", "linear spacing"
             )
-    return Spaced(start, stop, whole_number(count, "count", 1), log)
+    return Spaced(start, stop, number_of_variants(count), log)
 
 
 @dataclass(frozen=True)
@@ -193,7 +215,7 @@ def random_design(
     for path in paths:
         if path not in ranges:
             raise Hint(f"log = {path!r} is not one of the ranges", nearest(path, ranges))
-    return RandomDesign(dict(ranges), whole_number(count, "count", 1), method, whole_number(seed, "seed", 0), paths)
+    return RandomDesign(dict(ranges), number_of_variants(count), method, whole_number(seed, "seed", 0), paths)
 
 
 @dataclass(frozen=True)
@@ -240,7 +262,7 @@ def replicas(reach: Mapping[str, Any], count: int, *, seed: int = 0) -> Replicas
     >>> axes = [{"damper.gap": linspace("0.1 mm", "2 mm", 20)}, replicas({"damper.start": "1 um"}, 64)]
     """
     _by_path(reach, "reach", '{"damper.start": "1 um"}')
-    return Replicas(dict(reach), whole_number(count, "count", 1), whole_number(seed, "seed", 0))
+    return Replicas(dict(reach), number_of_variants(count), whole_number(seed, "seed", 0))
 
 
 def _stratified(width: int, count: int, seed: int) -> Vector:
