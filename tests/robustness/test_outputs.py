@@ -164,3 +164,23 @@ def test_links_and_devices(tmp_path: Path) -> None:
         raise ZeroDivisionError
     assert rb.Case.from_file(target) == case
     assert {path.name for path in tmp_path.iterdir()} == {"target.toml", "link.toml"}
+
+
+@needs_mounts
+def test_full_disk_under_figures(tmp_path: Path) -> None:
+    """On a full disk a figure of each format ends with file and advice, and nothing is left.
+
+    No test saw that matplotlib's writer of PDF hides the error: the figures of a run are PNG.
+    """
+    rb.simulate(rb.reference_case(duration=0.1)).save(tmp_path / "run.nc")
+    (tmp_path / "disk").mkdir()
+    disk = tmp_path / "disk"
+    figures = "for form in png svg pdf; do "
+    fill = f"dd if=/dev/zero of={disk}/fill bs=1k count=36 2>/dev/null; "
+    command = f"{sys.executable} -m rattlebox.cli plot {tmp_path}/run.nc -o {disk}/a.$form"
+    draw = f"{command} || echo ended $?; ls -A {disk}; rm -f {disk}/*; "
+    done = with_own_mounts(f"mount -t tmpfs -o size=40k none {disk}; {figures}{fill}{draw}done")
+    assert done.stdout.split() == ["ended", "2", "fill"] * 3, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    errors = done.stderr.splitlines()
+    assert errors[::2] == [f"error: {disk}/a.{form}: no space is left on the disk" for form in ("png", "svg", "pdf")]
