@@ -91,7 +91,8 @@ inline void add_results(nb::module_& module) {
         .value("energy_error", Status::energy_error)
         .value("escaped", Status::escaped)
         .value("no_rebound", Status::no_rebound)
-        .value("refused", Status::refused);
+        .value("refused", Status::refused)
+        .value("false_contact", Status::false_contact);
     using I = ImpactColumns;
     define<I>(module, "Impacts", "The impact log, one row for each impact.", field("damper", &I::damper),
               field("contact", &I::contact), field("time", &I::time),

@@ -371,8 +371,39 @@ protected:
                         retry = true;
                     }
                 } else if (after.value <= 0) {
-                    if (after.rate >= 0 && (before.value <= rounding || before.rate >= 0))
-                        continue; // it opens by less than rounding errors
+                    // It opens within the step. Rounding errors may have closed it, but it must not get
+                    // deeper.
+                    if (after.rate >= 0 && (before.value <= rounding || before.rate >= 0)) {
+                        const real deepest = std::fmin(before.value, 0.0) - rounding;
+                        if (before.rate < 0)
+                            turn_back(
+                                -before.rate, -after.rate,
+                                [&](const real* y) { return -gap(problem_, contact(c), y).rate; },
+                                [&](const real* y) { return value(y) < deepest; });
+                        if (before.rate >= 0 || value(trial_.data()) >= deepest) continue;
+                    }
+                    // It opens and closes again within the step. Rounding errors may hide that it opens.
+                    bool is_hidden = false;
+                    const auto rate = [&](const real* y) { return gap(problem_, contact(c), y).rate; };
+                    if (before.value <= rounding && before.rate > 0 && after.rate < 0) {
+                        const real where = locate(end, std::fmax(before.value, 0.0), after.value, value);
+                        integrator_.step(system_, y_.data(), where, partial_.data());
+                        is_hidden = !(rate(partial_.data()) < 0);
+                    }
+                    if (is_hidden) {
+                        const real turn = locate(end, before.rate, after.rate, rate);
+                        integrator_.step(system_, y_.data(), turn, partial_.data());
+                        const real since = partial_[clock];
+                        if (value(partial_.data()) > rounding) {
+                            consider(Event::touch, c, 1,
+                                     [&](const real* y) { return y[clock] <= since ? 1 : value(y); });
+                            continue;
+                        }
+                        if (hard()) return stick_pressed(c);
+                        phase(c) = Phase::touching;
+                        retry = true;
+                        continue;
+                    }
                     consider(Event::touch, c, std::fmax(before.value, 0.0), value);
                 } else if (before.rate < 0 && after.rate > 0 &&
                            std::fmin(before.value, after.value) <
@@ -451,7 +482,7 @@ protected:
     // A touching contact is pressed together by the forces; it sticks from the begin of this step.
     void stick_pressed(int c) {
         unload_system(y_);
-        stick(c);
+        stick({c});
     }
 
     void handle_event(Event event, int which) {

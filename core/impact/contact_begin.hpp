@@ -16,8 +16,9 @@ namespace rattlebox {
 
 class ContactBegin : protected RunState {
     IsolatedContact isolated_contact_, partial_contact_;
-    State partial_state_;   // at a sample within an isolated contact
-    Ledger contact_ledger_; // of one contact
+    State partial_state_;        // at a sample within an isolated contact
+    Ledger contact_ledger_;      // of one contact
+    std::vector<int> uncertain_; // contacts that may begin during an isolated one
     real rest_speed_ =
         0; // of contacts that close from rest: speed at which contact force and inertia balance
     real largest_impact_speed_ =
@@ -34,7 +35,35 @@ protected:
 
     // ---- first touch
 
+    // Whether the gap of contact c is zero and does not open, to the rounding errors of its terms and those
+    // that they accumulate in time. This must hold wherever a contact begins: the energy balance holds for a
+    // contact at any gap.
+    bool is_touching(int c) const {
+        constexpr real rounding = 64 * epsilon;
+        const Contact& k = contact(c);
+        const Damper& damper = problem_.dampers[damper_of(c)];
+        const real* y = state_.y.data();
+        real length = damper.clearance, speed = 0; // magnitudes of the terms of the gap and of its rate
+        for (const int side : {k.below, k.above}) {
+            if (side != wall) {
+                length += std::fabs(positions(problem_, y)[side]);
+                speed += std::fabs(velocities(problem_, y)[side]);
+                continue;
+            }
+            for (std::size_t m = 0; m < damper.shape.size(); ++m) {
+                length += std::fabs(damper.shape[m] * y[2 * m]);
+                speed += std::fabs(damper.shape[m] * y[2 * m + 1]);
+            }
+        }
+        const Gap g = gap(problem_, k, y);
+        const real curvature = std::fabs(flight_.curvature(static_cast<std::size_t>(c)));
+        return std::fabs(g.value) <= rounding * (length + state_.t * speed) &&
+               g.rate <= rounding * (speed + state_.t * curvature);
+    }
+
     void begin_contact_at(int c) {
+        if (!is_touching(c))
+            return fail(Status::false_contact, c, gap(problem_, contact(c), state_.y.data()).value);
         const real speed = std::max(system_.approach(state_.y.data(), c), 0.0);
         const Rebound r = rebound(contact(c).restitution, speed);
         if (r.outside) return fail(Status::law_domain, c, speed);
@@ -61,8 +90,36 @@ protected:
         return sum;
     }
 
-    // Whether no other contact can begin during this one.
-    bool is_isolated(int c, real speed, real longest) const {
+    // Returns a bound of the second derivative of a gap over a time without contacts.
+    real acceleration_bound(int c, real length) const {
+        const Contact& k = contact(c);
+        if (k.below != wall && k.above != wall) return 0; // both balls have the same acceleration
+        const Damper& damper = problem_.dampers[damper_of(c)];
+        real bound = std::fabs(damper.gravity);
+        std::vector<real> largest(loads_.active() ? loads_.size() : 0);
+        for (std::size_t l = 0; l < largest.size(); ++l) {
+            real taylor[Series::order + 1] = {}, power = 1;
+            loads_.piece(l).add_taylor(state_.t, 1, Series::order, taylor);
+            for (const real term : taylor) largest[l] += std::fabs(term) * power, power *= length;
+            if (loads_.load(l).base) bound += largest[l];
+        }
+        for (std::size_t m = 0; m < damper.shape.size(); ++m) {
+            const Mode& mode = problem_.modes[m];
+            real force = 0;
+            for (std::size_t l = 0; l < largest.size(); ++l)
+                force += std::fabs(loads_.load(l).shape[m]) * largest[l];
+            const real speed =
+                std::sqrt(2 * ModeState{state_.y[2 * m], state_.y[2 * m + 1]}.energy(mode)) + force * length;
+            bound +=
+                std::fabs(damper.shape[m]) * ((std::sqrt(mode.stiffness) + 2 * mode.decay) * speed + force);
+        }
+        return bound;
+    }
+
+    // Whether no other contact can begin during this one, or can be excluded when it is solved: these are
+    // stored in uncertain_.
+    bool is_isolated(int c, real speed, real longest) {
+        uncertain_.clear();
         if (!system_.active.empty() || !system_.stuck.empty() || !released_.empty()) return false;
         for (int other = 0; other < problem_.contact_count(); ++other) {
             if (other == c) continue;
@@ -70,6 +127,10 @@ protected:
             if (damper.balls == 1 && contact(other).damper == contact(c).damper) continue;
             const Gap g = gap(problem_, contact(other), state_.y.data());
             if (!(g.value > longest * (std::fabs(g.rate) + 4 * speed))) return false;
+            // The impulse of the contact is at most about twice that of an elastic one.
+            const real share = std::fabs(system_.coupling(contact(other), contact(c))) * contact(c).mass;
+            const real change = 4 * share * speed + acceleration_bound(other, longest) * longest;
+            if (!(g.value > longest * (std::fabs(g.rate) + change))) uncertain_.push_back(other);
         }
         return true;
     }
@@ -119,6 +180,8 @@ protected:
             return false;
         if (!is_isolated(c, speed, isolated_contact_.longest_time()) || !isolated_contact_.solve())
             return false;
+        for (const int other : uncertain_)
+            if (!(isolated_contact_.smallest_gap(contact(other)) > 0)) return false;
         contact_ledger_
             .clear(); // a separate ledger, because the sums of a long run have larger rounding errors
         const IsolatedContact::Instant end = isolated_contact_.end();

@@ -254,7 +254,9 @@ public:
         return 4 * epsilon * (half + std::fabs(positions(problem_, state.y.data())[ball]));
     }
 
-    // Returns the first touch of the watched contacts within the horizon, and the state there.
+    // Returns the first touch of the watched contacts within the horizon, and the state there. A contact is
+    // returned only if its own gap at that time is closed to rounding: contacts whose safe times differ by
+    // less than the resolution of time are all evaluated there.
     FirstTouch first_touch(const std::vector<char>& is_watched, State& out) const {
         const auto end = [&](FirstTouch touch) {
             at(touch.time, out);
@@ -265,10 +267,10 @@ public:
         real s = 0;
         out = *start_;
         for (int iteration = 0; iteration < max_iterations; ++iteration) {
+            const real resolution = epsilon * s;
             real next = infinity;
-            int nearest = -1;
             for (std::size_t c = 0; c < safe_.size(); ++c) {
-                if (safe_[c] <= s) {
+                if (safe_[c] - s <= resolution) {
                     const Contact& contact = problem_.contacts[c];
                     const Gap g = gap(problem_, contact, out.y.data());
                     const real rounding = gap_rounding(contact, out);
@@ -277,21 +279,18 @@ public:
                         const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
                         safe_[c] = s - 2 * g.value / (g.rate + std::sqrt(std::max(room, 0.0)));
                     } else {
-                        if (g.value <= rounding && g.rate < 0) return {s, static_cast<int>(c)};
+                        const FirstTouch touch{s, static_cast<int>(c)};
+                        if (g.value <= rounding && g.rate < 0) return touch;
                         safe_[c] = s + safe_time(c, g, out.y.data());
+                        if (safe_[c] - s <= resolution) {
+                            if (g.value <= rounding + 4 * resolution * std::fabs(g.rate)) return touch;
+                            return {s, -1}; // open; a new flight has a finer resolution
+                        }
                     }
                 }
-                if (safe_[c] < next) {
-                    next = safe_[c];
-                    nearest = static_cast<int>(c);
-                }
+                next = std::min(next, safe_[c]);
             }
             if (!(next < horizon_)) return end({horizon_, -1});
-            if (next - s <= epsilon * s) { // closer than the resolution of time
-                const Contact& contact = problem_.contacts[static_cast<std::size_t>(nearest)];
-                const Gap g = gap(problem_, contact, out.y.data());
-                if (g.rate <= 0 || g.value >= -gap_rounding(contact, out)) return {s, nearest};
-            }
             s = next;
             at(s, out);
         }

@@ -411,6 +411,37 @@ public:
         add_to_ledger(now, ledger);
     }
 
+    // Returns the smallest gap of another contact up to the end of this one; between the nodes below that of
+    // a convex function. Modes that turn by more than one radian between start and end give minus infinity.
+    real smallest_gap(const Contact& other) const {
+        const Damper& damper = problem_.dampers[static_cast<std::size_t>(other.damper)];
+        const Instant last = end();
+        if (other.below == wall || other.above == wall)
+            for (std::size_t k = 0; k < modes_; ++k)
+                if (damper.shape[k] != 0 && problem_.modes[k].rate() * last.time > 1) return -infinity;
+        State probe(problem_);
+        Ledger unused(problem_);
+        Gap before = gap(problem_, other, start_->y.data());
+        real smallest = before.value, since = 0;
+        for (int i = 0; i <= n; ++i) {
+            if (i < n)
+                store_node(i, probe);
+            else
+                store_end(last, probe, unused);
+            const Gap here = gap(problem_, other, probe.y.data());
+            const real now = i < n ? integral_[clock][i] : last.time;
+            smallest = std::fmin(smallest, here.value);
+            if (before.rate < 0 && here.rate > 0) { // where the tangents at both ends meet
+                const real turn =
+                    (here.value - before.value - here.rate * (now - since)) / (before.rate - here.rate);
+                smallest = std::fmin(smallest, before.value + before.rate * turn);
+            }
+            before = here;
+            since = now;
+        }
+        return smallest;
+    }
+
     // Returns the phase at which the contact opens.
     real last_psi() const { return grid_.end; }
 
@@ -518,22 +549,27 @@ private:
         }
     }
 
+    // Stores the state at a node.
+    void store_node(int i, State& out) const {
+        Instant node;
+        node.time = integral_[clock][i];
+        node.x = x_[i];
+        node.rate = w_[i];
+        real drift = constant_ * node.time - (w_[i] - speed_);
+        if (base_moves_) drift += integral_[base_row()][i];
+        for (std::size_t k = 0; k < modes_; ++k) {
+            drift += weight(k) * integral_[first_mode + k][i];
+            out.y[2 * k] = q_[k][i];
+            out.y[2 * k + 1] = p_[k][i];
+        }
+        advance_balls(node, drift, out);
+    }
+
     // Subtracts the momentum of the balls at the nodes, on which the base does work.
     void subtract_ball_momentum(Row& power) const {
         State probe(problem_);
         for (int i = 0; i < n; ++i) {
-            Instant node;
-            node.time = integral_[clock][i];
-            node.x = x_[i];
-            node.rate = w_[i];
-            real drift = constant_ * node.time - (w_[i] - speed_);
-            if (base_moves_) drift += integral_[base_row()][i];
-            for (std::size_t k = 0; k < modes_; ++k) {
-                drift += weight(k) * integral_[first_mode + k][i];
-                probe.y[2 * k] = q_[k][i];
-                probe.y[2 * k + 1] = p_[k][i];
-            }
-            advance_balls(node, drift, probe);
+            store_node(i, probe);
             const real* v = velocities(problem_, probe.y.data());
             for (std::size_t b = 0; b < problem_.ball_mass.size(); ++b)
                 power[i] -= problem_.ball_mass[b] * v[b];

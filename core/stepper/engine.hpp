@@ -54,6 +54,8 @@ inline const char* stop_reason(Status status) {
         return "the energy balance has an error of more than 1 % of the energy put in; shorten the time step";
     case Status::interrupted:
         return "the step was interrupted";
+    case Status::false_contact:
+        return "a contact began at an open gap, which is an error of the engine; shorten the step";
     default:
         return "the engine stopped";
     }

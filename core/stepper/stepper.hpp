@@ -119,9 +119,10 @@ class Stepper {
         const std::size_t dampers = end_.dampers.size(), modes = end_.displacement.size();
         serialize(reader);
         if (!(time_ >= 0 && time_ < infinity) ||
-            !(status_ >= Status::finished && status_ <= Status::refused) || result_.force.size() != dampers ||
-            result_.moment.size() != dampers || end_.dampers.size() != dampers ||
-            end_.displacement.size() != modes || end_.velocity.size() != modes)
+            !(status_ >= Status::finished && status_ <= Status::false_contact) ||
+            result_.force.size() != dampers || result_.moment.size() != dampers ||
+            end_.dampers.size() != dampers || end_.displacement.size() != modes ||
+            end_.velocity.size() != modes)
             throw std::invalid_argument("the state is damaged");
         if (status_ == Status::finished)
             engine_->restore(reader);

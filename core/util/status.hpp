@@ -14,6 +14,7 @@ enum class Status : int {
     escaped = 7,         // a particle has left its cavity
     no_rebound = 8,      // a dashpot cannot have a restitution of zero
     refused = 9,         // a variant of a study that cannot be run; not used by the core
+    false_contact = 10,  // a contact began at an open gap; an error of the engine
 };
 
 } // namespace rattlebox

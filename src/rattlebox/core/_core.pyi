@@ -597,6 +597,8 @@ class Status(enum.IntEnum):
 
     refused = 9
 
+    false_contact = 10
+
 class Impacts(Node):
     """The impact log, one row for each impact."""
 

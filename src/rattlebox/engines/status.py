@@ -32,6 +32,10 @@ MESSAGES: dict[Status, str] = {
         "cannot represent."
     ),
     Status.refused: "The case cannot be run as it is.",
+    Status.false_contact: (
+        "{contact}: a contact began at t = {time:.9g} s with a gap of {value:.3g} m, although it must be zero; this is an "
+        "error of the engine. Do not use the results."
+    ),
 }
 
 _SIZES = "Check the units of stiffnesses, masses and speeds."
@@ -64,6 +68,9 @@ ADVICE: dict[Status, dict[str, str]] = {
         "dem": "Shorten dt, or use a smaller fraction.",
     },
     Status.refused: {"": "Run the variant alone to see the reason."},
+    Status.false_contact: {
+        "": "Compare with another method, and report the case.",
+    },
     Status.escaped: {
         "": "Shorten dt, or use a stiffer contact.",
         "softened": "Shorten dt, or lower the softening.",
