@@ -104,7 +104,7 @@ inline void add_results(nb::module_& module) {
                       field("flights", &Counts::flights), field("contact_steps", &Counts::contact_steps),
                       field("rejected_steps", &Counts::rejected_steps),
                       field("collocated", &Counts::collocated), field("extrapolated", &Counts::extrapolated),
-                      field("sticks", &Counts::sticks));
+                      field("sticks", &Counts::sticks), field("simultaneous_impacts", &Counts::simultaneous));
     using R = RunResult;
     define<R>(
         module, "Result",

@@ -133,6 +133,7 @@ protected:
             deepest = std::max(deepest, depth(a));
         }
         deepest_ = square(square(deepest));
+        largest_overlap_ = std::fmax(largest_overlap_, deepest_);
         for (std::size_t j = 0; j < system_.active.size(); ++j) {
             const Active& a = system_.active[j];
             // A contact that starts from rest has no scale of its own.
@@ -482,7 +483,9 @@ protected:
     // A touching contact is pressed together by the forces; it sticks from the begin of this step.
     void stick_pressed(int c) {
         unload_system(y_);
-        stick({c});
+        std::vector<Closing> pressed(1);
+        pressed[0].contact = c;
+        stick(pressed);
     }
 
     void handle_event(Event event, int which) {

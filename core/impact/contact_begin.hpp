@@ -1,16 +1,20 @@
 // First touch: an isolated contact solved as a whole, the begin of a soft contact, or a hard impact.
 //
-// A hard impact changes the approach rate v to -e v. Contacts that have come to rest are constraints; their
-// impulses follow from one linear system, from which constraints that would pull are removed one by one.
+// A hard impact changes the approach rate v to -e v. Impacts at the same time, to rounding, are resolved
+// together, and contacts that have come to rest are constraints: the impulses of all are the solution of one
+// linear complementarity problem.
 //
-// B. Brogliato, Nonsmooth Mechanics, 3rd ed., Springer 2016, doi:10.1007/978-3-319-28664-8.
+// J. J. Moreau, in Nonsmooth Mechanics and Applications, Springer 1988, p. 1,
+// doi:10.1007/978-3-7091-2624-0_1; C. Glocker, F. Pfeiffer, Nonlinear Dynamics 7 (1995) 471,
+// doi:10.1007/BF00121109; B. Brogliato, Nonsmooth Mechanics, 3rd ed., Springer 2016,
+// doi:10.1007/978-3-319-28664-8.
 #pragma once
 
 #include <iterator>
 
 #include "impact/isolated_contact.hpp"
 #include "impact/run_state.hpp"
-#include "math/linear_system.hpp"
+#include "math/complementarity.hpp"
 
 namespace rattlebox {
 
@@ -28,37 +32,45 @@ protected:
     real last_jump_ =
         0; // time of the last jump of a force or its rate, except by contacts that began at rest
 
+    real largest_overlap_ = 0; // so far, expected from the approach speeds
+
     template <class Archive> void serialize(Archive& a) {
         RunState::serialize(a);
-        a(rest_speed_, largest_impact_speed_, last_jump_);
+        a(rest_speed_, largest_impact_speed_, last_jump_, largest_overlap_);
     }
 
     // ---- first touch
 
-    // Whether the gap of contact c is zero and does not open, to the rounding errors of its terms and those
-    // that they accumulate in time. This must hold wherever a contact begins: the energy balance holds for a
-    // contact at any gap.
-    bool is_touching(int c) const {
-        constexpr real rounding = 64 * epsilon;
-        const Contact& k = contact(c);
+    // Sums of the magnitudes of the terms of a gap and of its rate.
+    struct GapTerms {
+        real length = 0, speed = 0;
+    };
+    GapTerms gap_terms(int c) const {
         const Damper& damper = problem_.dampers[damper_of(c)];
         const real* y = state_.y.data();
-        real length = damper.clearance, speed = 0; // magnitudes of the terms of the gap and of its rate
-        for (const int side : {k.below, k.above}) {
+        GapTerms sums{damper.clearance, 0};
+        for (const int side : {contact(c).below, contact(c).above}) {
             if (side != wall) {
-                length += std::fabs(positions(problem_, y)[side]);
-                speed += std::fabs(velocities(problem_, y)[side]);
+                sums.length += std::fabs(positions(problem_, y)[side]);
+                sums.speed += std::fabs(velocities(problem_, y)[side]);
                 continue;
             }
             for (std::size_t m = 0; m < damper.shape.size(); ++m) {
-                length += std::fabs(damper.shape[m] * y[2 * m]);
-                speed += std::fabs(damper.shape[m] * y[2 * m + 1]);
+                sums.length += std::fabs(damper.shape[m] * y[2 * m]);
+                sums.speed += std::fabs(damper.shape[m] * y[2 * m + 1]);
             }
         }
-        const Gap g = gap(problem_, k, y);
-        const real curvature = std::fabs(flight_.curvature(static_cast<std::size_t>(c)));
-        return std::fabs(g.value) <= rounding * (length + state_.t * speed) &&
-               g.rate <= rounding * (speed + state_.t * curvature);
+        return sums;
+    }
+
+    // Whether the gap of contact c is zero, to the rounding errors of its terms and those that they
+    // accumulate in time. This must hold wherever a contact begins: the energy balance holds for a contact at
+    // any gap.
+    bool is_touching(int c) const {
+        const GapTerms terms = gap_terms(c);
+        const real value = gap(problem_, contact(c), state_.y.data()).value;
+        const real length = terms.length + largest_overlap_; // without clearance there are no other lengths
+        return std::fabs(value) <= 64 * epsilon * (length + state_.t * terms.speed);
     }
 
     void begin_contact_at(int c) {
@@ -69,11 +81,11 @@ protected:
         if (r.outside) return fail(Status::law_domain, c, speed);
         result_.counts.extrapolated += r.extrapolated;
         if (!hard() && !possible(contact(c).normal, r)) return fail(Status::no_rebound, c, speed);
-        if (hard()) return hard_impact(c, speed, r.e);
         if (speed == 0) { // by rounding; the forces decide whether it closes
             phase(c) = Phase::touching;
             return;
         }
+        if (hard()) return hard_impacts(c);
         if (problem_.settings.collocation && solve_isolated(c, speed, r.e)) return;
         begin_contact(c, speed, r.e, 0);
     }
@@ -315,6 +327,20 @@ protected:
 
     // ---- hard impacts
 
+    // A contact that closes, or that is to stick.
+    struct Closing {
+        int contact = 0;
+        real speed = 0, restitution = 0;
+        real change = 0; // of the approach rate
+        real impulse = 0;
+        std::size_t number = 0; // in the log
+    };
+    std::vector<Closing> closing_;
+    // Of the complementarity problem: contacts, whether impulses of both signs are allowed, and the arrays.
+    std::vector<int> taking_part_;
+    std::vector<char> both_signs_;
+    std::vector<real> matrix_, need_, impulses_;
+
     // Applies the impulse j to both sides of contact c.
     void impulse(int c, real j) {
         const Contact& k = contact(c);
@@ -345,11 +371,12 @@ protected:
         return (k.above == wall ? z : dv[k.above]) - (k.below == wall ? z : dv[k.below]);
     }
 
+    // Returns the shortest period of modes and loads, or 0 if there is none: bounces then become touching
+    // contacts by their speed alone, and the result does not depend on the duration of the run.
     real shortest_period() const {
-        real rate = 2 * pi / problem_.settings.duration;
+        real rate = loads_.frequency();
         for (const Mode& mode : problem_.modes) rate = std::max(rate, std::sqrt(mode.stiffness));
-        rate = std::max(rate, loads_.frequency());
-        return 2 * pi / rate;
+        return rate > 0 ? 2 * pi / rate : 0;
     }
 
     // Returns the largest speed of a ball relative to its cavity.
@@ -387,78 +414,116 @@ protected:
                 phase(c) = Phase::open;
     }
 
-    // Reduces the approach rate of c by `change` and returns the impulse. Stuck contacts stay closed without
-    // rebound unless their impulse would be attractive; the same holds for touching contacts if c does not
-    // rebound. The impulses of all are the solution of one linear system. In a slow impact the impulses of
-    // stuck contacts may be attractive, because otherwise balls in two cavities could detach each other
-    // without end.
-    real reduce_approach(int c, real change, bool rebounds, bool slow) {
-        std::vector<int> constraints;
-        std::copy_if(system_.stuck.begin(), system_.stuck.end(), std::back_inserter(constraints),
-                     [&](int other) { return other != c; });
-        std::ptrdiff_t bilateral = slow ? static_cast<std::ptrdiff_t>(constraints.size()) : 0;
+    // Reduces the approach rates of contacts by their `change`, and computes their impulses. Resting contacts
+    // take part: stuck ones stay closed without rebound unless their impulse would be attractive, and
+    // touching ones, too, if none of the contacts rebounds. The impulses of all follow from one
+    // complementarity problem. In slow impacts those of stuck contacts may be attractive, because otherwise
+    // balls in two cavities could detach each other without end; with `sticks` those of the contacts may be,
+    // too.
+    void reduce_approaches(std::vector<Closing>& contacts, bool rebounds, bool slow, bool sticks = false) {
+        const auto is_resting = [&](int other) {
+            return std::none_of(contacts.begin(), contacts.end(),
+                                [&](const Closing& each) { return each.contact == other; });
+        };
+        taking_part_.clear();
+        std::copy_if(system_.stuck.begin(), system_.stuck.end(), std::back_inserter(taking_part_),
+                     is_resting);
+        both_signs_.assign(taking_part_.size(), slow);
         for (int other = 0; other < problem_.contact_count() && !rebounds; ++other)
-            if (other != c && phase(other) == Phase::touching) constraints.push_back(other);
-        constraints.push_back(c);
-        std::vector<real> matrix, impulses;
-        for (;;) {
-            const std::size_t n = constraints.size();
-            matrix.resize(n * n);
-            impulses.assign(n, 0.0);
-            impulses[n - 1] = -change;
-            for (std::size_t i = 0; i < n; ++i)
-                for (std::size_t j = 0; j < n; ++j)
-                    matrix[i * n + j] = system_.coupling(contact(constraints[i]), contact(constraints[j]));
-            solve_definite(matrix, impulses);
-            const auto weakest = std::min_element(impulses.begin() + bilateral, impulses.end() - 1);
-            if (weakest == impulses.end() - 1 || !(*weakest < 0)) break;
-            constraints.erase(constraints.begin() + (weakest - impulses.begin()));
+            if (phase(other) == Phase::touching && is_resting(other)) taking_part_.push_back(other);
+        const std::size_t resting = taking_part_.size();
+        both_signs_.resize(resting, false);
+        both_signs_.resize(resting + contacts.size(), sticks);
+        need_.assign(resting, 0.0);
+        for (const Closing& each : contacts) {
+            taking_part_.push_back(each.contact);
+            need_.push_back(each.change);
         }
-        for (std::size_t i = 0; i < constraints.size(); ++i) impulse(constraints[i], impulses[i]);
-        return impulses.back();
+        matrix_.clear();
+        for (const int i : taking_part_)
+            for (const int j : taking_part_) matrix_.push_back(-system_.coupling(contact(i), contact(j)));
+        solve_complementary(matrix_, need_, both_signs_, impulses_);
+        for (std::size_t i = 0; i < taking_part_.size(); ++i) impulse(taking_part_[i], impulses_[i]);
+        for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].impulse = impulses_[resting + i];
     }
 
-    void hard_impact(int c, real speed, real e) {
+    // Whether an open contact closes now, to the rounding errors of its gap and of the time.
+    bool closes_now(int c) const {
+        const Gap g = gap(problem_, contact(c), state_.y.data());
+        return phase_[static_cast<std::size_t>(c)] == Phase::open && g.rate < 0 &&
+               g.value <= 16 * epsilon * (gap_terms(c).length + state_.t * -g.rate);
+    }
+
+    // Resolves the impact of contact c together with those of all contacts that close at the same time.
+    // Newton's law holds for each: with the approach rates v before and v' after the impact and the impulses
+    // p, p >= 0, -v' >= e v, and one of both is an equality. Each contact loses p (1 - e) v / 2.
+    void hard_impacts(int first) {
         // Impacts that become slow without a closing force (inelastic collapse) end in the same way.
         largest_impact_speed_ = std::fmax(largest_impact_speed_, largest_speed());
-        const bool slow =
-            speed < problem_.settings.stick * largest_impact_speed_ || speed < velocity_rounding();
-        if (slow) e = 0;
-        const real j = reduce_approach(c, (1 + e) * speed, e > 0, slow);
-        Impact impact;
-        impact.contact = c;
-        impact.time = state_.t;
-        impact.approach_speed = speed;
-        impact.restitution = e;
-        impact.separation_speed = e * speed;
-        impact.duration = 0;
-        impact.peak_force = infinity;
-        impact.energy_lost = 0.5 * j * (1 - e) * speed;
-        impact.complete = true;
-        contact_ended_ = true;
-        ledger_.normal[damper_of(c)] += impact.energy_lost;
-        const auto number = static_cast<std::size_t>(result_.add_impact(impact));
-        release_moving();
-        const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
-        const real acceleration = gap_acceleration(c);
-        if (acceleration < 0 &&
-            2 * rebound_speed < -acceleration * problem_.settings.stick * shortest_period()) {
-            result_.impacts[number].energy_lost += stick(c);
-        } else if (e == 0) {
-            phase(c) = Phase::touching;
+        const real slowest = std::fmax(problem_.settings.stick * largest_impact_speed_, velocity_rounding());
+        bool rebounds = false, slow = true;
+        closing_.clear();
+        for (int c = 0; c < problem_.contact_count(); ++c) {
+            if (c != first && !closes_now(c)) continue;
+            Closing& each = closing_.emplace_back();
+            each.contact = c;
+            each.speed = system_.approach(state_.y.data(), c);
+            const Rebound r = rebound(contact(c).restitution, each.speed);
+            if (r.outside) return fail(Status::law_domain, c, each.speed);
+            result_.counts.extrapolated += c != first && r.extrapolated;
+            each.restitution = each.speed < slowest ? 0 : r.e;
+            each.change = (1 + each.restitution) * each.speed;
+            rebounds = rebounds || each.restitution > 0;
+            slow = slow && each.speed < slowest;
         }
+        reduce_approaches(closing_, rebounds, slow);
+        contact_ended_ = true;
+        std::erase_if(closing_, [](const Closing& each) { return !(each.impulse > 0); }); // opened by others
+        for (Closing& each : closing_) {
+            Impact impact;
+            impact.contact = each.contact;
+            impact.time = state_.t;
+            impact.approach_speed = each.speed;
+            impact.restitution = each.restitution;
+            impact.separation_speed = each.restitution * each.speed;
+            impact.duration = 0;
+            impact.peak_force = infinity;
+            impact.energy_lost = 0.5 * each.impulse * (1 - each.restitution) * each.speed;
+            impact.complete = true;
+            ledger_.normal[damper_of(each.contact)] += impact.energy_lost;
+            each.number = static_cast<std::size_t>(result_.add_impact(impact));
+        }
+        result_.counts.simultaneous += closing_.size() > 1;
+        release_moving();
+        // All decisions before any contact sticks, so that their order does not matter.
+        std::vector<Closing> sticking;
+        for (const Closing& each : closing_) {
+            const int c = each.contact;
+            const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
+            const real acceleration = gap_acceleration(c);
+            if (acceleration < 0 &&
+                2 * rebound_speed < -acceleration * problem_.settings.stick * shortest_period())
+                sticking.push_back(each);
+            else if (each.restitution == 0)
+                phase(c) = Phase::touching;
+        }
+        if (sticking.empty()) return;
+        stick(sticking);
+        for (const Closing& each : sticking)
+            result_.impacts[each.number].energy_lost += 0.5 * each.impulse * each.change;
     }
 
-    // Makes c a stuck contact; returns the energy lost by its remaining approach rate.
-    real stick(int c) {
-        const real rate = system_.approach(state_.y.data(), c);
-        const real lost = 0.5 * reduce_approach(c, rate, false, true) * rate;
-        ledger_.normal[damper_of(c)] += lost;
-        ++result_.counts.sticks;
-        system_.stuck.push_back(c);
-        phase(c) = Phase::closed;
+    // Makes contacts stuck. Their remaining approach rates are lost, with the energy impulse x change / 2.
+    void stick(std::vector<Closing>& contacts) {
+        for (Closing& each : contacts) each.change = system_.approach(state_.y.data(), each.contact);
+        reduce_approaches(contacts, false, true, true);
+        for (const Closing& each : contacts) {
+            ledger_.normal[damper_of(each.contact)] += 0.5 * each.impulse * each.change;
+            ++result_.counts.sticks;
+            system_.stuck.push_back(each.contact);
+            phase(each.contact) = Phase::closed;
+        }
         release_moving();
-        return lost;
     }
 
 public:

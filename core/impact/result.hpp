@@ -23,7 +23,8 @@ struct Impact {
 
 struct Counts {
     long events = 0, flights = 0, contact_steps = 0, rejected_steps = 0, collocated = 0, extrapolated = 0,
-         sticks = 0;
+         sticks = 0,
+         simultaneous = 0; // instants at which several hard impacts were resolved together
 };
 
 struct Samples {

@@ -1,8 +1,8 @@
 // The event-driven 1-D engine: flights and contacts in turn, with samples.
 //
 // Soft contacts are integrated (impact/closed_contacts.hpp). With Method::newton impacts are instantaneous,
-// and a contact whose bounces become shorter than a given fraction of the shortest period sticks until its
-// force would become attractive.
+// and a contact whose bounces become shorter than a given fraction of the shortest period of modes and loads,
+// or slower than that fraction of the largest speed, sticks until its force would become attractive.
 #pragma once
 
 #include "impact/closed_contacts.hpp"
@@ -60,9 +60,14 @@ class Trajectory : protected ClosedContacts {
             const int tendency = flight_.tendency(problem_.contacts[c]);
             if (tendency > 0) phase_[c] = Phase::open;
             if (tendency < 0) is_pressing_[c] = pressing = true;
-            if (tendency < 0 && hard()) stick(static_cast<int>(c));
         }
-        if (pressing && hard()) return;
+        if (pressing && hard()) {
+            std::vector<Closing> pressed;
+            for (std::size_t c = 0; c < phase_.size(); ++c)
+                if (is_pressing_[c]) pressed.emplace_back().contact = static_cast<int>(c);
+            stick(pressed);
+            return;
+        }
         const FirstTouch touch = flight_.first_touch(is_watched_, flight_end_);
         real length = touch.time;
         if (pressing) {

@@ -255,6 +255,21 @@ def extrapolation_notes(count: int) -> Iterator[str]:
         )
 
 
+def simultaneous_notes(count: int) -> Iterator[str]:
+    """Yield a note about hard impacts at the same time.
+
+    Parameters
+    ----------
+    count
+        Number of instants with several impacts.
+    """
+    if count:
+        yield (
+            f"note: at {count} instant{'s' * (count > 1)} several hard impacts began at the same time and were resolved "
+            "together; a small difference of their times would change the result: compare with EventDriven"
+        )
+
+
 def _beyond_measured_impacts(
     case: Case, index: int, name: str, impacts: Table, own: NDArray[np.bool_]
 ) -> Iterator[str]:

@@ -14,7 +14,7 @@ from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.responses import responses
-from rattlebox.engines.run_notes import extrapolation_notes, impact_notes
+from rattlebox.engines.run_notes import extrapolation_notes, impact_notes, simultaneous_notes
 from rattlebox.engines.status import contact_name, describe, final_status
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
@@ -198,6 +198,7 @@ def _result(case: Case, raw: _core.Result) -> Run:
     if raw.status == Status.finished:
         notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.impacts)
         notes += tuple(extrapolation_notes(raw.counts.extrapolated))
+        notes += tuple(simultaneous_notes(raw.counts.simultaneous_impacts))
     return Run(
         arrays,
         case,

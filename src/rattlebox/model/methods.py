@@ -87,18 +87,22 @@ class Newton(Part):
     restitution
         Restitution law, or a number from 0 to 1; default that of the contact.
     stick
-        Threshold of sticking. Two bodies stick if their next flight would be shorter than this part of the shortest period;
-        they do not rebound if they approach more slowly than this part of the largest speed of a ball in its cavity so far.
+        Threshold of sticking. Two bodies stick if their next flight would be shorter than this part of the shortest period
+        of modes and loads; they do not rebound if they approach more slowly than this part of the largest speed of a ball in
+        its cavity so far.
     max_events
         Largest number of flights and impacts.
 
     Notes
     -----
     An impact exchanges momentum in no time: the bodies separate with v' = e(v) v, their approach speed v times the
-    restitution e.
+    restitution e. Impacts at the same time are resolved together: with the impulses p, p >= 0, v' >= e v and
+    p (v' - e v) = 0 for each of them.
 
     References
     ----------
+    C. Glocker and F. Pfeiffer (1995), Nonlinear Dynamics 7, 471-497, doi:10.1007/BF00121109.
+
     B. Brogliato (2016), Nonsmooth Mechanics, 3rd ed., Springer, doi:10.1007/978-3-319-28664-8.
     """
 

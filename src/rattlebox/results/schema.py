@@ -329,6 +329,7 @@ COUNTS: dict[str, str] = {
     "collocated": "contacts solved by collocation",
     "extrapolated": "impacts outside of the measured speeds of a law",
     "sticks": "balls that came to rest at a wall or a ball",
+    "simultaneous_impacts": "instants at which several hard impacts were resolved together",
     "impacts": "impacts, including those that are not logged",
     "steps": "time steps",
     "rebuilds": "rebuilds of neighbour lists",
