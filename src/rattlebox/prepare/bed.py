@@ -28,6 +28,8 @@ TOLERANCE = 0.05
 """Difference between the measured and the stated bed fill above which a run has a note."""
 MIN_FRICTION = 0.2
 """Coefficient of friction below which a full cavity does not stay full: its bed sinks under gravity."""
+FULL = 0.97
+"""Volume of a bed over that of its cavity from which the bed counts as full; balls in the last layer touch the lid."""
 BULK_POINTS = 2**19
 
 
@@ -127,6 +129,34 @@ def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
         yield (
             f"the bed of {name} fills {100 * fill:.3g} % of the cavity, not {100 * asked:.3g} %, because the number of "
             f"particles, {count}, follows from the usual density of such a bed: use count with {more} of them"
+        )
+
+
+def loose_note(damper: ParticleDamper, name: str, fill: float, acceleration: float) -> Iterator[str]:
+    """Yield a warning if a bed fills its cavity without being locked in it.
+
+    Randomly packed particles touch only some of their neighbours and walls, so that a full bed has room to move.
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    name
+        Name of the damper, for the warning.
+    fill
+        Volume of its bed over that of the cavity; NaN without gravity.
+    acceleration
+        Expected amplitude of the acceleration of the cavity [m/s^2].
+    """
+    is_full = damper.particles[0].bed_fill == 1 or fill > FULL
+    weight = float(np.linalg.norm(damper.gravity))
+    if is_full and isinstance(damper.packing, Bed) and acceleration > weight:
+        level = f"at {acceleration / weight:.2g} times gravity" if weight else "without gravity"
+        yield (
+            f"warning: the full bed of {name} is loose: randomly packed particles have room to move, and {level} they do so "
+            "like a dense fluid, which loses up to about 2 m V^2 in a cycle; only particles that touch each other and all "
+            "walls are locked; try: packing = rb.Positions with a block of them, if those of the real damper are pressed "
+            "together"
         )
 
 

@@ -15,7 +15,7 @@ from rattlebox.model.errors import at
 from rattlebox.model.methods import EventDriven, Output
 from rattlebox.model.packing import Bed
 from rattlebox.model.particle_case import direction_of_base, inertia_along
-from rattlebox.prepare.bed import bed_level, bed_note
+from rattlebox.prepare.bed import bed_level, bed_note, loose_note
 from rattlebox.prepare.laws import pack_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
 from rattlebox.prepare.pressed import pressed_notes
@@ -97,7 +97,8 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
     for index, (damper, table, speed) in enumerate(zip(case.particle_dampers, tables, step.speeds, strict=True)):
         with at(*(("dampers", index) if len(tables) > 1 else ("damper",))):
             pressed += pressed_notes(damper, table, speed, damper.label(index))
-    fills, more = _fills(case, [start - case.modes.q0 @ shape for start, shape in zip(starts, shapes, strict=True)])
+    inside = [start - case.modes.q0 @ shape for start, shape in zip(starts, shapes, strict=True)]
+    fills, more = _fills(case, inside, [motion.acceleration for motion in step.motions])
     return Prepared(case, (*notes, *more, *pressed), step, tables, starts, fills)
 
 
@@ -238,18 +239,23 @@ def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | Non
     return positions
 
 
-def _fills(case: Case, positions: Sequence[Array]) -> tuple[dict[str, float], list[str]]:
+def _fills(
+    case: Case, positions: Sequence[Array], accelerations: Sequence[float]
+) -> tuple[dict[str, float], list[str]]:
     """Return the fills of all cavities together, and notes on beds; positions are relative to the cavities."""
     dampers = case.particle_dampers
     volume = sum(damper.cavity.volume for damper in dampers)
     solid = sum(4 / 3 * math.pi * float(np.sum(damper.contents.radius**3)) for damper in dampers)
     fills = {"fill_ratio": solid / volume}
     notes: list[str] = []
+    beds = [math.nan for _ in dampers]
     if all(isinstance(damper.packing, Bed) and damper.up is not None for damper in dampers):
         beds = [bed_level(damper, place)[0] for damper, place in zip(dampers, positions, strict=True)]
         fills["bed_fill"] = sum(bed * damper.cavity.volume for bed, damper in zip(beds, dampers, strict=True)) / volume
         for index, (damper, bed) in enumerate(zip(dampers, beds, strict=True)):
             notes += bed_note(damper, damper.label(index), bed)
+    for index, (damper, bed, acceleration) in enumerate(zip(dampers, beds, accelerations, strict=True)):
+        notes += loose_note(damper, damper.label(index), bed, acceleration)
     return fills, notes
 
 

@@ -374,3 +374,51 @@ def test_particles_that_cannot_be_compacted_are_refused_with_the_largest_number(
     monkeypatch.setattr(settling, "MAX_ITERATIONS", iterations)
     with pytest.raises(rb.CaseError, match=r"cannot be inserted at random; at random this cavity holds at most \d+"):
         settle(damper(rb.Box(size=("9 mm", "9 mm", "9 mm")), count=13))
+
+
+def shaken_can(level: float, **options: Any) -> rb.Run:
+    """Return a short run of a can that is shaken up and down at a level in g, with a full bed or another packing."""
+    usual: dict[str, Any] = {
+        "particles": rb.Particles(material="steel", diameter="5 mm", bed_fill=1),
+        "packing": rb.Compacted(seed=2),
+        "gravity": (0, 0, -9.80665),
+    }
+    damper = rb.ParticleDamper(
+        cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
+        contact=rb.Tsuji(restitution=0.8),
+        friction=0.3,
+        direction="z",
+        softening=300,
+        **usual | options,
+    )
+    motion = rb.Harmonic(amplitude=(9.80665 * level, "m/s^2"), frequency="60 Hz", direction="z")
+    case = rb.Case(
+        structure=rb.Shaker(motion=motion), damper=damper, duration="0.4 s", output=rb.Output(rate="2.4 kHz")
+    )
+    return rb.simulate(case, progress=False)
+
+
+def test_a_full_bed_is_loose_and_a_block_is_locked() -> None:
+    """Above 1 g a full random bed loses energy like a dense fluid, with a warning; a block that touches all walls does not.
+
+    No test saw that a full bed is not locked: none shook one above its weight.
+    """
+    places = np.stack(np.meshgrid(*[(np.arange(4) - 1.5) * 5e-3] * 3), -1).reshape(-1, 3)
+    block = {"particles": rb.Particles(material="steel", diameter="5 mm"), "packing": rb.Positions(positions=places)}
+    runs = {name: shaken_can(2.0, **options) for name, options in (("bed", {}), ("block", block))}
+    harmonic = {name: rb.analysis.shaken.harmonic_loss(run, frequency=60, after=0.2) for name, run in runs.items()}  # type: ignore[attr-defined]
+    assert harmonic["bed"].reduced_loss.min() > 0.5
+    assert abs(harmonic["block"].reduced_loss).max() < 0.005
+    mass = harmonic["block"].effective_mass / runs["block"].arrays.particle_mass[0]
+    assert mass.min() > 1 and mass.max() < 1.05
+    warned = {name: any("is loose" in note for note in run.notes) for name, run in runs.items()}
+    assert warned == {"bed": True, "block": False}
+
+
+def test_a_full_bed_below_its_weight_has_no_warning() -> None:
+    """Below 1 g the bed rests, whatever its fill; without gravity it is loose at any level."""
+    assert not any("is loose" in note for note in shaken_can(0.5).notes)
+    space = shaken_can(0.5, gravity=(0, 0, 0))
+    assert any("is loose" in note and "without gravity" in note for note in space.notes)
+    part = rb.Particles(material="steel", diameter="5 mm", bed_fill=0.8)
+    assert not any("is loose" in note for note in shaken_can(2.0, particles=part).notes)
