@@ -198,7 +198,15 @@ def _result(
     losses = (raw.normal_loss, raw.plastic_loss, raw.sliding_loss, raw.rolling_loss)
     lost = sum((loss[-1].sum(axis=1) for loss in losses), np.zeros(len(arrays.dampers)))
     moves = arrays.base_velocity[:, None] + arrays.cavity_velocity
-    softened = effects(resolved_case, step.motions, moves, lost, totals.enduring_loss)
+    softened = effects(
+        resolved_case,
+        step.motions,
+        moves,
+        lost,
+        totals.enduring_loss,
+        raw.rolling_loss[-1].sum(axis=1),
+        _relative_speeds(arrays),
+    )
     diagnostics, notes = step_diagnostics(resolved_case, prepared.tables, step, overlaps, speeds, softened)
     touches = totals.first_touches
     name, message = _status_and_message(resolved_case, arrays, dem, status, step, active.checkpoint)
@@ -232,6 +240,14 @@ def _result(
         diagnostics={**diagnostics, **prepared.fills},
         wall_time=active.seconds,
     )
+
+
+def _relative_speeds(arrays: RunArrays) -> Array:
+    """Return the root mean square speed of particles relative to their cavity, times the square root of two, (D,) [m/s]."""
+    mass, cavity = arrays.particle_mass, arrays.cavity_velocity
+    carried = np.sum(arrays.momentum * cavity, axis=2) - 0.5 * mass * np.sum(cavity**2, axis=2)
+    energy = np.maximum(arrays.kinetic_energy - carried, 0.0).mean(axis=0)
+    return np.asarray(2 * np.sqrt(energy / mass))
 
 
 def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core.Dem) -> RunArrays:

@@ -350,8 +350,11 @@ DIAGNOSTICS: dict[str, tuple[str, str]] = {
     "softening": ("1", "largest softening of a damper"),
     "bed_resonance": ("Hz", "estimated resonance of the softest bed under its own weight"),
     "softening_change": ("1", "estimated change of the loss in a cycle by softening, over m V^2"),
-    "enduring_share": ("1", "share of the loss in contacts older than a quarter of a period"),
-    "softened_enduring_share": ("1", "the same, of dampers with a softening above 1"),
+    "enduring_share": (
+        "1",
+        "share of the loss in contacts older than a quarter of a period, without that of balls that roll",
+    ),
+    "softened_enduring_share": ("1", "share of the loss in enduring contacts, of dampers with a softening above 1"),
     "fill_ratio": ("1", "volume of the particles over that of the cavities"),
     "bed_fill": ("1", "volume of the beds at the start over that of the cavities"),
 }

@@ -243,3 +243,48 @@ def test_motion_of_a_shaken_cavity_at_any_level(level: float) -> None:
     shaker = rb.Shaker(motion=rb.Harmonic(amplitude=f"{level} m/s^2", frequency=70.0, direction="z"))
     motion = cavity_motion(rb.Case(structure=shaker, duration="1 s"), np.zeros((0, 3)), np.zeros((2, 0, 2)))
     assert motion == CavityMotion(70.0, 70.0, pytest.approx(level), is_prescribed=True)
+
+
+def rolling_balls(softening: float, **changes: Any) -> rb.Run:
+    """Return a run of balls that roll on the floor of a long box, with rolling resistance."""
+    radius = 2e-3
+    places = [[x, 0, radius - 6e-3] for x in (-9e-3, 0, 9e-3)]
+    damper = rb.ParticleDamper(
+        **{
+            "particles": rb.Particles(material="steel", diameter=2 * radius),
+            "cavity": rb.Box(size=("60 mm", "20 mm", "12 mm")),
+            "contact": rb.Tsuji(restitution=0.7),
+            "friction": 0.5,
+            "rolling": 0.03,
+            "packing": rb.Positions(positions=places),
+            "direction": "x",
+            "softening": softening,
+        }
+        | changes
+    )
+    motion = rb.Harmonic(amplitude="4 m/s^2", frequency="30 Hz", direction="x")
+    return rb.simulate(rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="0.3 s"), progress=False)
+
+
+def test_a_rolling_ball_does_not_lose_more_with_softening() -> None:
+    """Its contact endures, its loss is the same within 1 % at softening 1 and 200, and there is no warning.
+
+    No test saw the warning of a rolling ball: the tests of enduring contacts had beds at rest only.
+    """
+    hard, soft = rolling_balls(1), rolling_balls(200)
+    losses = [float(run.ledger.contact_loss[-1]) for run in (hard, soft)]
+    assert losses[0] == pytest.approx(losses[1], rel=0.01)
+    assert soft.diagnostics["softened_enduring_share"] < 0.05
+    assert not any("last longer than a quarter" in note for note in soft.notes)
+
+
+def test_a_resting_bed_with_rolling_resistance_still_has_the_warning() -> None:
+    """The rolling loss of a bed that rests is not taken off: it grows with softening as the other losses do."""
+    bed = {
+        "particles": rb.Particles(material="steel", diameter="4 mm", count=40),
+        "cavity": rb.Box(size=("17 mm", "17 mm", "20 mm")),
+        "packing": rb.Settled(seed=1),
+    }
+    soft = rolling_balls(300, **bed)
+    assert soft.diagnostics["softened_enduring_share"] > 0.1
+    assert any("last longer than a quarter" in note for note in soft.notes)
