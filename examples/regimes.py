@@ -43,9 +43,26 @@ def box(amplitude, gravity, **options):
     return rb.Case(structure=rb.Shaker(motion=motion), damper=balls, **{"duration": "1 s", **options})
 
 
-def losses(amplitudes, gravity, cycles=(10, 10)):
+def full_box(packed):
+    """Return the case of a cube that is full of balls: at random, or packed as a block that touches all walls."""
+    places = BALL * np.stack(np.meshgrid(*3 * [np.arange(4) - 1.5]), -1).reshape(-1, 3)
+    balls = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter=BALL, **({} if packed else {"bed_fill": 1})),
+        cavity=rb.Box(size=3 * (4 * BALL,)),
+        contact=rb.Tsuji(restitution=0.8),
+        friction=0.2,
+        packing=rb.Positions(positions=places) if packed else rb.Compacted(seed=1),
+        softening=5,
+        direction="z",
+    )
+    motion = rb.Harmonic(amplitude=(ONE_G, "m"), frequency=HERTZ, direction="z")
+    return rb.Case(structure=rb.Shaker(motion=motion), damper=balls, duration="1 s")
+
+
+def losses(amplitudes, gravity, cycles=(10, 10), case=None):
     """Return the loss map at these amplitudes [m]."""
-    study = rb.loss_map(box(BEST, gravity), list(amplitudes), [HERTZ], cycles=cycles, samples=1 + 64 * cycles[1])
+    shaken = case or box(BEST, gravity)
+    study = rb.loss_map(shaken, list(amplitudes), [HERTZ], cycles=cycles, samples=1 + 64 * cycles[1])
     return study.isel({"structure.motion.frequency": 0}).rename({"structure.motion.amplitude": "amplitude"})
 
 
@@ -84,6 +101,13 @@ def main():
         "without gravity": losses(BEST * np.array([0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.6, 2.0]), SPACE),
         "on earth": losses(ONE_G * np.array([0.7, 0.95, 1.3, 1.7, 2.2, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0]), EARTH),
     }
+    levels = (0.7, 2.0, 5.0, 10.0)
+    full = {packed: losses(ONE_G * np.array(levels), EARTH, case=full_box(packed)) for packed in (True, False)}
+    for packed, study in full.items():
+        share, lost = (study.effective_mass / study.particle_mass).values, study.reduced_loss.values
+        print("full of balls,", "a block" if packed else "at random")
+        for row in zip(levels, share, lost, strict=True):
+            print("  {:4.1f} g: effective mass {:.3f} m, loss {:.4f} m V^2".format(*row))
     figure = plt.figure(figsize=(7.5, 6), layout="constrained")
     upper, lower = figure.subfigures(2, 1, height_ratios=[3.2, 2.6])
     pictures, panels = upper.subplots(1, 4, sharey=True), lower.subplots(1, 2)
@@ -119,6 +143,11 @@ def main():
     assert abs(bouncing.reduced_loss[0] - 1.3) < 0.25 and abs(bouncing.reduced_loss[-1] - 2.1) < 0.25
     assert abs(bouncing.mass[0] - 0.9) < 0.1 and abs(bouncing.mass[-1] - 0.2) < 0.1
     assert abs(earth.reduced_loss[7] - 3.1) < 0.3
+    block, loose = (study.assign(mass=study.effective_mass / study.particle_mass) for study in full.values())
+    assert abs(block.mass - 1).max() < 0.005 and abs(block.reduced_loss).max() < 0.001
+    assert abs(loose.reduced_loss[0]) < 0.001 and abs(loose.mass[0] - 1) < 0.005
+    assert np.allclose(loose.reduced_loss[1:], [1.8, 1.4, 0.6], atol=0.35)
+    assert np.allclose(loose.mass[1:], [0.76, 1.08, 1.12], atol=0.12)
 
 
 if __name__ == "__main__":
