@@ -87,6 +87,8 @@ def require_readable(path: Path) -> None:
     """
     if path.is_dir():
         raise DataError(f"{path} is a folder, not a file")
+    if path.exists() and not path.is_file():  # opening a pipe would wait for somebody to write to it
+        raise DataError(f"{path} is a pipe or a device, not a file", "a file")
     try:
         path.open("rb").close()
     except FileNotFoundError:

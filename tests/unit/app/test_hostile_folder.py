@@ -168,3 +168,11 @@ def test_case_names_a_pipe(tmp_path):
         'load = { kind = "record", file = "load.csv", unit = "N" }\n'
     )
     assert draft.case is None and draft.errors
+
+
+@pytest.mark.parametrize("read", [rb.load, rb.Snapshots])
+def test_results_are_not_read_from_pipes(read, tmp_path):
+    """Reading a pipe with the name of a result is refused and does not wait for somebody to write to it."""
+    os.mkfifo(tmp_path / "run.nc")
+    with pytest.raises(rb.DataError, match="pipe"):
+        read(tmp_path / "run.nc")
