@@ -76,12 +76,15 @@ protected:
         return next_sample_ < problem_.sample_times.size() && problem_.sample_times[next_sample_] <= until;
     }
 
-    // Ends the recovery of released contacts that have opened. Their stored energy is lost.
-    void open_all_released(int touched) {
+    // Ends the recovery of released contacts that have opened. Their stored energy is lost. In a flight they
+    // only open, so that one that approaches after it has been open, even if it has just closed again.
+    void open_all_released(int touched, bool after_flight = false) {
         for (std::size_t i = released_.size(); i-- > 0;) {
             const int c = released_[i].contact;
             const real rounding = 8 * epsilon * problem_.dampers[damper_of(c)].clearance;
-            if (c != touched && gap(problem_, contact(c), state_.y.data()).value < -rounding) continue;
+            const Gap g = gap(problem_, contact(c), state_.y.data());
+            const bool is_recovering = g.value < -rounding && !(after_flight && g.rate < 0);
+            if (c != touched && is_recovering) continue;
             ledger_.normal[damper_of(released_[i].contact)] += released_[i].energy;
             phase(released_[i].contact) = Phase::open;
             released_.erase(released_.begin() + static_cast<std::ptrdiff_t>(i));

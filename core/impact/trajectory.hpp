@@ -81,7 +81,7 @@ class Trajectory : protected ClosedContacts {
         flight_.add_to_ledger(length, ledger_);
         std::swap(flight_end_.y, state_.y);
         state_.t = end;
-        open_all_released(touch.contact);
+        open_all_released(touch.contact, true);
         if (pressing) begin_contacts_from_rest(begin, is_pressing_);
         if (touches) begin_contact_at(touch.contact);
         last_jump_ = pressing && !touches ? begin : state_.t;

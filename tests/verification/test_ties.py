@@ -248,7 +248,7 @@ def test_no_contact_begins_early() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(10))
 def test_no_contact_of_twenty_thousand_begins_early(block: int) -> None:
-    """The same for 20 300 cases, in blocks."""
+    """The same for 23 200 cases, in blocks."""
     compare_first_touches(range(1000 + 290 * block, 1290 + 290 * block))
 
 
@@ -304,8 +304,11 @@ def compare_logs(seeds: Iterable[int]) -> Counter[str]:
 
 
 def test_every_contact_of_ties_is_logged() -> None:
-    """In cases with ties the later contacts on a fine grid are those of the log, too."""
-    assert compare_logs(range(42))["contacts"] > 200
+    """In cases with ties the later contacts on a fine grid are those of the log, too.
+
+    In case 1026 two contacts released together close again at one time: one of them was taken for still recovering.
+    """
+    assert compare_logs([*range(42), 1026])["contacts"] > 200
 
 
 @pytest.mark.slow
