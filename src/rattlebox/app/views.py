@@ -236,26 +236,29 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
     except rb.DataError:  # the bed still settles, or the file is being created or removed
         return encode({}, next=first, planned=0)
     cavities = _cavities(rb.Case.from_toml(snapshots.case_toml)) if new else []
-    reach = max((2 * abs(cavity["place"][1]) + max(cavity["size"]) for cavity in cavities), default=1.0)
+    reach = max((2 * abs(cavity["place"][1]) + cavity["size"] for cavity in cavities), default=1.0)
     about = {"next": len(snapshots), "planned": len(snapshots.planned), "cavities": cavities, "reach": reach}
     return encode(_particles(new), **about)
 
 
 def _cavities(case: rb.Case) -> list[dict[str, Any]]:
-    """Return form, size [m], axes and place in the picture [m] of each cavity; they stand side by side along y."""
+    """Return edges [m], size [m] and place in the picture [m] of each cavity; they stand side by side along y."""
     cavities = [damper.cavity for damper in case.particle_dampers]
     widths = np.array([float(cavity.lengths.max()) for cavity in cavities])
     ends = np.cumsum(1.3 * widths)
     places = ends - 0.65 * widths - ends[-1] / 2
     return [
-        {
-            "kind": cavity.kind,
-            "size": cavity.lengths.tolist(),
-            "frame": np.asarray(cavity.frame).tolist(),
-            "place": [0.0, float(place), 0.0],
-        }
-        for cavity, place in zip(cavities, places, strict=True)
+        {"size": float(width), "place": [0.0, float(place), 0.0], **_edges(cavity.surface())}
+        for cavity, width, place in zip(cavities, widths, places, strict=True)
     ]
+
+
+def _edges(surface: Any) -> dict[str, list[float]]:
+    """Return the ends of the sharp edges and of the others of a surface, six numbers an edge [m]."""
+    kinds: dict[str, list[float]] = {"sharp": [], "smooth": []}
+    for edge in surface.edges:
+        kinds["sharp" if surface.is_sharp(edge) else "smooth"] += surface.points[list(edge)].ravel().tolist()
+    return kinds
 
 
 def _particles(frames: Sequence[Any]) -> dict[str, Any]:

@@ -11,8 +11,8 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Column, Table
 from rich.text import Text
 
+from rattlebox._util.quantities import MISSING, PREFIXED_UNITS, quantity
 from rattlebox.cli.terminal import terminal
-from rattlebox.results.quantities import MISSING, PREFIXED_UNITS, quantity
 from rattlebox.results.schema import OUTCOMES
 from rattlebox.studies.design.trial_store import count_trials, open_trials
 from rattlebox.studies.measures import INTERVAL

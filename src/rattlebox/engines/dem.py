@@ -24,7 +24,6 @@ from rattlebox.engines.status import describe, final_status
 from rattlebox.model.methods import Dem
 from rattlebox.model.particle_case import direction_of_base
 from rattlebox.model.plausibility import plausibility_notes
-from rattlebox.prepare.base_motion import base_motion
 from rattlebox.prepare.particles import Prepared, pack_particles, prepare
 from rattlebox.prepare.softening import effects
 from rattlebox.prepare.time_step import Step, step_diagnostics
@@ -259,7 +258,7 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
     displacement = np.stack([q @ shape for shape in shapes], axis=1)
     base = np.zeros((3, times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
-        base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
+        base += np.multiply.outer(acceleration.motion(times), direction_of_base(case, signal))
     load = np.array([signal.evaluate(times) for signal in case.loads]).reshape(len(case.loads), times.size).T
     ends = dem.state().cavities
     contents = [damper.contents for damper in dampers]

@@ -10,7 +10,6 @@ import numpy as np
 from rattlebox.core import _core
 from rattlebox.engines.checkpoint import fingerprint
 from rattlebox.model.errors import Hint
-from rattlebox.model.surfaces import surface
 from rattlebox.results.snapshots import SnapshotFile
 
 if TYPE_CHECKING:
@@ -61,7 +60,7 @@ def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Sn
         "species": np.concatenate([each.species for each in contents]),
     }
     sampled = np.asarray(steps * dt, dtype=float)
-    walls = [surface(damper.cavity) for damper in case.particle_dampers]
+    walls = [damper.cavity.surface() for damper in case.particle_dampers]
     file = SnapshotFile(path, sampled, _drawing_positions(case), fixed, walls, case.to_toml(), fingerprint(packed))
     return file, steps.tolist()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -9,12 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.quantities import quantity
 from rattlebox.core import _core
-from rattlebox.model.contacts import Contact, Linear, TabulatedNormal
+from rattlebox.model.contacts import MAX_OVERLAP, Contact
 from rattlebox.model.pairs import contact_pairs
-from rattlebox.model.restitutions import Tabulated
-from rattlebox.prepare.time_step import MAX_OVERLAP, MIN_STEPS_PER_CONTACT, contact_limits
-from rattlebox.results.quantities import quantity
+from rattlebox.prepare.time_step import MIN_STEPS_PER_CONTACT, contact_limits
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from rattlebox.prepare.particles import Prepared
     from rattlebox.results.arrays import Table
 
-MAX_LINEAR_OVERLAP = 0.1
-"""Largest overlap over the radius for a linear spring, which models a body softer than the ball, such as a pad."""
 
 _CONTACT_GAP = 1e-9
 """Gap over the clearance below which a ball counts as touching."""
@@ -126,9 +124,9 @@ def validity_limits(case: Case, prepared: Prepared | None) -> Iterator[ContactLi
         radii, shares = _overlap_limits(damper)
         for k, law in enumerate(_contact_laws(damper)):
             yield ContactLimit("overlap", first + k, radii[k] * shares[k], _deep(name, shares[k]))
-            if isinstance(law, TabulatedNormal):
+            if law.measured_overlap is not None:
                 text = f"overlaps in {name} exceed the measured force curve, which is extrapolated: extend the curve"
-                yield ContactLimit("overlap", first + k, law.overlap[-1], text)
+                yield ContactLimit("overlap", first + k, law.measured_overlap, text)
             yield from _limit_of_table(law, name, first + k)
         first += len(radii)
 
@@ -170,10 +168,10 @@ def _deep(name: str, share: float) -> str:
 
 def _limit_of_table(contact: Contact, name: str, index: int) -> Iterator[ContactLimit]:
     """Yield the last speed of a table of restitution."""
-    law = contact.impact_restitution
-    if isinstance(law, Tabulated) and len(law.speeds) > 1:
+    last = contact.last_tabulated_speed
+    if last is not None:
         text = f"approach speeds in {name} exceed the table of restitution, whose last value is used: extend the table"
-        yield ContactLimit("speed", index, law.speeds[-1], text)
+        yield ContactLimit("speed", index, last, text)
 
 
 def _deep_overlaps(
@@ -199,7 +197,7 @@ def _contact_laws(damper: ImpactDamper) -> list[Contact]:
 def _overlap_limits(damper: ImpactDamper) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the smaller radius [m] of each contact of a damper, and the largest allowed overlap over it."""
     radii = [ball.half for ball in damper.balls]
-    limits = [MAX_LINEAR_OVERLAP if isinstance(law, Linear) else MAX_OVERLAP for law in _contact_laws(damper)]
+    limits = [law.overlap_limit for law in _contact_laws(damper)]
     return np.array([radii[0], *np.minimum(radii[:-1], radii[1:]), radii[-1]]), np.array(limits)
 
 
@@ -215,11 +213,11 @@ def _fast_impacts(
 
 def _fast_impact(contact: Contact, where: str, speed: float) -> Iterator[str]:
     """Yield a warning if an approach speed [m/s] exceeds the restitution table of a contact."""
-    law = contact.impact_restitution
-    if isinstance(law, Tabulated) and len(law.speeds) > 1 and speed > law.speeds[-1]:
+    last = contact.last_tabulated_speed
+    if last is not None and speed > last:
         yield (
             f"warning: approach speeds in {where} reach {quantity(speed, 'm/s', 3)}; the table of restitution ends at "
-            f"{quantity(law.speeds[-1], 'm/s', 3)}, above which its last value is used: extend the table"
+            f"{quantity(last, 'm/s', 3)}, above which its last value is used: extend the table"
         )
 
 
@@ -275,28 +273,28 @@ def _beyond_measured_impacts(
 ) -> Iterator[str]:
     """Yield a warning if an impact exceeds the last point of a measured force curve."""
     damper, pairs = case.impact_dampers[index], contact_pairs(case, index)
-    deepest: list[tuple[float, TabulatedNormal]] = []
+    deepest: list[tuple[float, float]] = []
     for contact, pair in enumerate(pairs):
         at_wall = contact in (0, len(pairs) - 1)
         law = damper.contact if at_wall else damper.ball_contact or damper.contact
         mine = own & (impacts.contact == contact)
-        if not isinstance(law, TabulatedNormal) or not mine.any():
+        if law.measured_overlap is None or not mine.any():
             continue
         overlap = float(np.nanmax(impacts.peak_overlap[mine]))
         if overlap == 0:  # a hard impact has none; use the overlap that the curve gives for its speed
             force = _core.normal_law(*law.coefficients(pair))
             overlap = force.largest_overlap(float(impacts.approach_speed[mine].max()))
-        deepest.append((overlap, law))
+        deepest.append((overlap, law.measured_overlap))
     yield from _beyond_measurement(name, deepest)
 
 
-def _beyond_measurement(name: str, deepest: Iterable[tuple[float, TabulatedNormal]]) -> Iterator[str]:
-    """Yield a warning about the measured curve with the largest ratio of overlap to last point."""
-    overlap, law = max(deepest, key=lambda each: each[0] / each[1].overlap[-1], default=(0.0, None))
-    if law is not None and overlap > law.overlap[-1]:
+def _beyond_measurement(name: str, deepest: Iterable[tuple[float, float]]) -> Iterator[str]:
+    """Yield a warning about the contact with the largest ratio of overlap to last measured overlap [m]."""
+    overlap, measured = max(deepest, key=lambda each: each[0] / each[1], default=(0.0, math.inf))
+    if overlap > measured:
         yield (
             f"warning: overlaps in {name} reach {_length(overlap)}, but the contact force is measured only up to "
-            f"{_length(law.overlap[-1])} and extrapolated with its last slope: extend the curve, or use slower impacts"
+            f"{_length(measured)} and extrapolated with its last slope: extend the curve, or use slower impacts"
         )
 
 
@@ -344,13 +342,17 @@ def particle_notes(
             yield _no_contact_note(f"no particle of {name}", f"{distances} {_length(moved)}")
 
 
-def _deepest_measured(damper: ParticleDamper, ratio: float) -> Iterator[tuple[float, TabulatedNormal]]:
-    """Yield an upper bound of the overlap of each measured contact; exact where all particles have one size and law."""
+def _deepest_measured(damper: ParticleDamper, ratio: float) -> Iterator[tuple[float, float]]:
+    """Yield an upper bound of the overlap of each measured contact, and its last measured overlap [m].
+
+    The bound is exact where all particles have one size and law.
+    """
     species = damper.contents.species
     radii = {each.label: damper.contents.radius[species == k].max() for k, each in enumerate(damper.particles)}
     for entry in damper.contact_table.entries:
-        if isinstance(entry.contact, TabulatedNormal):
-            yield ratio * float(min(radii.get(name, np.inf) for name in entry.names)), entry.contact
+        measured = entry.contact.measured_overlap
+        if measured is not None:
+            yield ratio * float(min(radii.get(name, np.inf) for name in entry.names)), measured
 
 
 def _no_contact_note(what: str, distances: str) -> str:

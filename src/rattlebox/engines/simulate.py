@@ -282,6 +282,4 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
 
 def _base_motion(case: Case, time: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return displacement, velocity and acceleration of the base, (3, T); only a harmonic starts in motion."""
-    from rattlebox.prepare.base_motion import base_motion
-
-    return sum((base_motion(signal, time) for signal in case.base_acceleration()), np.zeros((3, time.size)))
+    return sum((signal.motion(time) for signal in case.base_acceleration()), np.zeros((3, time.size)))

@@ -10,17 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError, StepError
+from rattlebox._util.quantities import quantity
 from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
-from rattlebox.model.structures import Fixed, Shaker
 from rattlebox.model.units import in_si
 from rattlebox.prepare.component import damper_case, pack_component
 from rattlebox.prepare.time_step import step_diagnostics
-from rattlebox.results.quantities import quantity
 
 from .run_notes import component_notes, table_notes
 from .status import contact_name, describe
@@ -67,7 +66,7 @@ def component_case(
     for name, given in (("method", method), ("motion", motion), ("structure_mass", structure_mass)):
         if given is not None:
             raise Hint(f"{name} belongs to a damper alone; a case has its own", f"the damper alone, with {name}=...")
-    return system, isinstance(system.structure, Fixed | Shaker) if alone is None else alone
+    return system, not system.structure.responds if alone is None else alone
 
 
 class Stepper:

@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+from . import harmonics, random_vibration, recorded, shocks  # noqa: F401  (they register their signals)
+from .kinds import AnyKind
+from .signals import Signal
 
-from .harmonics import Harmonic, SineSweep
-from .random_vibration import Random
-from .recorded import Record
-from .shocks import HalfSine, Sawtooth, Trapezoid
-
-AnySignal = Annotated[
-    HalfSine | Harmonic | Record | Sawtooth | Trapezoid | SineSweep | Random, Field(discriminator="kind")
-]
+AnySignal = Annotated[Signal, AnyKind()]

@@ -24,6 +24,7 @@ from pydantic_core import CoreSchema
 from rattlebox._util.text import has_controls
 
 from .errors import Hint, nearest, translate
+from .kinds import register
 from .signatures import part_signature
 
 if TYPE_CHECKING:
@@ -95,6 +96,10 @@ class Part(BaseModel, metaclass=_PartMeta):
         ser_json_inf_nan="constants",
         defer_build=True,  # validators are compiled when a class is first used
     )
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        register(cls)
 
     @model_validator(mode="after")
     def _check_names(self) -> Self:

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from rattlebox._util.narrow import present
+from rattlebox._util.quantities import amount
 
 from .elementwise import Vector
 from .errors import Hint, one_of
@@ -166,6 +167,11 @@ class Beam(DampedModes):
     def frequencies(self) -> Vector:
         """Natural frequencies of the modes, (m,) [Hz]."""
         return np.sqrt(self.modes().stiffness) / (2 * math.pi)
+
+    def words(self) -> str:
+        """Return a phrase with ends, material, length and first mode."""
+        material = f"{self.material.words} " if self.material else ""
+        return self._with_first_mode(f"a {self.ends} {material}beam of {amount(self.length, 'm')}")
 
     def modes(self) -> ModalModel:
         """Compute the lowest mass-normalised modes; the class has the equation."""

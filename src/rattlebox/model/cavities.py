@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
+from rattlebox._util.phrases import sizes
+from rattlebox._util.quantities import amount
+
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint
+from .kinds import AnyKind
 from .space import Direction, Lengths, components_along, to_global, unit_vector
+from .surfaces import Surface, bands, circle, facing_inward
 from .units import PositiveLength, radius_of_diameter
 
 WallForm = Literal["plane", "cylinder", "sphere"]
+
+# Corners of a cylinder's end, meridians and circles of latitude of a sphere: few, since their positions are stored at each
+# time. The faces are inside the wall by up to 0.1 % of the radius of a cylinder and 0.8 % of that of a sphere.
+_AROUND = 72
+_MERIDIANS, _LATITUDES = 36, 17
 
 
 @dataclass(frozen=True)
@@ -55,31 +66,49 @@ class Cavity(Part):
     """Base class of cavities; positions are relative to the centre."""
 
     field_names: ClassVar[tuple[str, ...]] = ("cavity",)
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
 
+    @abstractmethod
     def walls(self) -> Walls:
         """Return the walls."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def volume(self) -> float:
         """Volume inside [m^3]."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def lengths(self) -> Vector:
         """Edges of the bounding box along the axes of the cavity, (3,) [m]."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def inside(self) -> Vector:
         """Edges of an inscribed box along the axes of the cavity, (3,) [m]."""
-        raise NotImplementedError
+
+    @abstractmethod
+    def surface(self) -> Surface:
+        """Return the walls as polygons, for pictures, files and drawings."""
+
+    @abstractmethod
+    def words(self) -> str:
+        """Return a phrase with the sizes: "a box of 100 x 70 x 60 mm"."""
+
+    def outline(self, view: Vector) -> list[Vector]:
+        """Return the lines that show the cavity, each (n, 3) [m], for the axes (right, up, towards the viewer) of a view."""
+        return self.surface().lines(view[2])
 
     @property
     def frame(self) -> Vector:
         """Axes of the cavity, (3, 3), one in each row."""
         return np.eye(3)
+
+    @property
+    def is_aligned(self) -> bool:
+        """Whether the axes of the cavity are along x, y and z, in any order."""
+        return bool(np.all(np.abs(self.frame).max(axis=1) >= 1 - 1e-9))
 
     def depth(self, positions: Vector) -> Vector:
         """Return the distances of points from the nearest wall, (n,) [m], positive inside."""
@@ -147,6 +176,16 @@ class Box(Cavity):
         names = tuple(sign + axis for sign in "-+" for axis in "xyz")
         return Walls(names, axis, np.tile(self.lengths / 2, 2), ("plane",) * 6)
 
+    def surface(self) -> Surface:
+        """Return six faces."""
+        corners = np.array([(i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
+        faces = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+        return facing_inward(corners * self.lengths / 2, faces)
+
+    def words(self) -> str:
+        """Return a phrase with the three edges."""
+        return f"a box of {sizes(self.size)}"
+
     @property
     def volume(self) -> float:
         """Volume inside [m^3]."""
@@ -207,6 +246,17 @@ class Cylinder(_Round):
             ("cylinder", "plane", "plane"),
         )
 
+    def surface(self) -> Surface:
+        """Return the side, of `_AROUND` faces, and the flat ends."""
+        ring, up = self.radius * circle(_AROUND), np.array([0.0, 0.0, self.length / 2])
+        points = np.concatenate([ring - up, ring + up])
+        ends = (tuple(range(_AROUND)), tuple(range(_AROUND, 2 * _AROUND)))
+        return facing_inward(points @ self.frame, (*bands(2, _AROUND), *ends))
+
+    def words(self) -> str:
+        """Return a phrase with diameter and length."""
+        return f"a cylinder, {amount(2 * self.radius, 'm')} in diameter, {amount(self.length, 'm')} long"
+
     @property
     def volume(self) -> float:
         """Volume inside [m^3]."""
@@ -252,6 +302,26 @@ class SphericalCavity(_Round):
         """Return the spherical wall."""
         return Walls(("sphere",), np.zeros((1, 3)), np.array([self.radius]), ("sphere",))
 
+    def surface(self) -> Surface:
+        """Return a grid of latitude and longitude."""
+        angles = np.linspace(-np.pi / 2, np.pi / 2, _LATITUDES + 2)[1:-1]
+        up = np.array([0.0, 0.0, 1.0])
+        rings = [self.radius * (np.cos(each) * circle(_MERIDIANS) + np.sin(each) * up) for each in angles]
+        last, south = (_LATITUDES - 1) * _MERIDIANS, _LATITUDES * _MERIDIANS
+        turn = [(k, (k + 1) % _MERIDIANS) for k in range(_MERIDIANS)]
+        caps = [(a, b, south) for a, b in turn] + [(last + a, last + b, south + 1) for a, b in turn]
+        points = np.concatenate([*rings, [[0.0, 0.0, -self.radius], [0.0, 0.0, self.radius]]])
+        return facing_inward(points, (*bands(_LATITUDES, _MERIDIANS), *caps))
+
+    def outline(self, view: Vector) -> list[Vector]:
+        """Return a circle, which is rounder than the edges of the surface."""
+        ring = circle(_AROUND)
+        return [self.radius * np.concatenate([ring, ring[:1]])[:, :2] @ view[:2]]
+
+    def words(self) -> str:
+        """Return a phrase with the diameter."""
+        return f"a sphere, {amount(2 * self.radius, 'm')} in diameter"
+
     @property
     def volume(self) -> float:
         """Volume inside [m^3]."""
@@ -272,4 +342,4 @@ class SphericalCavity(_Round):
         return np.full(3, 2 * self.radius / math.sqrt(3))
 
 
-AnyCavity = Annotated[Box | Cylinder | SphericalCavity, Field(discriminator="kind")]
+AnyCavity = Annotated[Cavity, AnyKind()]

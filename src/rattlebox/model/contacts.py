@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from functools import cached_property
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
@@ -15,6 +16,7 @@ from rattlebox._util.narrow import present
 from .base import Part
 from .elementwise import mapped, power, powers, sqrt
 from .errors import Hint, at, one_of
+from .kinds import AnyKind
 from .pairs import Pair
 from .power_dashpot import SMALLEST, dimensionless_damping, rebound
 from .restitutions import AnyRestitution, Constant, Restitution, Tabulated, ThorntonRestitution, yield_pressure
@@ -35,6 +37,10 @@ Ending = Literal["zero_force", "zero_overlap"]
 _SMALL_OVERLAP = 1e-6
 """Overlap at which forces of power laws are limited [m]."""
 
+MAX_OVERLAP = 0.01
+"""Largest overlap over the smaller radius at which contact laws of spheres hold."""
+MAX_LINEAR_OVERLAP = 0.1
+"""The same of a linear contact, which is a model of a contact and not a law of spheres."""
 EXTRAPOLATED = 1000.0
 """Largest overlap in the restitution table of a measured contact, over the last measured one."""
 
@@ -62,16 +68,42 @@ class Contact(Part):
     """Base class of normal contact laws."""
 
     field_names: ClassVar[tuple[str, ...]] = ("contact", "ball_contact")
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
+    overlap_limit: ClassVar[float] = MAX_OVERLAP
+    """Largest overlap over the smaller radius at which the law holds."""
+    depends_on_speed: ClassVar[bool] = True
+    """Whether the duration of a contact depends on the approach speed."""
+
+    @property
+    @abstractmethod
+    def force_exponent(self) -> float:
+        """Exponent of the force in the overlap; 1 for a measured curve, which counts as linear with its secant."""
+
+    @property
+    def measured_overlap(self) -> float | None:
+        """Last overlap of a measured force curve [m], beyond which it is extrapolated; None if none is measured."""
+        return None
 
     @property
     def impact_restitution(self) -> Restitution | None:
         """The restitution law from which the dashpot of each impact is computed; None if the law needs none."""
         return None
 
+    @property
+    def last_tabulated_speed(self) -> float | None:
+        """Last speed of a table of restitution [m/s]; None if the contact has no table."""
+        law = self.impact_restitution
+        return None if law is None else law.last_speed
+
+    def static_overlap(self, pair: Pair, softening: float, force: float) -> float:
+        """Return the overlap at rest under a force [N], with moduli divided by `softening` [m]."""
+        _, values = self.softened(pair, softening)
+        return float((force / values["stiffness"]) ** (1 / self.force_exponent))
+
+    @abstractmethod
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
-        raise NotImplementedError
 
     def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
         """Return `coefficients` with moduli divided by a factor; dashpots are scaled so that the restitution is the same.
@@ -86,9 +118,9 @@ class Contact(Part):
         scale = {"stiffness": 1.0, "modulus": 1.0, "damping": 0.5, "yield_pressure": 0.8}
         return name, {key: value / softening ** scale.get(key, 0.0) for key, value in values.items()}
 
+    @abstractmethod
     def equivalent_restitution(self, pair: Pair) -> Restitution | FixedDamping:
         """Return the restitution law of hard impacts with the same loss, or the dashpot from which it follows."""
-        raise NotImplementedError
 
 
 def _check_soft(restitution: Any) -> None:
@@ -143,6 +175,11 @@ class Tsuji(Contact):
         """The restitution law from which the dashpot of each impact is computed."""
         return self.restitution
 
+    @property
+    def force_exponent(self) -> float:
+        """Exponent of the force in the overlap."""
+        return 1.5
+
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return stiffness, mass and, if fixed, alpha."""
         values: dict[str, Any] = {
@@ -191,6 +228,8 @@ class Linear(Contact):
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("stiffness", "contact_time"), ("restitution", "damping"))
+    overlap_limit: ClassVar[float] = MAX_LINEAR_OVERLAP
+    depends_on_speed: ClassVar[bool] = False
     kind: Literal["linear"] = "linear"
     stiffness: PositiveStiffness | None = None
     contact_time: PositiveTime | None = None
@@ -209,6 +248,11 @@ class Linear(Contact):
     def impact_restitution(self) -> Restitution | None:
         """The restitution law from which the dashpot of each impact is computed."""
         return self.restitution
+
+    @property
+    def force_exponent(self) -> float:
+        """Exponent of the force in the overlap."""
+        return 1.0
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return stiffness, mass and, if fixed, damping; a contact time t has the stiffness m* (pi / t)^2."""
@@ -263,6 +307,11 @@ class Thornton(Contact):
 
     kind: Literal["thornton"] = "thornton"
     yield_pressure: Modulus | None = None
+
+    @property
+    def force_exponent(self) -> float:
+        """Exponent of the force in the overlap."""
+        return 1.5
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return elastic constants and the limiting pressure."""
@@ -362,6 +411,11 @@ class PowerLaw(Contact):
     def _similarity(self) -> Any:
         """Exponent of the stiffness in a dashpot coefficient with the same restitution."""
         return (self.damping_exponent + 1) / (self.exponent + 1)
+
+    @property
+    def force_exponent(self) -> float:
+        """Exponent of the force in the overlap."""
+        return self.exponent
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return stiffness, mass, exponents and the coefficient of the dashpot."""
@@ -535,12 +589,21 @@ class TabulatedNormal(Contact):
         work = self._loading.antiderivative()(inside) + beyond * (force + slope * beyond / 2)
         return force + slope * beyond, work
 
-    def secant_stiffness(self, force: float) -> float:
-        """Return the secant stiffness of the loading curve at a force [N/m]."""
-        if force >= self.force[-1]:
-            return self.force[-1] / self.overlap[-1]
-        largest = next(k for k, other in enumerate(self.force) if other > force)
-        return self.force[largest] / self.overlap[largest]
+    @property
+    def measured_overlap(self) -> float | None:
+        """Last overlap of the loading curve [m]."""
+        return self.overlap[-1]
+
+    def static_overlap(self, pair: Pair, softening: float, force: float) -> float:
+        """Return the overlap at rest under a force by the secant of the loading curve [m]."""
+        unsoftened = force * softening
+        largest = next((k for k, other in enumerate(self.force) if other > unsoftened), -1)
+        return unsoftened * self.overlap[largest] / self.force[largest]
+
+    @property
+    def force_exponent(self) -> float:
+        """Exponent of the force in the overlap."""
+        return 1.0
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return the piecewise cubics of both curves."""
@@ -578,5 +641,4 @@ def _pieces(name: str, curve: Any) -> dict[str, Any]:
     }
 
 
-ContactKind = Tsuji | Linear | Thornton | PowerLaw | TabulatedNormal
-AnyContact = Annotated[ContactKind, Field(discriminator="kind")]
+AnyContact = Annotated[Contact, AnyKind()]

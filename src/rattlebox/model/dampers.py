@@ -12,6 +12,8 @@ import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.narrow import present
+from rattlebox._util.phrases import joined, with_article
+from rattlebox._util.quantities import amount
 
 from .also_accepts import AlsoAccepts
 from .base import Part
@@ -257,6 +259,30 @@ class ImpactDamper(Part):
             name = f"{self.name}{index + 1}" if self.name else ""
             dampers.append(self.model_copy(update={"number": 1, "name": name, "start": start}))
         return tuple(dampers)
+
+    def alike(self) -> ImpactDamper:
+        """Return the damper without its start, in which identical dampers differ."""
+        return self.model_copy(update={"start": 0.0})
+
+    @property
+    def mass(self) -> float:
+        """Mass of the balls [kg]."""
+        return float(np.sum(self.masses))
+
+    def facts(self) -> list[tuple[str, str]]:
+        """Return numbers that follow from the fields, with their names."""
+        return [
+            ("mass of the balls", amount(self.mass, "kg")),
+            ("clearance", f"{amount(self.clearance, 'm')}, twice the gap"),
+        ]
+
+    def words(self) -> str:
+        """Return a phrase about the balls and their clearance."""
+        mass, count = amount(self.mass, "kg"), len(self.balls)
+        materials = list(dict.fromkeys(ball.material.words for ball in self.balls))
+        one = f"{with_article(materials[0])} ball of {mass}"
+        several = f"a row of {count} {joined(materials)} balls of {mass} in all"
+        return f"{one if count == 1 else several} with {amount(self.clearance, 'm')} of clearance"
 
     @property
     def row(self) -> float:

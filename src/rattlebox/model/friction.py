@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -9,6 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from .also_accepts import AlsoAccepts
 from .base import Part
 from .errors import one_of
+from .kinds import AnyKind
 from .materials import Material
 from .pairs import Pair
 from .units import LARGEST, SI, Number, PositiveStiffness, bare_number
@@ -27,13 +29,14 @@ class Friction(Part):
     """Base class of friction laws."""
 
     field_names: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
     coefficient: NotNegative = Field(examples=[0.3])
     damping: NotNegative = 1.0
 
+    @abstractmethod
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
         """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
-        raise NotImplementedError
 
 
 class Mindlin(Friction):
@@ -170,8 +173,5 @@ def _rolling(value: Any) -> Any:
 
 _NEED = "a number is needed, or a table"
 _number = AlsoAccepts({"type": "number", "minimum": 0})
-FrictionKind = Mindlin | LinearSpring
-AnyFriction = Annotated[
-    Annotated[FrictionKind, Field(discriminator="kind")], SI("1"), BeforeValidator(_mindlin), _number
-]
+AnyFriction = Annotated[Annotated[Friction, AnyKind()], SI("1"), BeforeValidator(_mindlin), _number]
 AnyRolling = Annotated[Rolling, SI("1"), BeforeValidator(_rolling), _number]

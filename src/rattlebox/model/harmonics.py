@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
 from rattlebox._util.narrow import present
+from rattlebox._util.quantities import amount
 
 from .elementwise import Vector, power
 from .errors import Hint
@@ -77,6 +78,38 @@ class Harmonic(Signal):
             "start": self.start,
             "stop": math.inf if self.stop is None else self.stop,
         }
+
+    def motion(self, time: Vector) -> Vector:
+        """Return displacement, velocity and acceleration, (3, T): u = -A sin(w t + phi) / w^2, less its start value."""
+        omega = 2 * math.pi * self.frequency
+        angle = omega * time + self.phase
+        acceleration = self.evaluate(time)
+        velocity = -self.amplitude / omega * np.cos(angle)
+        displacement = -self.amplitude / omega**2 * np.sin(angle)
+        if self.start == 0 and self.stop is None:
+            return np.array([displacement, velocity, acceleration])
+        stop = math.inf if self.stop is None else self.stop
+        first = omega * self.start + self.phase
+        v0, u0 = -self.amplitude / omega * math.cos(first), -self.amplitude / omega**2 * math.sin(first)
+        inside = np.clip(time, self.start, stop)
+        angle = omega * inside + self.phase
+        v = -self.amplitude / omega * np.cos(angle) - v0
+        u = -self.amplitude / omega**2 * np.sin(angle) - u0 - v0 * (inside - self.start)
+        return np.array([u + v * np.maximum(time - stop, 0.0), v, acceleration])
+
+    @property
+    def shortest_time(self) -> tuple[float, str]:
+        """Period [s]."""
+        return 1 / self.frequency, "period of a harmonic"
+
+    def mean_harmonic(self, duration: float) -> tuple[float, float]:
+        """Return frequency [Hz] and amplitude."""
+        return self.frequency, abs(self.amplitude)
+
+    def words(self) -> str:
+        """Return a phrase with amplitude and frequency."""
+        size = amount(abs(self.amplitude), self.unit or "")
+        return f"a harmonic {self._quantity} of {size} at {amount(self.frequency, 'Hz')}"
 
     def acceleration(self) -> Harmonic:
         """Return the acceleration of a harmonic displacement, -(2 pi frequency)^2 times it."""
@@ -203,6 +236,16 @@ class SineSweep(Polyline):
         if linear:
             return np.asarray(self.first_frequency + rate * t)
         return np.asarray(self.first_frequency * np.exp2(rate * t))
+
+    @property
+    def shortest_time(self) -> tuple[float, str]:
+        """Period of the highest frequency [s]."""
+        return 1 / max(self.first_frequency, self.last_frequency), "shortest period of a sweep"
+
+    def words(self) -> str:
+        """Return a phrase with both frequencies."""
+        ends = f"{amount(self.first_frequency, 'Hz')} to {amount(self.last_frequency, 'Hz')}"
+        return f"a sine sweep of {self._quantity} from {ends}"
 
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times [s] and values of the points."""

@@ -48,6 +48,11 @@ class Material(Part):
     yield_stress: Modulus | None = None
     source: str = ""
 
+    @property
+    def words(self) -> str:
+        """Name in a sentence."""
+        return self.name.replace("_", " ")
+
     @field_validator("poisson")
     @classmethod
     def _physical(cls, value: float) -> float:

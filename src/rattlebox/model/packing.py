@@ -20,6 +20,7 @@ from .cavities import AnyCavity, Box, SphericalCavity
 from .elementwise import Vector
 from .errors import Hint, at, several
 from .files import BINARY, absolute, check_finite, existing, read_arrays
+from .kinds import AnyKind
 from .records import read_table
 from .space import to_global
 from .units import SI, Number, Whole, in_si, numbers
@@ -41,6 +42,7 @@ class Packing(Part):
     """Base class of packings."""
 
     field_names: ClassVar[tuple[str, ...]] = ("packing",)
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
 
     @property
@@ -295,7 +297,7 @@ class Positions(FilePart, Packing):
         return cls(**fields)
 
 
-AnyPacking = Annotated[Lattice | Settled | Compacted | Positions, Field(discriminator="kind")]
+AnyPacking = Annotated[Packing, AnyKind()]
 
 _COLUMNS = ("x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz")
 

@@ -15,6 +15,8 @@ from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_
 
 from rattlebox._util.exceptions import ResourceError, named
 from rattlebox._util.narrow import instance
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import amount
 
 from .also_accepts import AlsoAccepts
 from .base import Part
@@ -270,6 +272,38 @@ class ParticleDamper(Part):
         self._check_pairs()
         self._check_filling()
         return self
+
+    def alike(self) -> ParticleDamper:
+        """Return the damper without the seed of its packing, in which identical dampers differ."""
+        return (
+            self.model_copy(update={"packing": self.packing.model_copy(update={"seed": 0})})
+            if self.packing.is_random
+            else self
+        )
+
+    @property
+    def mass(self) -> float:
+        """Mass of the particles [kg]."""
+        return float(self.contents.mass.sum())
+
+    def facts(self) -> list[tuple[str, str]]:
+        """Return numbers that follow from the fields, with their names."""
+        radii = self.contents.radius
+        share = float((4 / 3 * math.pi * radii**3).sum()) / self.cavity.volume
+        return [
+            ("particles", counted(len(radii), "particle")),
+            ("mass of the particles", amount(self.mass, "kg")),
+            ("share of the volume of the cavity", amount(share, "%", 3)),
+        ]
+
+    def words(self) -> str:
+        """Return a phrase about the particles and their cavity."""
+        radii, mass = self.contents.radius, amount(self.mass, "kg")
+        materials = list(dict.fromkeys(each.material.words for each in self.particles))
+        size = amount(2 * float(radii.min()), "m")
+        if not np.isclose(radii.min(), radii.max()):
+            size += f" to {amount(2 * float(radii.max()), 'm')}"
+        return f"{counted(len(radii), f'{joined(materials)} ball')} of {size} ({mass}) in {self.cavity.words()}"
 
     def _check_group(self) -> None:
         """Raise if point and points are both given, or if identical dampers have the same packing."""

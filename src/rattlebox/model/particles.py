@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections.abc import Sequence
 from functools import cache
 from typing import Annotated, Any, ClassVar, Literal
@@ -15,6 +16,7 @@ from rattlebox._util.narrow import present
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
+from .kinds import AnyKind
 from .materials import AnyMaterial
 from .packing import COMPACTED, Crowd
 from .units import SI, Number, PositiveLength, PositiveMass, Whole, parse, radius_of_diameter
@@ -28,11 +30,12 @@ class Distribution(Part):
     """Base class of distributions of diameters."""
 
     field_names: ClassVar[tuple[str, ...]] = ("distribution",)
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
 
+    @abstractmethod
     def diameters(self, share: Vector) -> Vector:
         """Return quantiles of the diameter by number [m], (n,), for shares of the number of particles."""
-        raise NotImplementedError
 
 
 class _Bounded(Distribution):
@@ -166,7 +169,7 @@ class Sieve(Distribution):
         return np.asarray(np.interp(share, below, squares) ** -0.5)
 
 
-AnyDistribution = Annotated[NormalSizes | LogNormal | Sieve, Field(discriminator="kind")]
+AnyDistribution = Annotated[Distribution, AnyKind()]
 
 
 class Particles(Part):

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from rattlebox._util.narrow import present
+from rattlebox._util.phrases import sizes
 
 from .beams import NEGLECTED, ROUNDING, ModeCount
 from .elementwise import Vector
@@ -121,6 +122,12 @@ class Plate(DampedModes):
 
     def _squared_wave_number(self, m: int, n: int) -> float:
         return math.pi**2 * ((m / self.length) ** 2 + (n / self.width) ** 2)
+
+    def words(self) -> str:
+        """Return a phrase with material, lengths and first mode."""
+        material = f"{self.material.words} " if self.material else ""
+        lengths = sizes((self.length, self.width))
+        return self._with_first_mode(f"a simply supported {material}plate of {lengths}")
 
     def modes(self) -> ModalModel:
         """Compute the lowest mass-normalised modes; the class has the equation."""

@@ -178,6 +178,10 @@ class Random(Sampled):
         """Values at the points, (n,), in `unit`."""
         return self._points.values
 
+    def words(self) -> str:
+        """Return a phrase."""
+        return f"random {self._quantity}"
+
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times [s] and values of the points."""
         return self._points.times, self._points.values

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
@@ -13,6 +14,7 @@ from .also_accepts import AlsoAccepts
 from .base import Part
 from .elementwise import less, pick, power, sqrt
 from .errors import Hint
+from .kinds import AnyKind
 from .materials import AnyWall
 from .pairs import Pair, hardness
 from .units import SI, Modulus, PositiveVelocity, bare_number, plain
@@ -46,12 +48,23 @@ class Restitution(Part):
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("restitution",)
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
     maximum: Fraction = 1.0
 
+    @property
+    def constant_value(self) -> float | None:
+        """Restitution at every speed; None if it depends on the speed."""
+        return None
+
+    @property
+    def last_speed(self) -> float | None:
+        """Last speed of a table [m/s], above which its last value is used; None if there is none."""
+        return None
+
+    @abstractmethod
     def coefficients(self, pair: Pair) -> Coefficients:
         """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
-        raise NotImplementedError
 
 
 class Constant(Restitution):
@@ -78,6 +91,11 @@ class Constant(Restitution):
     if TYPE_CHECKING:  # The first field is also a positional argument.
 
         def __init__(self, e: Any = ..., **values: Any) -> None: ...
+
+    @property
+    def constant_value(self) -> float | None:
+        """Restitution at every speed."""
+        return self.e
 
     def coefficients(self, pair: Pair) -> Coefficients:
         """Return e."""
@@ -112,6 +130,11 @@ class Tabulated(Restitution):
         if any(b <= a for a, b in zip(self.speeds, self.speeds[1:], strict=False)):
             raise Hint("speeds must increase", "points in the order of the speed", ["speeds"])
         return self
+
+    @property
+    def last_speed(self) -> float | None:
+        """Last speed of the table [m/s]; None for a single value."""
+        return self.speeds[-1] if len(self.speeds) > 1 else None
 
     def coefficients(self, pair: Pair) -> Coefficients:
         """Return the table."""
@@ -288,9 +311,8 @@ def as_restitution(value: Any) -> Any:
     )
 
 
-RestitutionKind = Constant | Tabulated | JacksonGreen | ThorntonRestitution | Johnson
 AnyRestitution = Annotated[
-    Annotated[RestitutionKind, Field(discriminator="kind")],
+    Annotated[Restitution, AnyKind()],
     SI("1"),
     BeforeValidator(as_restitution),
     AlsoAccepts({"type": "number", "minimum": 0, "maximum": 1}),

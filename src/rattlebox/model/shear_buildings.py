@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from rattlebox._util.phrases import counted
+
 from .elementwise import Vector
 from .errors import Hint, several
 from .modes import ModalModel
@@ -70,6 +72,10 @@ class ShearBuilding(DampedModes):
     def frequencies(self) -> Vector:
         """Natural frequencies of the modes, (m,) [Hz]."""
         return np.sqrt(self.modes().stiffness) / (2 * math.pi)
+
+    def words(self) -> str:
+        """Return a phrase with the number of storeys and the first mode."""
+        return self._with_first_mode(f"a building of {counted(len(self.masses), 'storey')}")
 
     def modes(self) -> ModalModel:
         """Compute the mass-normalised modes; the class has the equation."""

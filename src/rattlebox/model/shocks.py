@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import model_validator
 
+from rattlebox._util.quantities import amount
+
 from .elementwise import Vector
 from .errors import Hint
 from .signals import Amplitude, Polyline, Signal
@@ -24,6 +26,20 @@ class Shock(Signal):
     amplitude: Amplitude
     duration: PositiveTime
     start: NotNegativeTime = 0.0
+
+    @property
+    def shortest_time(self) -> tuple[float, str]:
+        """Duration of the pulse [s]."""
+        return self.duration, "pulse"
+
+    def mean_harmonic(self, duration: float) -> tuple[float, float]:
+        """Return frequency [Hz] and amplitude of a harmonic whose half cycle is as long."""
+        return 0.5 / self.duration, abs(self.amplitude)
+
+    def words(self) -> str:
+        """Return a phrase with amplitude and duration."""
+        size = amount(abs(self.amplitude), self.unit or "")
+        return f"a {self.kind.replace('_', '-')} pulse of {size} for {amount(self.duration, 's')}"
 
 
 class HalfSine(Shock):
@@ -63,6 +79,15 @@ class HalfSine(Shock):
             "start": self.start,
             "stop": self.start + self.duration,
         }
+
+    def motion(self, time: Vector) -> Vector:
+        """Return displacement, velocity and acceleration, (3, T)."""
+        omega = math.pi / self.duration
+        s = np.clip(time - self.start, 0, self.duration)
+        v = self.amplitude / omega * (1 - np.cos(omega * s))
+        u = self.amplitude / omega * (s - np.sin(omega * s) / omega)
+        late = np.maximum(time - self.start - self.duration, 0.0)
+        return np.array([u + v * late, v, self.evaluate(time)])
 
 
 class Sawtooth(Shock, Polyline):

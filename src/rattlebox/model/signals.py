@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
@@ -65,11 +67,14 @@ class Signal(Part):
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     examples_in: ClassVar[dict[str, dict[str, str]]] = {
         "base": {"amplitude": '"9.81 m/s^2"'},
         "motion": {"amplitude": '"1 mm"'},
     }
     kind: str
+    is_sampled: ClassVar[bool] = False
+    """Whether the signal is known at samples only, of which a step in time takes the mean."""
     unit: Unit | None = None
     point: str | None = None
     direction: Direction | None = None
@@ -140,14 +145,44 @@ class Signal(Part):
         """Return notes on assumptions, such as the unit of a file."""
         return iter(())
 
+    @abstractmethod
     def evaluate(self, time: Any) -> NDArray[np.float64]:
         """Return the values at the given times [s], in the unit of the signal, same shape."""
-        raise NotImplementedError
 
+    @abstractmethod
     def coefficients(self) -> dict[str, Any]:
         """Return the coefficients for the core, by name."""
-        raise NotImplementedError
 
+    @abstractmethod
+    def motion(self, time: Vector) -> Vector:
+        """Return displacement, velocity and acceleration, (3, T), of which the signal is the acceleration.
+
+        They have no discretisation error. The motion starts from rest; that of an unlimited harmonic has zero means.
+        """
+
+    @property
+    def shortest_time(self) -> tuple[float, str] | None:
+        """Time that a step must resolve [s], with its name; None if the signal is smooth between its samples."""
+        return None
+
+    def mean_harmonic(self, duration: float) -> tuple[float, float]:
+        """Return frequency [Hz] and amplitude of the harmonic with the same mean squares of acceleration and velocity."""
+        _, velocity, acceleration = self.motion(np.linspace(0.0, duration, _INSTANTS))
+        size, speed = float(acceleration.std()), float(velocity.std())
+        return (size / speed / (2 * math.pi) if speed > 0 else 0.0), math.sqrt(2) * size
+
+    def words(self) -> str:
+        """Return a phrase: "a harmonic force of 5 N at 10 Hz"."""
+        return f"a {self.kind.replace('_', ' ')} {self._quantity}"
+
+    @property
+    def _quantity(self) -> str:
+        """Name of the quantity."""
+        return {"N": "force", "m/s^2": "acceleration", "m": "displacement"}.get(self.unit or "", "signal")
+
+
+_INSTANTS = 1 << 14
+"""Times at which the mean squares of a signal are computed."""
 
 ROUNDING = 1e-9
 """Tolerance for the rounding of accumulated times of a record, relative to the duration."""
@@ -169,9 +204,9 @@ class Polyline(Signal):
 
     elementwise: ClassVar[bool] = False
 
+    @abstractmethod
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times [s], in order, and values, (n,) each."""
-        raise NotImplementedError
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
         """Return the values at the given times [s], by linear interpolation; at a jump, the value after it."""
@@ -188,11 +223,40 @@ class Polyline(Signal):
         times, values = self.polyline()
         return {"kind": "record", "times": times, "values": values}
 
+    def motion(self, time: Vector) -> Vector:
+        """Return displacement, velocity and acceleration, (3, T).
+
+        Over an interval with a + s t, v = v_0 + a t + s t^2 / 2 and u = u_0 + v_0 t + a t^2 / 2 + s t^3 / 6. There is no
+        correction of the baseline: the mean of a record is part of its motion.
+        """
+        t, a = self.polyline()
+        h = np.diff(t)
+        v_knots = np.concatenate([[0.0], np.cumsum(h * (a[1:] + a[:-1]) / 2)])
+        u_knots = np.concatenate([[0.0], np.cumsum(h * v_knots[:-1] + h**2 * (2 * a[:-1] + a[1:]) / 6)])
+
+        def integrate(at: Any) -> tuple[Any, Any]:
+            k = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
+            s = at - t[k]
+            slope = (a[k + 1] - a[k]) / h[k]
+            v = v_knots[k] + s * (a[k] + s * slope / 2)
+            return v, u_knots[k] + s * (v_knots[k] + s * (a[k] / 2 + s * slope / 6))
+
+        v, u = integrate(time)
+        if t[0] < 0:  # The base is at rest at time 0, whatever the record contains before it.
+            v0, u0 = integrate(0.0)
+            v, u = v - v0, u - u0 - v0 * time
+        return np.array([u, v, self.evaluate(time)])
+
 
 class Sampled(Polyline):
     """Piecewise linear signal through samples, which must cover the run."""
 
     begin_advice: ClassVar[str] = "a record that begins at 0 s"  # for one that begins later
+    is_sampled: ClassVar[bool] = True
+
+    def words(self) -> str:
+        """Return a phrase."""
+        return f"a {self.kind.replace('_', ' ')} of {self._quantity}"
 
     def covers(self, duration: float) -> bool:
         """Return whether the signal covers a run from 0 to its duration [s], to within rounding."""

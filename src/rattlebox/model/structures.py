@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import os
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -20,6 +21,8 @@ from pydantic import (
 )
 
 from rattlebox._util.narrow import present
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import amount
 
 from .also_accepts import AlsoAccepts
 from .any_signal import AnySignal
@@ -106,11 +109,29 @@ class StructurePart(Part):
     """Base class of structures."""
 
     field_names: ClassVar[tuple[str, ...]] = ("structure",)
+    responds: ClassVar[bool] = True
+    """Whether forces of the dampers move the structure."""
+    kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
 
+    @abstractmethod
     def modes(self) -> ModalModel:
         """Return the modes."""
-        raise NotImplementedError
+
+    def words(self) -> str:
+        """Return a phrase about the structure with its first natural frequency."""
+        return self._with_first_mode(f"a structure of {counted(len(self.modes().stiffness), 'mode')}")
+
+    @property
+    def natural_frequencies(self) -> tuple[float, ...]:
+        """Natural frequencies, without rigid-body modes [Hz]."""
+        stiffness = np.asarray(self.modes().stiffness)
+        return tuple((np.sqrt(stiffness[stiffness > 0]) / (2 * math.pi)).tolist())
+
+    def _with_first_mode(self, words: str) -> str:
+        """Return a phrase with the first natural frequency, if there is one."""
+        frequencies = self.natural_frequencies
+        return f"{words}, first mode at {amount(frequencies[0], 'Hz')}" if frequencies else words
 
     def notes(self) -> Iterator[str]:
         """Return notes on assumptions, such as the units of files."""
@@ -171,6 +192,11 @@ class SDOF(StructurePart):
         if self.damping_ratio and self.stiffness == 0:
             raise Hint("a damping ratio has no meaning without stiffness", 'damping = "5 N s/m"')
         return self
+
+    def words(self) -> str:
+        """Return a phrase with mass and natural frequency."""
+        mass, frequencies = amount(self.mass, "kg"), self.natural_frequencies
+        return f"an oscillator of {mass} at {amount(frequencies[0], 'Hz')}" if frequencies else f"a free mass of {mass}"
 
     def modes(self) -> ModalModel:
         """Return the only mode, with the decay rate C / (2 M), the stiffness K / M and the shape M^(-1/2)."""
@@ -567,7 +593,12 @@ def _still() -> ModalModel:
 class Fixed(StructurePart):
     """A cavity that does not move. Its only point is called "cavity"."""
 
+    responds: ClassVar[bool] = False
     kind: Literal["fixed"] = "fixed"
+
+    def words(self) -> str:
+        """Return a phrase."""
+        return "a fixed cavity"
 
     def modes(self) -> ModalModel:
         """Return no modes at all."""
@@ -588,6 +619,7 @@ class Shaker(StructurePart):
     -A omega^2 sin(omega t + phi).
     """
 
+    responds: ClassVar[bool] = False
     kind: Literal["shaker"] = "shaker"
     motion: Annotated[tuple[AnySignal, ...], signals_in("m", "m/s^2"), AlsoAccepts()]
 
@@ -600,6 +632,10 @@ class Shaker(StructurePart):
             with at(index):
                 placed.append(signal.placed(allowed, f"a {signal.kind} that moves a shaker"))
         return tuple(placed)
+
+    def words(self) -> str:
+        """Return a phrase about the motion."""
+        return f"a shaker with {joined([signal.words() for signal in self.motion])}"
 
     def modes(self) -> ModalModel:
         """Return no modes at all."""

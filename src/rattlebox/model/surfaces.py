@@ -1,23 +1,24 @@
-"""Surfaces of cavities as polygons, for pictures."""
+"""Surfaces of cavities as polygons: one mesh for drawings, pictures, ParaView and the browser."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from .cavities import Box, Cavity, Cylinder
 from .elementwise import Vector
 
-# Corners of a cylinder's end, meridians and circles of latitude of a sphere: few, since their positions are stored at each
-# time. The faces are inside the wall by up to 0.1 % of the radius of a cylinder and 0.8 % of that of a sphere.
-_AROUND = 72
-_MERIDIANS, _LATITUDES = 36, 17
+Polygons = tuple[tuple[int, ...], ...]
+
+_SHARP = np.cos(np.radians(20.0))
+"""Cosine of the angle between the normals of two faces above which their edge is drawn from every side."""
 
 
 @dataclass(frozen=True)
 class Surface:
-    """A surface of polygons.
+    """A closed surface of polygons.
 
     Attributes
     ----------
@@ -28,60 +29,86 @@ class Surface:
     """
 
     points: Vector
-    polygons: tuple[tuple[int, ...], ...]
+    polygons: Polygons
 
+    @cached_property
+    def normals(self) -> Vector:
+        """Unit normals of the polygons, towards the inside, (m, 3)."""
+        normals = np.array([_normal(self.points[list(polygon)]) for polygon in self.polygons])
+        return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
-def surface(cavity: Cavity) -> Surface:
-    """Return the walls of a cavity as a closed surface.
+    @cached_property
+    def edges(self) -> dict[tuple[int, int], tuple[int, int]]:
+        """The two faces at each edge, by the indices of its corners."""
+        faces: dict[tuple[int, int], list[int]] = {}
+        for face, polygon in enumerate(self.polygons):
+            for a, b in zip(polygon, (*polygon[1:], polygon[0]), strict=True):
+                faces.setdefault((min(a, b), max(a, b)), []).append(face)
+        return {edge: (pair[0], pair[-1]) for edge, pair in faces.items()}
 
-    Parameters
-    ----------
-    cavity
-        Cavity.
+    def is_sharp(self, edge: tuple[int, int]) -> bool:
+        """Return whether the faces at an edge are at an angle, so that it is seen from every side."""
+        a, b = self.edges[edge]
+        return bool(self.normals[a] @ self.normals[b] < _SHARP)
 
-    Returns
-    -------
-    Surface
-        Six faces of a box; the side and flat ends of a cylinder; a grid of latitude and longitude of a sphere.
-    """
-    if isinstance(cavity, Box):
-        corners = np.array([(i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
-        faces = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
-        return _facing_inward(corners * cavity.lengths / 2, faces)
-    if isinstance(cavity, Cylinder):
-        ends = [
-            cavity.radius * _circle(_AROUND) + [0.0, 0.0, height] for height in (-cavity.length / 2, cavity.length / 2)
+    def lines(self, towards_viewer: Vector) -> list[Vector]:
+        """Return the lines that a viewer sees, each (n, 3) [m] and as a whole in front of the centre or behind it."""
+        facing = self.normals @ towards_viewer
+        facing[np.abs(facing) < 1e-9] = 0.0  # faces seen from the side, whatever the rounding
+        shown = [
+            edge for edge, (a, b) in self.edges.items() if self.is_sharp(edge) or (facing[a] > 0) != (facing[b] > 0)
         ]
-        lids = (tuple(range(_AROUND)), tuple(range(_AROUND, 2 * _AROUND)))
-        return _facing_inward(np.concatenate(ends) @ cavity.frame, (*_bands(2, _AROUND), *lids))
-    radius = float(cavity.lengths[0]) / 2
-    angles = np.linspace(-np.pi / 2, np.pi / 2, _LATITUDES + 2)[1:-1]
-    rings = [radius * (np.cos(angle) * _circle(_MERIDIANS) + [0.0, 0.0, np.sin(angle)]) for angle in angles]
-    last, south = (_LATITUDES - 1) * _MERIDIANS, _LATITUDES * _MERIDIANS
-    turn = [(k, (k + 1) % _MERIDIANS) for k in range(_MERIDIANS)]
-    caps = [(a, b, south) for a, b in turn] + [(last + a, last + b, south + 1) for a, b in turn]
-    points = np.concatenate([*rings, [[0.0, 0.0, -radius], [0.0, 0.0, radius]]])
-    return _facing_inward(points, (*_bands(_LATITUDES, _MERIDIANS), *caps))
+        behind = self.points[np.array(shown)].mean(axis=1) @ towards_viewer < 0
+        halves = [[edge for edge, other in zip(shown, behind, strict=True) if other == half] for half in (False, True)]
+        return [line for half in halves for line in _chained(half, self.points)]
 
 
-def _circle(corners: int) -> Vector:
+def _chained(edges: Sequence[tuple[int, int]], points: Vector) -> list[Vector]:
+    """Return edges as lines that end where other than two of them meet."""
+    neighbours: dict[int, list[int]] = {}
+    for a, b in edges:
+        neighbours.setdefault(a, []).append(b)
+        neighbours.setdefault(b, []).append(a)
+    left = set(edges) | {(b, a) for a, b in edges}
+    lines = []
+    # Ends first: what is left after them are closed lines.
+    for start in sorted(neighbours, key=lambda corner: len(neighbours[corner]) == 2):
+        for first in neighbours[start]:
+            if (start, first) not in left:
+                continue
+            line = [start]
+            following: int | None = first
+            while following is not None:
+                left -= {(line[-1], following), (following, line[-1])}
+                line.append(following)
+                ahead = neighbours[following] if len(neighbours[following]) == 2 else ()
+                following = next((corner for corner in ahead if (line[-1], corner) in left), None)
+            lines.append(points[line])
+    return lines
+
+
+def circle(corners: int) -> Vector:
     """Return corners of a polygon in a circle of radius 1 around z, (n, 3)."""
     angles = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
     return np.stack([np.cos(angles), np.sin(angles), np.zeros(corners)], axis=1)
 
 
-def _bands(rings: int, around: int) -> list[tuple[int, ...]]:
+def bands(rings: int, around: int) -> Polygons:
     """Return the faces between circles that follow each other."""
     turn = [(k, (k + 1) % around) for k in range(around)]
     starts = range(0, (rings - 1) * around, around)
-    return [(low + a, low + b, low + around + b, low + around + a) for low in starts for a, b in turn]
+    return tuple((low + a, low + b, low + around + b, low + around + a) for low in starts for a, b in turn)
 
 
-def _facing_inward(points: Vector, polygons: tuple[tuple[int, ...], ...]) -> Surface:
+def facing_inward(points: Vector, polygons: Iterable[tuple[int, ...]]) -> Surface:
     """Return a convex surface whose polygons are ordered counter-clockwise as seen from its centre."""
     ordered = []
     for polygon in polygons:
         corners = points[list(polygon)]
-        normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
-        ordered.append(polygon[::-1] if normal @ corners.mean(axis=0) > 0 else polygon)
+        ordered.append(polygon[::-1] if _normal(corners) @ corners.mean(axis=0) > 0 else polygon)
     return Surface(points, tuple(ordered))
+
+
+def _normal(corners: Vector) -> Vector:
+    """Return a normal of a polygon by Newell's formula; its length is twice the area."""
+    return np.asarray(np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0))

@@ -18,7 +18,7 @@ from .structures import Ratio
 from .units import Length, PositiveFrequency, PositiveMass, Velocity
 
 if TYPE_CHECKING:
-    from .any_structure import Structure
+    from .structures import StructurePart
 
 _NO_COUPLING = 1e-12
 """Damping between modes, relative to the largest damping, up to which it counts as rounding error."""
@@ -79,7 +79,7 @@ class TunedMass(Part):
         return self.name or ("tuned mass" if count == 1 else f"tuned mass {index + 1}")
 
     @classmethod
-    def den_hartog(cls, structure: Structure, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
+    def den_hartog(cls, structure: StructurePart, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
         """Return the tuned mass that minimises the largest response to a harmonic force on the structure.
 
         Parameters
@@ -118,7 +118,7 @@ class TunedMass(Part):
         return cls(mass=mass, frequency=frequency / (1 + ratio), damping_ratio=damping, **options)
 
     @classmethod
-    def warburton(cls, structure: Structure, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
+    def warburton(cls, structure: StructurePart, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
         """Return the tuned mass that minimises the largest displacement under a harmonic acceleration of the base.
 
         Parameters
@@ -157,7 +157,7 @@ class TunedMass(Part):
         return cls(mass=mass, frequency=frequency * tuning, damping_ratio=damping, **options)
 
     @classmethod
-    def _of_mode(cls, structure: Structure, mass: Any, mode: int, options: dict[str, Any]) -> tuple[float, float]:
+    def _of_mode(cls, structure: StructurePart, mass: Any, mode: int, options: dict[str, Any]) -> tuple[float, float]:
         """Return mass over modal mass, and the natural frequency [Hz]."""
         trial = cls(mass=mass, frequency=1.0, **options)
         modes = structure.modes()

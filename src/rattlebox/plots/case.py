@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from rattlebox._util.phrases import joined
 
 from ..model.case import Case
 from ..model.dampers import ImpactDamper
 from ..model.particle_damper import ParticleDamper
 from ..results import Run
-from ..results.case_words import each_damper, joined, signal_words
+from ..results.case_words import each_damper
 from ..results.figures import run_figure
-from .case_dampers import draw_impact_damper, draw_particle_damper
+from .case_dampers import draw_damper
 from .case_structures import draw_structure
 from .style import Size, StyledFigure, figure_style, shorten
 
@@ -75,8 +77,7 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
         draw_structure(panels[0], case, marks if len(marks) > 1 else dict.fromkeys(marks, ""))
         panels[0].set_title(_loads(case), parse_math=False)
         for k, (panel, group) in enumerate(zip(panels[1:], shown, strict=False)):
-            draw: Any = draw_impact_damper if isinstance(group.damper, ImpactDamper) else draw_particle_damper
-            draw(panel, group.damper)
+            draw_damper(group.damper, panel)
             panel.set_title(_heading(case, group, k + 1 if len(groups) > 1 else 0), parse_math=False)
         for panel in panels[1 + len(shown) :]:
             panel.set_axis_off()
@@ -115,12 +116,7 @@ def _groups(case: Case) -> list[_Group]:
     """Return the dampers, equal ones in one group."""
     groups: dict[str, _Group] = {}
     for number, damper in enumerate(each_damper(case)):
-        common: dict[str, Any] = {"name": "", "point": None}
-        if isinstance(damper, ImpactDamper):
-            common |= {"start": 0.0}
-        elif damper.packing.is_random:
-            common |= {"packing": damper.packing.model_copy(update={"seed": 0})}
-        key = damper.model_copy(update=common).model_dump_json()
+        key = damper.alike().model_copy(update={"name": "", "point": None}).model_dump_json()
         groups.setdefault(key, _Group(damper, [])).numbers.append(number)
     return list(groups.values())
 
@@ -134,6 +130,6 @@ def _heading(case: Case, group: _Group, number: int) -> str:
 
 def _loads(case: Case) -> str:
     """Return a title with the loads, one on each line."""
-    words = [shorten(signal_words(each), _MAX_LETTERS) for each in (*case.loads, *case.base, *case.shaker_motion)]
+    words = [shorten(each.words(), _MAX_LETTERS) for each in (*case.loads, *case.base, *case.shaker_motion)]
     more = [f"and {len(words) - _MAX_LOADS} more"] if len(words) > _MAX_LOADS else []
     return "\n".join([*words[:_MAX_LOADS], *more]).replace("^2", "²")

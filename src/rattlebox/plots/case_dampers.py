@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, Ellipse, Rectangle
+from matplotlib.patches import Circle, Rectangle
 from numpy.typing import NDArray
 
-from ..model.cavities import Box, Cylinder
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import amount
+
+from ..model.cavities import Cavity
 from ..model.dampers import ImpactDamper
 from ..model.packing import Bed
 from ..model.particle_damper import ParticleDamper
 from ..prepare.settle import settle
-from ..results.case_words import counted, joined
-from ..results.quantities import amount
 from .spheres import draw_spheres
 from .style import FAINT, INK, SERIES_COLOURS, pen
 from .technical import SOLID, arrow, dimension, text
@@ -34,16 +36,15 @@ _FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Right, up and towards the viewer of a view along y."""
 
 
-def draw_impact_damper(axes: Axes, damper: ImpactDamper) -> None:
-    """Draw the row of balls in its cavity to scale, with the clearance; a detail enlarges a small gap.
+@singledispatch
+def draw_damper(damper: Any, axes: Axes) -> None:
+    """Draw a damper to scale, with its dimensions."""
+    raise TypeError(f"no drawing of a {type(damper).__name__}")
 
-    Parameters
-    ----------
-    axes
-        Axes to draw on.
-    damper
-        The damper.
-    """
+
+@draw_damper.register
+def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
+    """Draw the row of balls in its cavity to scale, with the clearance; a detail enlarges a small gap."""
     length, radii = damper.row + damper.clearance, np.array([ball.half for ball in damper.balls])
     high = 2 * float(radii.max())
     wall = 0.06 * max(length, high)
@@ -117,16 +118,9 @@ def _detail(axes: Axes, left: float, high: float, radius: float, gap: float) -> 
     text(axes, (centre[0], -reach - 0.05 * high), f"gap {amount(gap, 'm')}, x {scale:.0f}", va="top", fontsize="small")
 
 
-def draw_particle_damper(axes: Axes, damper: ParticleDamper) -> None:
-    """Draw a cavity from the front (along y) to scale, with its particles and dimensions.
-
-    Parameters
-    ----------
-    axes
-        Axes to draw on.
-    damper
-        The damper.
-    """
+@draw_damper.register
+def _draw_particle_damper(damper: ParticleDamper, axes: Axes) -> None:
+    """Draw a cavity from the front (along y) to scale, with its particles and dimensions."""
     cavity = damper.cavity
     axes.set_aspect("equal")
     axes.set_axis_off()
@@ -137,11 +131,11 @@ def draw_particle_damper(axes: Axes, damper: ParticleDamper) -> None:
     else:
         _draw_level(axes, damper, half_x, half_z)
     unit = 0.16 * max(half_x, half_z)
-    _draw_walls(axes, damper, half_x, half_z)
-    if not _is_inclined(damper):
+    _draw_walls(axes, cavity)
+    if cavity.is_aligned:  # else the extents are no dimensions of the cavity
         dimension(axes, (-half_x, -half_z), (half_x, -half_z), amount(2 * half_x, "m"), -1.5 * unit)
         dimension(axes, (half_x, -half_z), (half_x, half_z), amount(2 * half_z, "m"), -1.5 * unit, rotate=True)
-    words = [*_contents(damper), _cavity(damper)]
+    words = [*_contents(damper), cavity.words().removeprefix("a ")]
     _draw_directions(axes, damper, -half_x - 5.2 * unit, -half_z, unit)
     text(axes, (0.0, -half_z - 3.4 * unit), "\n".join(words), va="top")
     axes.set_xlim(-half_x - 7 * unit, half_x + 4 * unit)
@@ -160,15 +154,6 @@ def _contents(damper: ParticleDamper) -> list[str]:
         f"{counted(len(radii), f'{joined(names)} ball')} of {size}",
         f"{mass}, {amount(share, '%', 3)} of the volume",
     ]
-
-
-def _cavity(damper: ParticleDamper) -> str:
-    cavity = damper.cavity
-    if isinstance(cavity, Box):
-        return f"box, {amount(float(cavity.lengths[1]), 'm')} deep (y)"
-    if isinstance(cavity, Cylinder):
-        return f"cylinder, diameter {amount(2 * cavity.radius, 'm')}, {amount(cavity.length, 'm')} long"
-    return f"sphere, diameter {amount(float(cavity.lengths[0]), 'm')}"
 
 
 def positions_at_start(damper: ParticleDamper) -> Array:
@@ -213,24 +198,10 @@ def _draw_level(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float
     axes.imshow(colour, extent=(-half_x, half_x, -half_z, half_z), origin="lower", zorder=2)
 
 
-def _is_inclined(damper: ParticleDamper) -> bool:
-    """Return whether the cavity is a cylinder whose axis is along none of x, y and z."""
-    return isinstance(damper.cavity, Cylinder) and float(np.abs(damper.cavity.frame[2]).max()) < 1 - 1e-9
-
-
-def _draw_walls(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
+def _draw_walls(axes: Axes, cavity: Cavity) -> None:
     """Draw the outline of the cavity as seen along y."""
-    cavity = damper.cavity
-    line: dict[str, Any] = {"facecolor": "none", "edgecolor": INK, "lw": pen(1.0), "zorder": 4}
-    if _is_inclined(damper):
-        from .particles import outline
-
-        for edge in outline(cavity, _FRONT):
-            axes.plot(*(edge @ _FRONT.T)[:, :2].T, color=INK, lw=pen(1.0), zorder=4)
-    elif isinstance(cavity, Box) or (isinstance(cavity, Cylinder) and abs(cavity.frame[2][1]) < 0.5):
-        axes.add_patch(Rectangle((-half_x, -half_z), 2 * half_x, 2 * half_z, **line))
-    else:
-        axes.add_patch(Ellipse((0.0, 0.0), 2 * half_x, 2 * half_z, **line))
+    for line in cavity.outline(_FRONT):
+        axes.plot(*(line @ _FRONT.T)[:, :2].T, color=INK, lw=pen(1.0), zorder=4)
 
 
 def _draw_directions(axes: Axes, damper: ParticleDamper, x: float, z: float, unit: float) -> None:

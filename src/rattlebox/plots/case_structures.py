@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon, Rectangle
 
-from rattlebox._util.narrow import instance
+from rattlebox._util.quantities import amount
 
 from ..model.beams import Beam
 from ..model.case import Case
 from ..model.plates import Plate
 from ..model.shear_buildings import ShearBuilding
-from ..model.structures import SDOF, Fixed, Shaker
-from ..results.case_words import each_damper, natural_frequencies
-from ..results.quantities import amount
+from ..model.structures import SDOF, Fixed, Shaker, StructurePart
+from ..results.case_words import each_damper
 from .style import FAINT, INK, SERIES_COLOURS, label, pen, scaled, shorten
 from .technical import (
     LOAD_COLOUR,
@@ -52,22 +52,18 @@ def draw_structure(axes: Axes, case: Case, marks: Marks) -> None:
     marks
         Text in the mark of each damper.
     """
-    structure = case.structure
-    draw: Callable[[Axes, Case, Marks], None]
-    if isinstance(structure, Beam):
-        draw = _draw_beam
-    elif isinstance(structure, Plate):
-        draw = _draw_plate
-    elif isinstance(structure, ShearBuilding):
-        draw = _draw_building
-    elif isinstance(structure, (SDOF, Shaker, Fixed)):
-        draw = _draw_block
-    else:
-        _draw_modes(axes, case, marks)
-        return
+    _draw(case.structure, axes, case, marks)
+
+
+@singledispatch
+def _draw(structure: StructurePart, axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw the effective masses of a structure without a drawing of its own."""
+    _draw_modes(axes, case, marks)
+
+
+def _equal_scales(axes: Axes) -> None:
     axes.set_aspect("equal")
     axes.set_axis_off()
-    draw(axes, case, marks)
 
 
 def _points(case: Case) -> dict[int, str]:
@@ -76,36 +72,47 @@ def _points(case: Case) -> dict[int, str]:
     return {number: modes.point(damper.point) for number, damper in enumerate(each_damper(case))}
 
 
-def _draw_block(axes: Axes, case: Case, marks: Marks) -> None:
-    """Draw a mass on spring and dashpot, a shaker table, or a fixed cavity; none of them has a size."""
-    structure = case.structure
+@_draw.register
+def _draw_oscillator(structure: SDOF, axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw a mass on spring and dashpot, with their values."""
     left = 0.0
-    body(axes, (0.0, -0.4), 1.2, 0.8)
-    if isinstance(structure, SDOF):
-        words = amount(structure.mass, "kg")
-        stiff = structure.stiffness if structure.frequency is None else None
-        if structure.frequency is not None or stiff:
-            left = -1.3
-            ground(axes, (left, -0.5), (left, 0.5), 0.15)
-            spring(axes, (left, 0.2), (0.0, 0.2), 0.2)
-            first = (
-                amount(structure.frequency, "Hz") if structure.frequency is not None else amount(stiff or 0.0, "N/m")
+    if structure.frequency is not None or structure.stiffness:
+        left = -1.3
+        ground(axes, (left, -0.5), (left, 0.5), 0.15)
+        spring(axes, (left, 0.2), (0.0, 0.2), 0.2)
+        first = (
+            amount(structure.stiffness or 0.0, "N/m")
+            if structure.frequency is None
+            else amount(structure.frequency, "Hz")
+        )
+        text(axes, (left / 2, 0.38), first, va="bottom", fontsize="small")
+        if structure.damping or structure.damping_ratio:
+            dashpot(axes, (left, -0.2), (0.0, -0.2), 0.22)
+            damping = (
+                amount(structure.damping, "N s/m") if structure.damping else amount(structure.damping_ratio or 0, "%")
             )
-            text(axes, (left / 2, 0.38), first, va="bottom", fontsize="small")
-            if structure.damping or structure.damping_ratio:
-                dashpot(axes, (left, -0.2), (0.0, -0.2), 0.22)
-                damping = (
-                    amount(structure.damping, "N s/m")
-                    if structure.damping
-                    else amount(structure.damping_ratio or 0, "%")
-                )
-                text(axes, (left / 2, -0.38), damping, va="top", fontsize="small")
-    elif isinstance(structure, Shaker):
-        words = "shaker"
-        arrow(axes, (0.2, -0.62), (1.0, -0.62), both=True, colour=LOAD_COLOUR, width=1.2)
-    else:
-        words = "fixed"
-        ground(axes, (1.2, -0.4), (0.0, -0.4), 0.15)
+            text(axes, (left / 2, -0.38), damping, va="top", fontsize="small")
+    _draw_block(axes, case, marks, amount(structure.mass, "kg"), left)
+
+
+@_draw.register
+def _draw_shaker(structure: Shaker, axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw a shaker table."""
+    arrow(axes, (0.2, -0.62), (1.0, -0.62), both=True, colour=LOAD_COLOUR, width=1.2)
+    _draw_block(axes, case, marks, "shaker", 0.0)
+
+
+@_draw.register
+def _draw_fixed(structure: Fixed, axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw a fixed cavity."""
+    ground(axes, (1.2, -0.4), (0.0, -0.4), 0.15)
+    _draw_block(axes, case, marks, "fixed", 0.0)
+
+
+def _draw_block(axes: Axes, case: Case, marks: Marks, words: str, left: float) -> None:
+    """Draw a block without size, its dampers, loads and tuned masses; `left` is the edge of what is drawn beside it."""
+    _equal_scales(axes)
+    body(axes, (0.0, -0.4), 1.2, 0.8)
     text(axes, (0.6, 0.2 if case.dampers else 0.0), words)
     _row_of_marks(axes, case, marks, (0.6, -0.15))
     right = 1.2
@@ -148,9 +155,10 @@ def _draw_tuned_masses(axes: Axes, case: Case, places: Mapping[str, Point], step
     return height
 
 
-def _draw_beam(axes: Axes, case: Case, marks: Marks) -> None:
+@_draw.register
+def _draw_beam(beam: Beam, axes: Axes, case: Case, marks: Marks) -> None:
     """Draw a beam to scale with its supports, points, cross-section and first mode."""
-    beam = instance(case.structure, Beam)
+    _equal_scales(axes)
     length = beam.length
     thick = beam.diameter or beam.height or 0.0
     shown = max(thick, 0.012 * length)
@@ -250,9 +258,10 @@ def _force(axes: Axes, at: Point) -> None:
     text(axes, at, "F(t)", ha="left", color=LOAD_COLOUR, fontsize="small")
 
 
-def _draw_plate(axes: Axes, case: Case, marks: Marks) -> None:
+@_draw.register
+def _draw_plate(plate: Plate, axes: Axes, case: Case, marks: Marks) -> None:
     """Draw a plate from above to scale, with its points."""
-    plate = instance(case.structure, Plate)
+    _equal_scales(axes)
     a, b = plate.length, plate.width
     unit = 0.05 * max(a, b)
     body(axes, (0.0, 0.0), a, b)
@@ -290,9 +299,10 @@ def _draw_plate(axes: Axes, case: Case, marks: Marks) -> None:
     axes.set_ylim(-5.5 * unit, b + unit)
 
 
-def _draw_building(axes: Axes, case: Case, marks: Marks) -> None:
+@_draw.register
+def _draw_building(building: ShearBuilding, axes: Axes, case: Case, marks: Marks) -> None:
     """Draw the storeys of a building as symbols with masses and stiffnesses."""
-    building = instance(case.structure, ShearBuilding)
+    _equal_scales(axes)
     count = len(building.masses)
     step = max(1, -(-count // _MAX_STOREYS))
     ground(axes, (1.5, 0.0), (-0.5, 0.0), 0.2)
@@ -332,7 +342,7 @@ def _draw_building(axes: Axes, case: Case, marks: Marks) -> None:
 
 def _draw_modes(axes: Axes, case: Case, marks: Marks) -> None:
     """Draw the effective mass of each mode at the points of the dampers over the natural frequency."""
-    modes, frequencies = case.structure.modes(), np.array(natural_frequencies(case))
+    modes, frequencies = case.structure.modes(), np.array(case.structure.natural_frequencies)
     stiff = np.asarray(modes.stiffness) > 0
     names = list(dict.fromkeys([*_points(case).values(), *(modes.point(load.point) for load in case.loads)]))
     names = names or list(modes.shapes)[:1]

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.ticker import Formatter
 from numpy.typing import NDArray
 
-from ..results.quantities import quantity, without_zeros
+from rattlebox._util.quantities import quantity, without_zeros
+
 from .style import label, scaled, shorten
 
 if TYPE_CHECKING:

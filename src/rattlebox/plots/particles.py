@@ -26,8 +26,7 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import progress_bar
 
-from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
-from ..model.surfaces import surface
+from ..model.cavities import AnyCavity, Cavity
 from ..results import Run
 from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots
@@ -266,37 +265,6 @@ def _cavities(dampers: Sequence[Mapping[str, Any]]) -> list[tuple[str, Cavity]]:
     ]
 
 
-def outline(cavity: Cavity, view: Array = VIEW) -> list[Array]:
-    """Return lines that show a cavity, each (n, 3) [m] from its centre.
-
-    Parameters
-    ----------
-    cavity
-        Cavity: a box has edges, a cylinder its ends and two lines of its side, a sphere its outline.
-    view
-        Directions to the right, up and towards the viewer, (3, 3).
-    """
-    if isinstance(cavity, Box):
-        corners = np.array(np.meshgrid(*[(-1, 1)] * 3, indexing="ij")).reshape(3, -1).T
-        pairs = [(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit]
-        return [corners[list(pair)] * cavity.lengths / 2 for pair in pairs]
-    if isinstance(cavity, Cylinder):
-        along = cavity.frame[2]
-        side = np.cross(along, view[2]) if abs(along @ view[2]) < 1 - 1e-9 else cavity.frame[0]
-        side /= np.linalg.norm(side)
-        rim = cavity.radius * _arc(side, np.cross(along, side))
-        ends = np.array([[-1.0], [1.0]]) * cavity.length / 2 * along
-        halves = [half + end for end in ends for half in (rim[:37], rim[36:])]  # of which one may be hidden
-        return [*halves, *(ends + sign * cavity.radius * side for sign in (-1, 1))]
-    return [cavity.lengths[0] / 2 * _arc(view[0], view[1])]
-
-
-def _arc(first: Array, second: Array) -> Array:
-    """Return a circle of radius 1 from one direction through another, (73, 3)."""
-    angle = np.linspace(0, 2 * np.pi, 73)
-    return np.asarray(np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second))
-
-
 @dataclass
 class _Panel:
     axes: Axes
@@ -366,7 +334,7 @@ class _Scene:
 
     def _extent(self, k: int) -> tuple[float, float, float, float]:
         """Return the edges of a panel that contains the cavity at all times."""
-        corners = np.concatenate(outline(self._cavities[k][1], self._view)) @ self._view.T
+        corners = np.concatenate(self._cavities[k][1].outline(self._view)) @ self._view.T
         moves = self._moves[:, k] @ self._view.T
         low, high = corners.min(axis=0) + moves.min(axis=0), corners.max(axis=0) + moves.max(axis=0)
         margin = 0.03 * float((high - low)[:2].max())
@@ -377,7 +345,7 @@ class _Scene:
         image = axes.imshow(np.zeros((1, 1, 4), np.uint8), extent=extent, zorder=2, interpolation="antialiased")
         lines = []
         (wall,) = axes.fill([0.0], [0.0], facecolor=_WALL, edgecolor="none", zorder=0)
-        for line in outline(self._cavities[k][1], self._view):
+        for line in self._cavities[k][1].outline(self._view):
             behind = line.mean(axis=0) @ self._view[2] < 0
             (drawn,) = axes.plot([], [], color=INK, linewidth=pen(0.7), alpha=0.6 if behind else 1.0)
             drawn.set_zorder(1 if behind else 3)
@@ -411,7 +379,7 @@ class _Scene:
             for drawn, line in panel.lines:
                 placed = (line + frame.displacement[k]) @ self._view.T
                 drawn.set_data(placed[:, 0], placed[:, 1])
-            corners = (surface(self._cavities[k][1]).points + frame.displacement[k]) @ self._view[:2].T
+            corners = (self._cavities[k][1].surface().points + frame.displacement[k]) @ self._view[:2].T
             panel.wall.set_xy(corners[ConvexHull(corners).vertices])
             name = f"{self._cavities[k][0]}, " if len(self._panels) > 1 else ""
             panel.axes.set_title(f"{name}{frame.time / time.divisor:.4g} {time.unit}")

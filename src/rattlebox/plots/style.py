@@ -20,8 +20,7 @@ from matplotlib.ticker import MaxNLocator
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.narrow import present
 from rattlebox._util.own_files import seal
-
-from ..results.quantities import in_unit
+from rattlebox._util.quantities import in_unit
 
 Size = Literal["column", "page", "slide"]
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rattlebox._util.own_files import register_format
+from rattlebox._util.quantities import quantity
 from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
@@ -20,7 +21,6 @@ from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
 from rattlebox.model.structures import SDOF, Fixed, Shaker
 
-from ..results.quantities import quantity
 from .pack import pack
 from .particles import Prepared, pack_particles, prepare
 

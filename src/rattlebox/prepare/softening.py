@@ -15,18 +15,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.model.contacts import Contact, Linear, PowerLaw, TabulatedNormal
-from rattlebox.model.harmonics import Harmonic
-from rattlebox.model.shocks import Shock
-from rattlebox.model.signals import Signal
-from rattlebox.prepare.base_motion import base_motion
-from rattlebox.results.quantities import quantity
+from rattlebox._util.quantities import quantity
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
-    from rattlebox.model.particle_damper import Entry, ParticleDamper
+    from rattlebox.model.particle_damper import ParticleDamper
 
 PACKED = 0.58
 """Volume fraction of particles in a settled bed."""
@@ -61,7 +56,6 @@ ROLLING = 0.3
 Those of beds that rest move at up to 0.17 of it in computed runs, single balls on a shaken floor at 0.7."""
 
 _LEAST_PART = 0.1  # Motions with less than this part of the largest acceleration are ignored.
-_INSTANTS = 1 << 14
 _LARGEST = 1e6
 
 
@@ -110,7 +104,7 @@ def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.floa
     angular frequency is s_v / s_q, and its acceleration sqrt(2) (s_v^2 / s_q) times the mode shape. Each signal counts as
     one with the same standard deviations of velocity and acceleration.
     """
-    parts = [_harmonic(signal, case.duration) for signal in case.base_acceleration()]
+    parts = [signal.mean_harmonic(case.duration) for signal in case.base_acceleration()]
     for mode, row in zip(np.moveaxis(state, 1, 0), shape, strict=True):
         displacement, speed = (float(values.std()) for values in mode.T)
         rate = speed / displacement if displacement > 0 else 0.0
@@ -121,17 +115,6 @@ def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.floa
     main, largest = max(parts, key=lambda part: part[1])
     highest = max(f for f, a in parts if a >= _LEAST_PART * largest)
     return CavityMotion(main, highest, math.hypot(*(a for _, a in parts)), not len(shape))
-
-
-def _harmonic(signal: Signal, duration: float) -> tuple[float, float]:
-    """Return frequency [Hz] and amplitude of the harmonic with the same mean squares of acceleration and velocity."""
-    if isinstance(signal, Harmonic):
-        return signal.frequency, abs(signal.amplitude)
-    if isinstance(signal, Shock):
-        return 0.5 / signal.duration, abs(signal.amplitude)
-    _, velocity, acceleration = base_motion(signal, np.linspace(0.0, duration, _INSTANTS))
-    size, speed = float(acceleration.std()), float(velocity.std())
-    return (size / speed / (2 * math.pi) if speed > 0 else 0.0), math.sqrt(2) * size
 
 
 def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> float:
@@ -173,26 +156,10 @@ def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> flo
     density = PACKED * float(contents.mass.sum()) / volume
     neighbours = 4.6
     force = math.pi * diameter**2 * density * size * depth / (PACKED * neighbours)
-    exponent = force_exponent(entry.contact)
-    stiffness = exponent * force / _overlap(entry, factor, force)
+    exponent = entry.contact.force_exponent
+    stiffness = exponent * force / entry.contact.static_overlap(entry.pair, factor, force)
     travel = 2 * exponent / (exponent + 1)  # time of a wave over h / c
     return float(COLUMN * math.sqrt(stiffness / (diameter * density)) / (4 * travel * depth))
-
-
-def _overlap(entry: Entry, softening: float, force: float) -> float:
-    """Return the overlap of a softened contact at rest under a force [m]."""
-    contact = entry.contact
-    if isinstance(contact, TabulatedNormal):
-        return force * softening / contact.secant_stiffness(force * softening)
-    _, values = contact.softened(entry.pair, softening)
-    return float((force / values["stiffness"]) ** (1 / force_exponent(contact)))
-
-
-def force_exponent(contact: Contact) -> float:
-    """Return the exponent of a contact force in the overlap; measured curves count as linear, with their secant."""
-    if isinstance(contact, PowerLaw):
-        return contact.exponent
-    return 1.0 if isinstance(contact, (Linear, TabulatedNormal)) else 1.5
 
 
 def loss_change(damper: ParticleDamper, motion: CavityMotion, level: float, softening: float) -> float:
@@ -278,7 +245,7 @@ def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: floa
             f"at {level:.2g} times gravity the bed stays on the floor for most of a cycle, and its loss grows with "
             "softening; it also depends on the friction law, and without friction on the dashpot"
         )
-    exponent = force_exponent(damper.contact)
+    exponent = damper.contact.force_exponent
     room = AUTO_CHANGE / _sensitivity(level) * (bed_resonance(damper, 1.0) / motion.highest) ** 2
     by_loss = (1 + room) ** exponent
     value = _rounded(max(1.0, min(by_loss, largest, _LARGEST)))

@@ -12,16 +12,11 @@ import numpy as np
 
 from rattlebox._util.narrow import instance
 from rattlebox.core import _core
-from rattlebox.model.contacts import Linear
+from rattlebox.model.contacts import MAX_OVERLAP
 from rattlebox.model.errors import Hint
-from rattlebox.model.harmonics import Harmonic, SineSweep
 from rattlebox.model.methods import Dem
 from rattlebox.model.particle_case import direction_of_base
-from rattlebox.model.restitutions import Constant
-from rattlebox.model.shocks import Shock
-from rattlebox.model.signals import Sampled
-from rattlebox.prepare.base_motion import base_motion
-from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE, CavityMotion, Effect, force_exponent
+from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE, CavityMotion, Effect
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -40,8 +35,6 @@ MAX_AVERAGING_LOSS = 0.02
 MIN_STEPS_PER_CONTACT = 20.0
 """Fewest steps in the shortest contact without a warning."""
 
-MAX_OVERLAP = 0.01
-"""Largest overlap over the smaller radius without a warning; contact laws of spheres hold for small overlaps."""
 
 WARNINGS = {
     "few_steps": f"fewer than {MIN_STEPS_PER_CONTACT:g} steps in the shortest contact",
@@ -152,7 +145,7 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
     times = evaluation_times(case)
     base = np.zeros((times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
-        base += np.outer(base_motion(acceleration, times)[1], direction_of_base(case, signal))
+        base += np.outer(acceleration.motion(times)[1], direction_of_base(case, signal))
     speeds = []
     for damper, velocity in zip(case.particle_dampers, cavity_velocities, strict=True):
         gravity = np.array(damper.gravity)
@@ -211,7 +204,7 @@ def contact_limits(
             bound = min(bound, BOUND * time / factor)
             if time < duration:
                 duration, sizes = time, text
-        at = "" if isinstance(entry.contact, Linear) else f" at {speed:.3g} m/s"
+        at = f" at {speed:.3g} m/s" if entry.contact.depends_on_speed else ""
         friction = ", with its friction" if bound < 0.5 * BOUND * duration / damped else ""
         what = f"contact of {' and '.join(entry.names)} ({sizes}){at}, {_time(duration)}{friction}"
         yield Limit(duration, min(fraction * duration / damped, 0.5 * bound), bound, what, is_contact=True)
@@ -280,10 +273,11 @@ def _sizes(damper: ParticleDamper, entry: Entry, wall_mass: float) -> Iterator[t
 
 def _damping_ratio(entry: Entry, law: _core.NormalForce, speed: float) -> float:
     """Return the damping ratio of a contact; 0 if its restitution depends on the speed."""
-    constant = entry.contact.impact_restitution
-    if law.needs_restitution and not isinstance(constant, Constant):
+    dashpot = entry.contact.impact_restitution
+    restitution = None if dashpot is None else dashpot.constant_value
+    if law.needs_restitution and restitution is None:
         return 0.0
-    return law.damping_ratio(constant.e if isinstance(constant, Constant) else 1.0, speed)
+    return law.damping_ratio(1.0 if restitution is None else restitution, speed)
 
 
 def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> list[Limit]:
@@ -320,7 +314,7 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
     for damper, table, speed in zip(case.particle_dampers, tables, speeds, strict=True):
         result += contact_limits(case, damper, table, speed, fraction)
         for index, species in enumerate(damper.particles):
-            if all(isinstance(entry.contact, Linear) for entry in table.entries if species.label in entry.names):
+            if not any(entry.contact.depends_on_speed for entry in table.entries if species.label in entry.names):
                 continue
             radius = float(damper.contents.radius[damper.contents.species == index].min())
             material = species.material
@@ -333,13 +327,9 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
         if stiffness > 0:
             result.append(_motion_limit(2 * math.pi / math.sqrt(stiffness), fraction, f"period of mode {k + 1}"))
     for signal in (*case.loads, *case.base_acceleration()):
-        if isinstance(signal, Shock):
-            result.append(_motion_limit(signal.duration, fraction, "pulse"))
-        elif isinstance(signal, Harmonic):
-            result.append(_motion_limit(1 / signal.frequency, fraction, "period of a harmonic"))
-        elif isinstance(signal, SineSweep):
-            highest = max(signal.first_frequency, signal.last_frequency)
-            result.append(_motion_limit(1 / highest, fraction, "shortest period of a sweep"))
+        if signal.shortest_time is not None:
+            time, what = signal.shortest_time
+            result.append(_motion_limit(time, fraction, what))
     return result
 
 
@@ -481,9 +471,7 @@ def _averaging_warnings(case: Case, step: Step) -> Iterator[str]:
     """Yield a warning if averaging a record over steps reduces it too much at the fastest mode."""
     fastest = math.sqrt(max(case.modes.stiffness, default=0.0)) / (2 * math.pi)
     lost = 1 - float(np.sinc(fastest * step.dt))
-    if lost > MAX_AVERAGING_LOSS and any(
-        isinstance(signal, Sampled) for signal in (*case.loads, *case.base_acceleration())
-    ):
+    if lost > MAX_AVERAGING_LOSS and any(signal.is_sampled for signal in (*case.loads, *case.base_acceleration())):
         # The factor 0.9 leaves room for the rounding in the message.
         shorter = 0.9 * math.sqrt(6 * MAX_AVERAGING_LOSS) / (math.pi * fastest)
         yield (
@@ -562,7 +550,7 @@ def _softening_notes(case: Case) -> list[str]:
     """Return notes on the effects of softening, one for all dampers with the same effects."""
     dampers_by_note: dict[str, list[str]] = {}
     for index, damper in enumerate(case.particle_dampers):
-        exponents = {force_exponent(entry.contact) for entry in damper.contact_table.entries}
+        exponents = {entry.contact.force_exponent for entry in damper.contact_table.entries}
         factors = {damper.softening_factor ** (1 / (exponent + 1)) for exponent in exponents}
         times = " and ".join(f"{factor:.3g}" for factor in sorted(factors))
         effect = f"contacts last {times} times as long, and overlap {times} times as much"
@@ -574,6 +562,6 @@ def _softening_notes(case: Case) -> list[str]:
 
 
 def _time(seconds: float) -> str:
-    from rattlebox.results.quantities import quantity
+    from rattlebox._util.quantities import quantity
 
     return quantity(seconds, "s", 3) if math.isfinite(seconds) else "unlimited"

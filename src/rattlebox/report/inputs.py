@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.quantities import amount
 from rattlebox.model.base import Part
-from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import unit_of_field
 from rattlebox.model.units import as_written
-from rattlebox.results.case_words import counted, natural_frequencies
-from rattlebox.results.quantities import amount
 
 from .parts import Table
 
@@ -57,7 +55,7 @@ def input_tables(case: Case) -> list[Table]:
 
 def _structure_lines(case: Case) -> Iterator[tuple[str, str]]:
     """Yield natural frequencies and damping ratios of the structure."""
-    modes, frequencies = case.structure.modes(), natural_frequencies(case)
+    modes, frequencies = case.structure.modes(), case.structure.natural_frequencies
     if not frequencies:
         return
     stiff = np.asarray(modes.stiffness) > 0
@@ -72,29 +70,18 @@ def _structure_lines(case: Case) -> Iterator[tuple[str, str]]:
 def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:
     """Yield mass, mass ratio, clearance or fill of a damper."""
     damper = case.dampers[number]
-    if isinstance(damper, ImpactDamper):
-        mass, points = float(np.sum(damper.masses)), [damper.point] * damper.number
-        each = ", each" if damper.number > 1 else ""
-        if each:
-            yield "= identical dampers", f"{damper.number}, {amount(mass * damper.number, 'kg')} of balls in all"
-        yield f"= mass of the balls{each}", amount(mass, "kg")
-        yield "= clearance", f"{amount(damper.clearance, 'm')}, twice the gap"
-    else:
-        mass, points = float(damper.contents.mass.sum()), [each.point for each in damper.each()]
-        volume = float((4 / 3 * np.pi * damper.contents.radius**3).sum())
-        each = ", each" if len(points) > 1 else ""
-        if each:
-            yield "= identical dampers", f"{len(points)}, {amount(mass * len(points), 'kg')} of particles in all"
-        yield f"= particles{each}", counted(len(damper.contents.radius), "particle")
-        yield f"= mass of the particles{each}", amount(mass, "kg")
-        yield "= share of the volume of the cavity", amount(volume / damper.cavity.volume, "%", 3)
+    points = [each.point for each in damper.each()]
+    if len(points) > 1:
+        yield "= identical dampers", f"{len(points)}, {amount(damper.mass * len(points), 'kg')} in all"
+    for name, value in damper.facts():
+        yield f"= {name}" + (", each" if len(points) > 1 else ""), value
     modes = case.structure.modes()
     if not len(modes.stiffness):
         return
     ratio = np.zeros(len(modes.stiffness))
     for point in points:
         shape = np.asarray(modes.shapes[modes.point(point)])
-        ratio += mass * np.sum(shape.reshape(len(shape), -1) ** 2, axis=1)
+        ratio += damper.mass * np.sum(shape.reshape(len(shape), -1) ** 2, axis=1)
     moved = np.flatnonzero((ratio > 0) & (np.asarray(modes.stiffness) > 0))
     if moved.size:
         yield f"= mass over the effective mass of mode {moved[0] + 1}", amount(float(ratio[moved[0]]), "%", 3)

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox._util.exceptions import RattleboxError
-from rattlebox.engines.run_notes import MAX_LINEAR_OVERLAP
-from rattlebox.model.contacts import Linear
+from rattlebox._util.quantities import amount, digits
+from rattlebox.model.contacts import MAX_OVERLAP
 from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE
-from rattlebox.prepare.time_step import MAX_OVERLAP, MIN_STEPS_PER_CONTACT
-from rattlebox.results.case_words import natural_frequencies
-from rattlebox.results.quantities import amount, digits
+from rattlebox.prepare.time_step import MIN_STEPS_PER_CONTACT
 
 from .parts import Limit
 
@@ -88,7 +86,7 @@ def mode_limits(case: Case) -> Iterator[Limit]:
     case
         The case.
     """
-    frequencies = natural_frequencies(case)
+    frequencies = case.structure.natural_frequencies
     if frequencies and case.structure.kind not in ("sdof", "shear_building"):
         yield Limit(
             "modes of the structure",
@@ -104,7 +102,7 @@ def _impact_limits(run: Run, case: Case) -> Iterator[Limit]:
     radii = [ball.half for damper in case.impact_dampers for ball in damper.balls]
     if overlaps.size and radii and overlaps.max() > 0:
         laws = [law for damper in case.impact_dampers for law in (damper.contact, damper.ball_contact) if law]
-        allowed = MAX_LINEAR_OVERLAP if all(isinstance(law, Linear) for law in laws) else MAX_OVERLAP
+        allowed = min(law.overlap_limit for law in laws)
         yield Limit(
             "overlap in contacts",
             f"{amount(float(overlaps.max()) / min(radii), '%', 3)} of the radius",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rattlebox.results.quantities import MISSING, PREFIXED_UNITS, amount, digits, in_unit
+from rattlebox._util.quantities import MISSING, PREFIXED_UNITS, amount, digits, in_unit
 
 
 def with_interval(value: float, half: float, unit: str = "") -> str:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rattlebox._util.exceptions import RattleboxError
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import MISSING, amount
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.plots.labels import REPLICA, name_of, unit_of
@@ -18,8 +20,6 @@ from rattlebox.prepare.softening import MAX_CHANGE
 from rattlebox.report.limits import ENERGY_BOUNDS, mode_limits
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Limit, Table
-from rattlebox.results.case_words import counted, joined
-from rattlebox.results.quantities import MISSING, amount
 from rattlebox.results.schema import OUTCOMES
 from rattlebox.studies.measures import INTERVAL
 from rattlebox.studies.outcomes import status_counts, status_lines

@@ -8,8 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from rattlebox._util.quantities import quantity
+
 from .arrays import FloatArray, RunArrays, raise_absent
-from .quantities import quantity
 from .schema import channels
 
 _KINETIC = ("ball_energy", "kinetic_energy", "rotation_energy")

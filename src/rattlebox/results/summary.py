@@ -13,11 +13,11 @@ import numpy as np
 from rattlebox._util.batch_means import mean_interval
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.html import bullets, paragraph, table
+from rattlebox._util.quantities import MISSING, digits, quantity
 from rattlebox._util.settling import settled_after
 
 from .damper_force import mean_damper_force
 from .free_decay import free_decay
-from .quantities import MISSING, digits, quantity
 from .schema import PARTNERS
 
 if TYPE_CHECKING:

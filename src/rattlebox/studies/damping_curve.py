@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.quantities import quantity
 from rattlebox.analysis.cycle_loss import UNSTEADY, cycle_loss
 from rattlebox.analysis.damping_curve import band_edges, damping_over_amplitude, mean_over_period, smooth_decay
 from rattlebox.model.dampers import ImpactDamper
@@ -22,7 +23,6 @@ from rattlebox.model.packing import Bed, Lattice
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 from rattlebox.prepare.time_step import exceeded_limits
-from rattlebox.results.quantities import quantity
 from rattlebox.studies.evaluate_cases import evaluate_cases
 from rattlebox.studies.robust import no_random_packing
 from rattlebox.studies.sampling import Spaced

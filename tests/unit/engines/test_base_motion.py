@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.prepare.base_motion import base_motion
 
 
 @pytest.mark.parametrize(
@@ -14,7 +13,7 @@ from rattlebox.prepare.base_motion import base_motion
 def test_records_that_begin_before_the_run(times: list[float], values: list[float]) -> None:
     """A base is at rest at 0 whatever its record held before, and then moves as its acceleration says, integrated twice."""
     fine = np.linspace(0.0, 1.0, 200_001)
-    displacement, velocity, acceleration = base_motion(rb.Record(times=times, values=values, unit="m/s^2"), fine)
+    displacement, velocity, acceleration = rb.Record(times=times, values=values, unit="m/s^2").motion(fine)
     np.testing.assert_allclose(acceleration, np.interp(fine, times, values), atol=1e-12)
     step = np.diff(fine)
     np.testing.assert_allclose(velocity[1:], np.cumsum(step * (acceleration[1:] + acceleration[:-1]) / 2), atol=1e-9)
@@ -34,7 +33,7 @@ def test_records_that_begin_before_the_run(times: list[float], values: list[floa
 def test_signals_that_begin_in_the_run(signal: rb.HalfSine | rb.Harmonic | rb.Record) -> None:
     """From rest, velocity and displacement are the acceleration integrated once and twice, also after its end."""
     fine = np.linspace(0.0, 1.0, 200_001)
-    displacement, velocity, acceleration = base_motion(signal, fine)
+    displacement, velocity, acceleration = signal.motion(fine)
     step = np.diff(fine)
     np.testing.assert_allclose(velocity[1:], np.cumsum(step * (acceleration[1:] + acceleration[:-1]) / 2), atol=3e-5)
     np.testing.assert_allclose(displacement[1:], np.cumsum(step * (velocity[1:] + velocity[:-1]) / 2), atol=1e-9)

@@ -13,7 +13,6 @@ from scipy.signal import lsim
 import rattlebox as rb
 from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.model.signals import Polyline, Signal
-from rattlebox.prepare.base_motion import base_motion
 
 G = 9.80665
 PULSES: dict[str, tuple[Signal, float]] = {
@@ -54,7 +53,7 @@ def test_shocks_move_the_base(name: str) -> None:
     """Velocity and displacement of the base are the integrals of the pulse, before, in and after it."""
     pulse = PULSES[name][0].model_copy(update={"unit": "m/s^2"})
     for end in (0.05, 0.3, 0.9):
-        displacement, velocity, _ = base_motion(pulse, np.array([end]))
+        displacement, velocity, _ = pulse.motion(np.array([end]))
         points = [t for t in (0.1, 0.14, 0.2, 0.3, 0.46, 0.5) if t < end]
         assert velocity[0] == pytest.approx(
             quad(lambda t: float(pulse.evaluate(t)), 0, end, points=points)[0], abs=1e-9

@@ -17,7 +17,7 @@ from PIL import Image
 import rattlebox as rb
 from rattlebox.cli.main import main
 from rattlebox.model.cavities import Cavity
-from rattlebox.plots.particles import VIEW, _Scene, film_particles, outline, plot_particles, view_axes
+from rattlebox.plots.particles import VIEW, _Scene, film_particles, plot_particles, view_axes
 from rattlebox.plots.spheres import draw_spheres
 
 EXTENT = (-2.0, 2.0, -1.0, 1.0)
@@ -79,18 +79,21 @@ def test_both_renderers_agree() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cavity", "lines"),
+    ("cavity", "edges", "length"),
     [
-        (rb.Box(size=(1, 2, 3)), 12),
-        (rb.Cylinder(radius=1, length=2), 6),
-        (rb.Cylinder(radius=1, length=2, axis=tuple(VIEW[2])), 6),
-        (rb.SphericalCavity(radius=1), 1),
+        (rb.Box(size=(1, 2, 3)), 12, 24.0),
+        # Two rims and two lines of the side, as seen obliquely; two rims along the axis.
+        (rb.Cylinder(radius=1, length=2), 2 * 72 + 2, 4 * np.pi + 4),
+        (rb.Cylinder(radius=1, length=2, axis=tuple(VIEW[2])), 2 * 72, 4 * np.pi),
+        (rb.SphericalCavity(radius=1), 72, 2 * np.pi),
     ],
 )
-def test_outlines_lie_on_the_walls(cavity: Cavity, lines: int) -> None:
-    """Every line of an outline lies on a wall of the cavity."""
-    drawn = outline(cavity)
-    assert len(drawn) == lines
+def test_outlines_lie_on_the_walls(cavity: Cavity, edges: int, length: float) -> None:
+    """Every corner of an outline lies on a wall of the cavity, and no edge is drawn twice or missing."""
+    drawn = cavity.outline(VIEW)
+    assert sum(len(line) - 1 for line in drawn) == edges
+    total = sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in drawn)
+    assert total == pytest.approx(length, rel=4e-4)
     for line in drawn:
         np.testing.assert_allclose(cavity.depth(line), 0, atol=1e-12)
 

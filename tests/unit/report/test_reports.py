@@ -16,8 +16,8 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
+from rattlebox._util.quantities import amount
 from rattlebox.report.page import typeset
-from rattlebox.results.quantities import amount
 
 HOSTILE = '<script>alert("1")</script> & <b>'
 """A name that would run or change the page if it were not escaped."""

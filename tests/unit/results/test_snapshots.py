@@ -12,7 +12,6 @@ import pytest
 
 import rattlebox as rb
 from rattlebox._util.atomic_io import reserve_space
-from rattlebox.model.surfaces import surface
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
 
@@ -93,7 +92,7 @@ CAVITIES = [
 @pytest.mark.parametrize("cavity", CAVITIES)
 def test_surface_of_a_cavity(cavity: Any) -> None:
     """The surface is closed, its corners are on the walls, its faces point inward, and its volume is the cavity's."""
-    walls = surface(cavity)
+    walls = cavity.surface()
     np.testing.assert_allclose(cavity.depth(walls.points), 0, atol=1e-12 * cavity.lengths.max())
     sides = [(a, b) for face in walls.polygons for a, b in zip(face, (*face[1:], face[0]), strict=True)]
     assert len(sides) == len(set(sides)) and {(b, a) for a, b in sides} == set(sides)
@@ -109,7 +108,7 @@ def test_surface_of_a_cavity(cavity: Any) -> None:
 def test_walls_move_with_the_structure(written: Any) -> None:
     """The file has the walls of both cavities after the particles, displaced with their cavity at each time."""
     run, path = written
-    walls = [surface(damper.cavity).points for damper in run.case.dampers]
+    walls = [damper.cavity.surface().points for damper in run.case.dampers]
     total = 18 + sum(map(len, walls))
     with h5py.File(path) as file:
         root = file["VTKHDF"]
@@ -161,7 +160,7 @@ def test_vtk_reads_the_file(written: Any) -> None:
 def test_disk_space_is_reserved_at_once(steps: int, count: int, cavities: int, tmp_path: Path) -> None:
     """The reserved space is enough for the file, and the file has no holes that need space later."""
     fixed = {name: np.ones(count) for name in ("radius", "mass", "cavity", "species")}
-    walls = [surface(rb.SphericalCavity(radius=1))] * cavities
+    walls = [rb.SphericalCavity(radius=1).surface()] * cavities
     text = "# ein längerer Fall\n" * 1000
     file = SnapshotFile(
         tmp_path / "run.vtkhdf", np.arange(steps), np.zeros((cavities, 3)), fixed, walls, text, "numbers"

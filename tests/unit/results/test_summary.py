@@ -10,8 +10,8 @@ import pytest
 
 import rattlebox as rb
 from rattlebox import analysis
+from rattlebox._util.quantities import digits, prefix, quantity
 from rattlebox.results import Run, RunArrays, compare
-from rattlebox.results.quantities import digits, prefix, quantity
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,8 @@ import xarray as xr
 from support.command import rattlebox
 
 import rattlebox as rb
+from rattlebox._util.quantities import quantity
 from rattlebox.report.kinds.design import KIND
-from rattlebox.results.quantities import quantity
 from rattlebox.studies.design.trial_store import count_trials
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.study_file import study_from_toml

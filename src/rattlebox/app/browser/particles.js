@@ -98,7 +98,7 @@ export default {
       this.show();
     },
     clear() {
-      for (const old of [this.view.mesh, ...this.view.walls]) if (old) { this.view.scene.remove(old); old.geometry.dispose(); }
+      for (const old of [this.view.mesh, ...this.view.walls]) if (old) { this.view.scene.remove(old); old.traverse((part) => part.geometry?.dispose()); }
       Object.assign(this.view, { frames: [], mesh: null, walls: [] });
       this.stale = true;
     },
@@ -109,14 +109,16 @@ export default {
       this.view.mesh.frustumCulled = false;
       scene.add(this.view.mesh);
       this.view.fixed = { radius: arrays.radius, species: arrays.species, cavity: arrays.cavity };
-      this.view.walls = about.cavities.map(({ kind, size, frame, place }) => {
-        const shape = kind === "box" ? new THREE.BoxGeometry(...size) : kind === "cylinder" ? new THREE.CylinderGeometry(size[0] / 2, size[0] / 2, size[2], 16, 1) : new THREE.SphereGeometry(size[0] / 2, 24, 12);
-        if (kind === "cylinder") shape.rotateX(Math.PI / 2);
-        const lines = new THREE.LineSegments(kind === "sphere" ? new THREE.WireframeGeometry(shape) : new THREE.EdgesGeometry(shape, 20), new THREE.LineBasicMaterial({ color: "#555", transparent: true, opacity: kind === "sphere" ? 0.25 : 1 }));
-        lines.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(...frame.map((axis) => new THREE.Vector3(...axis))));
-        lines.userData.place = place;
-        scene.add(lines);
-        return lines;
+      this.view.walls = about.cavities.map(({ sharp, smooth, place }) => {
+        const walls = new THREE.Group();
+        for (const [ends, opacity] of [[sharp, 1], [smooth, 0.15]]) {
+          const shape = new THREE.BufferGeometry();
+          shape.setAttribute("position", new THREE.Float32BufferAttribute(ends, 3));
+          walls.add(new THREE.LineSegments(shape, new THREE.LineBasicMaterial({ color: "#555", transparent: true, opacity })));
+        }
+        walls.userData.place = place;
+        scene.add(walls);
+        return walls;
       });
       this.view.places = about.cavities.map((cavity) => cavity.place);
       this.view.reach = about.reach;
@@ -129,7 +131,7 @@ export default {
       if (!current) return;
       this.now = current.time;
       const { mesh, walls, places, reach, fixed } = this.view, matrix = new THREE.Matrix4(), colour = new THREE.Color();
-      walls.forEach((lines, c) => lines.position.set(...[0, 1, 2].map((axis) => places[c][axis] + current.shift[3 * c + axis])));
+      walls.forEach((wall, c) => wall.position.set(...[0, 1, 2].map((axis) => places[c][axis] + current.shift[3 * c + axis])));
       const top = this.top[this.colour] || 1;
       for (let i = 0; i < mesh.count; i++) {
         const place = places[fixed.cavity[i]], radius = fixed.radius[i];

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import MISSING, amount
 from rattlebox.plots.calibration import plot_calibration
 from rattlebox.report import study_words as words
 from rattlebox.report.numbers import between
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.results.case_words import counted, dampers_words, joined
-from rattlebox.results.quantities import MISSING, amount
+from rattlebox.results.case_words import dampers_words
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
+from rattlebox._util.phrases import joined
+from rattlebox._util.quantities import amount
 from rattlebox.plots.compare import plot_comparison
 from rattlebox.report.kinds.run import attached_points, result_sentences
 from rattlebox.report.limits import readable_case, run_limits
 from rattlebox.report.parts import Kind, Limit, Picture, Table
-from rattlebox.results.case_words import joined, loads_words, structure_words
-from rattlebox.results.quantities import amount
+from rattlebox.results.case_words import loads_words
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -37,7 +38,7 @@ def _question(comparison: Comparison) -> str:
         return f"How do the variants {names} compare?"
     loads = loads_words(reference)
     under = f" under {loads}" if loads else " in free vibration"
-    return f"How do the variants {names} of {structure_words(reference)} compare{under}?"
+    return f"How do the variants {names} of {reference.structure.words()} compare{under}?"
 
 
 def _answer(comparison: Comparison) -> Iterator[str]:

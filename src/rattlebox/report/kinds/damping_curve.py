@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.phrases import joined
+from rattlebox._util.quantities import MISSING, amount
 from rattlebox.plots.damping_curve import plot_damping_curve
 from rattlebox.report import study_words as words
 from rattlebox.report.numbers import between
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.results.case_words import dampers_words, joined, structure_words
-from rattlebox.results.quantities import MISSING, amount
+from rattlebox.results.case_words import dampers_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +46,7 @@ def _question(curves: Curves) -> str:
     what = f"mode {first.attrs['mode']} ({amount(float(first.attrs['frequency']), 'Hz')})"
     try:
         case = words.cases_of(first)[""]
-        system = structure_words(case)
+        system = case.structure.words()
         system += f" with {dampers_words(case)}" if len(named) == 1 and case.dampers else ""
     except ValueError:  # CaseError
         system = "the structure"

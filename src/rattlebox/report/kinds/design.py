@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import amount
 from rattlebox.model.case import Case
 from rattlebox.plots.design import plot_design
 from rattlebox.plots.labels import name_of, unit_of
@@ -17,8 +19,6 @@ from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import system_words
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.results.case_words import counted, joined
-from rattlebox.results.quantities import amount
 from rattlebox.studies.budget import duration
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.measures import INTERVAL, MEASURES

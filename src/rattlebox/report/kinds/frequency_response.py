@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.quantities import MISSING, amount
 from rattlebox.plots.response import plot_frequency_response
 from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Picture, Table
-from rattlebox.results.quantities import MISSING, amount
 from rattlebox.studies.orbits import Motion
 
 if TYPE_CHECKING:

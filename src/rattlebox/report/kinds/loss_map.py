@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+from rattlebox._util.quantities import amount
 from rattlebox.plots.loss_map import plot_loss_map
 from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import options_of
 from rattlebox.report.parts import Call, Kind, Limit, Picture
 from rattlebox.results.case_words import dampers_words
-from rattlebox.results.quantities import amount
 
 if TYPE_CHECKING:
     import xarray as xr

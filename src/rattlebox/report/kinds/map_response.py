@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import MISSING, amount
 from rattlebox.model.case import Case
 from rattlebox.plots.labels import unit_of
 from rattlebox.plots.map_response import plot_response_from_map
 from rattlebox.report.parts import Kind, Limit, Picture, Table
-from rattlebox.results.case_words import counted, joined
-from rattlebox.results.quantities import MISSING, amount
 
 if TYPE_CHECKING:
     import xarray as xr

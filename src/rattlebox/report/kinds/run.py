@@ -7,11 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from rattlebox._util.phrases import counted, joined
+from rattlebox._util.quantities import amount
 from rattlebox.report.limits import readable_case, run_limits
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Picture, Table
-from rattlebox.results.case_words import counted, dampers_words, joined, loads_words, structure_words
-from rattlebox.results.quantities import amount
+from rattlebox.results.case_words import dampers_words, loads_words
 from rattlebox.results.summary import Value
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def case_question(case: Case) -> str:
         The case.
     """
     dampers, loads = dampers_words(case), loads_words(case)
-    what = structure_words(case)
+    what = case.structure.words()
     if case.structure.kind in ("shaker", "fixed"):
         return f"How does {dampers or 'the cavity'} move in {what} within {amount(case.duration, 's')}?"
     what += f" with {dampers}" if dampers else " without dampers"

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.phrases import joined
+from rattlebox._util.quantities import amount
 from rattlebox.plots.sensitivity import plot_sensitivity
 from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.results.case_words import joined
-from rattlebox.results.quantities import amount
 from rattlebox.studies.measures import MEASURES
 
 if TYPE_CHECKING:

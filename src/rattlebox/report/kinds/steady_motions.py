@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.phrases import counted
+from rattlebox._util.quantities import amount
 from rattlebox.plots.basins import plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation
 from rattlebox.plots.lyapunov import plot_lyapunov
@@ -15,8 +17,6 @@ from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import axes_argument, measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Picture
-from rattlebox.results.case_words import counted
-from rattlebox.results.quantities import amount
 from rattlebox.studies.orbits import Motion
 
 if TYPE_CHECKING:

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.phrases import joined
 from rattlebox.plots.labels import name_of
 from rattlebox.plots.maps import plot_map
 from rattlebox.report import study_words as words
 from rattlebox.report.parts import Call, Kind, Picture, Table
-from rattlebox.results.case_words import dampers_words, joined, structure_words
+from rattlebox.results.case_words import dampers_words
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +36,7 @@ def system_words(study: xr.Dataset) -> str:
     except ValueError:  # CaseError
         return "the system"
     dampers = dampers_words(case)
-    return structure_words(case) + (f" with {dampers}" if dampers else "")
+    return case.structure.words() + (f" with {dampers}" if dampers else "")
 
 
 def _question(study: xr.Dataset) -> str:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
+from rattlebox._util.quantities import amount
 from rattlebox.model.case import Case
 from rattlebox.plots.particles import plot_particles
 from rattlebox.report.kinds.run import case_question
 from rattlebox.report.parts import Call, Kind, Picture
-from rattlebox.results.quantities import amount
 
 if TYPE_CHECKING:
     from rattlebox.results.snapshots import Snapshots

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.progress import announce
+from rattlebox._util.quantities import amount
 from rattlebox.model.errors import Hint, several
 from rattlebox.prepare.time_step import WARNINGS
-from rattlebox.results.quantities import amount
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.budget import duration, workers_of
 from rattlebox.studies.runner import run_work

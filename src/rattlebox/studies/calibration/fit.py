@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc, fdtri
 
-from rattlebox.results.quantities import amount
+from rattlebox._util.quantities import amount
 
 from .response_surface import Agreement, Region, Surfaces
 from .space import NORMAL, Space

@@ -9,11 +9,11 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rattlebox._util.quantities import amount
 from rattlebox.analysis.damping_curve import damping_over_amplitude
 from rattlebox.model.dampers import Sphere
 from rattlebox.model.errors import Hint, at, nearest, one_of, several
 from rattlebox.model.units import parse, plain, whole_number
-from rattlebox.results.quantities import amount
 from rattlebox.studies.study import whole_cycles
 
 FloatArray = NDArray[np.float64]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from rattlebox._util.quantities import amount
 from rattlebox.model.errors import Hint
-from rattlebox.results.quantities import amount
 
 from .measurements import Contacts, Drops
 from .space import NORMAL

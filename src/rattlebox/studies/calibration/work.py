@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import RattleboxError
+from rattlebox._util.quantities import amount
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.space import unit_vector
 from rattlebox.model.structures import Shaker
 from rattlebox.prepare.time_step import WARNINGS
-from rattlebox.results.quantities import amount
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.budget import RunGroup, time_of_particle_runs
 from rattlebox.studies.case_digest import describe_case

@@ -1,0 +1,61 @@
+"""Registries of the kinds of parts: each class registers itself at the base class that declares `kinds`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, PydanticUndefined, core_schema
+
+from rattlebox._util.plugins import load_plugins
+
+_compiled = False  # whether a validator lists kinds already
+
+
+def register(cls: type[BaseModel]) -> None:
+    """Add a class with a fixed `kind` to the registry of its base class; raise if it lacks a method or its kind is taken."""
+    base: Any = next((base for base in cls.__mro__[1:] if "kinds" in vars(base)), None)
+    field = cls.model_fields.get("kind")
+    if base is None or field is None or field.default is PydanticUndefined:
+        return
+    missing = sorted(getattr(cls, "__abstractmethods__", ()))
+    if missing:
+        raise TypeError(
+            f"{cls.__module__}.{cls.__name__} must define {', '.join(missing)}, as each {base.__name__} does"
+        )
+    known = base.kinds.setdefault(field.default, cls)
+    if known.__qualname__ != cls.__qualname__:
+        raise TypeError(
+            f"{cls.__module__}.{cls.__name__}: the kind {field.default!r} of {base.__name__} is that of "
+            f"{known.__module__}.{known.__name__}; choose another name"
+        )
+    base.kinds[field.default] = cls
+    if _compiled:
+        _compile_again()
+
+
+class AnyKind:
+    """Annotation of a base class: a field accepts every registered kind, chosen by `kind`."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        global _compiled
+        load_plugins()
+        _compiled = True
+        choices = {kind: handler.generate_schema(cls) for kind, cls in source.kinds.items()}
+        return core_schema.tagged_union_schema(choices, discriminator="kind")
+
+
+def _compile_again() -> None:
+    """Build all validators anew, for a class that was defined after the first case."""
+    from .base import Part
+
+    parts: list[type[BaseModel]] = [Part]
+    for part in parts:  # grows while it is walked
+        parts.extend(part.__subclasses__())
+    # A validator contains those of its fields, so that all must go before the first is built.
+    for part in parts:
+        for name in ("__pydantic_core_schema__", "__pydantic_validator__", "__pydantic_serializer__"):
+            if name in vars(part):
+                delattr(part, name)
+    for part in parts:
+        part.model_rebuild(force=True)
