@@ -14,18 +14,22 @@ import pytest
 import rattlebox as rb
 from rattlebox.cli.demo import BARE, DAMPED, demo_cases
 from rattlebox.model.base import Part
-from rattlebox.model.contacts import ContactKind
-from rattlebox.model.friction import FrictionKind
+from rattlebox.model.contacts import Contact
+from rattlebox.model.friction import Friction
 from rattlebox.model.methods import AnyMethod
-from rattlebox.model.restitutions import RestitutionKind
+from rattlebox.model.restitutions import Restitution
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 LAWS = [
     law
-    for kinds in (ContactKind, RestitutionKind, FrictionKind, rb.Rolling | None, get_args(AnyMethod)[0])
-    for law in get_args(kinds)
-    if law not in (rb.Tabulated, type(None))  # a table of the user has no source
+    for laws in (
+        *(base.kinds.values() for base in (Contact, Restitution, Friction)),
+        [rb.Rolling],
+        get_args(get_args(AnyMethod)[0]),
+    )
+    for law in laws
+    if law is not rb.Tabulated  # a table of the user has no source
 ]
 # Tests of the studies and of the engines hold for fewer cycles what these pages compute for 3 s and more.
 SLOW_PAGES = (

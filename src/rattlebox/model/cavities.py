@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -200,6 +201,60 @@ class Box(Cavity):
     def inside(self) -> Vector:
         """Edges, (3,) [m]."""
         return self.lengths
+
+
+class PlaneCavity(Cavity):
+    """Base class of convex cavities between planes; a shape defines its walls and words, and the rest follows."""
+
+    kind: str
+
+    @cached_property
+    def _polyhedron(self) -> Surface:
+        """Faces, from the half-spaces inside of the walls."""
+        from scipy.spatial import HalfspaceIntersection  # only for shapes that users add
+
+        walls = self.walls()
+        corners = HalfspaceIntersection(np.column_stack([walls.axis, -walls.offset]), np.zeros(3)).intersections
+        # A corner of more than three planes is found once for each three of them.
+        size = float(np.abs(corners).max())
+        _, first = np.unique(np.round(corners / (1e-9 * size)), axis=0, return_index=True)
+        corners = corners[np.sort(first)]
+        faces = []
+        for axis, offset in zip(walls.axis, walls.offset, strict=True):
+            (on,) = np.nonzero(np.abs(components_along(corners, axis) - offset) < 1e-9 * size)
+            if on.size > 2:
+                spokes = corners[on] - corners[on].mean(axis=0)
+                angles = np.arctan2(
+                    components_along(spokes, np.cross(axis, spokes[0])), components_along(spokes, spokes[0])
+                )
+                faces.append(tuple(on[np.argsort(angles)].tolist()))
+        return facing_inward(corners, faces)
+
+    def surface(self) -> Surface:
+        """Return a polygon for each plane."""
+        return self._polyhedron
+
+    @property
+    def volume(self) -> float:
+        """Volume inside [m^3], of the pyramids over the faces."""
+        return self._polyhedron.volume
+
+    @property
+    def lengths(self) -> Vector:
+        """Edges of the box around the centre that holds all corners, (3,) [m]."""
+        return np.asarray(2 * np.abs(self._polyhedron.points).max(axis=0))
+
+    @property
+    def inside(self) -> Vector:
+        """Edges of the largest box of the proportions of `lengths` around the centre, (3,) [m]."""
+        walls = self.walls()
+        reach = components_along(np.abs(walls.axis), self.lengths / 2)
+        return np.asarray(self.lengths * float((walls.offset / reach).min()))
+
+    @property
+    def surface_over_volume(self) -> float:
+        """Area of the walls over the volume [1/m]."""
+        return self._polyhedron.area / self.volume
 
 
 class _Round(Cavity):

@@ -16,7 +16,7 @@ _SHARP = np.cos(np.radians(20.0))
 """Cosine of the angle between the normals of two faces above which their edge is drawn from every side."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """A closed surface of polygons.
 
@@ -36,6 +36,18 @@ class Surface:
         """Unit normals of the polygons, towards the inside, (m, 3)."""
         normals = np.array([_normal(self.points[list(polygon)]) for polygon in self.polygons])
         return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
+
+    @property
+    def area(self) -> float:
+        """Sum of the areas of the polygons [m^2]."""
+        normals = [_normal(self.points[list(polygon)]) for polygon in self.polygons]
+        return 0.5 * float(np.linalg.norm(normals, axis=1).sum())
+
+    @property
+    def volume(self) -> float:
+        """Volume inside [m^3]: that of the pyramids from the centre over the polygons."""
+        pyramids = [self.points[polygon[0]] @ _normal(self.points[list(polygon)]) for polygon in self.polygons]
+        return -float(np.sum(pyramids)) / 6
 
     @cached_property
     def edges(self) -> dict[tuple[int, int], tuple[int, int]]:

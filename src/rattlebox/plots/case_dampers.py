@@ -133,8 +133,10 @@ def _draw_particle_damper(damper: ParticleDamper, axes: Axes) -> None:
     unit = 0.16 * max(half_x, half_z)
     _draw_walls(axes, cavity)
     if cavity.is_aligned:  # else the extents are no dimensions of the cavity
-        dimension(axes, (-half_x, -half_z), (half_x, -half_z), amount(2 * half_x, "m"), -1.5 * unit)
-        dimension(axes, (half_x, -half_z), (half_x, half_z), amount(2 * half_z, "m"), -1.5 * unit, rotate=True)
+        corners = np.concatenate(cavity.outline(_FRONT)) @ _FRONT[:2].T
+        (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+        dimension(axes, (left, low), (right, low), amount(right - left, "m"), -1.5 * unit)
+        dimension(axes, (right, low), (right, high), amount(high - low, "m"), -1.5 * unit, rotate=True)
     words = [*_contents(damper), cavity.words().removeprefix("a ")]
     _draw_directions(axes, damper, -half_x - 5.2 * unit, -half_z, unit)
     text(axes, (0.0, -half_z - 3.4 * unit), "\n".join(words), va="top")

@@ -95,7 +95,7 @@ CASES: dict[str, tuple[rb.Case, tuple[str, ...]]] = {
             damper(rb.Cylinder(diameter="16 mm", length="12 mm"), point="a", direction="z"),
             loads=FORCE.model_copy(update={"point": "middle"}),
         ),
-        ("0.6 m", "0.4 m", "3 mm thick", "cylinder, diameter 16 mm, 12 mm long", "20 glass balls of 4 mm"),
+        ("0.6 m", "0.4 m", "3 mm thick", "cylinder, 16 mm in diameter, 12 mm long", "20 glass balls of 4 mm"),
     ),
     "building": (
         on(
@@ -118,11 +118,11 @@ CASES: dict[str, tuple[rb.Case, tuple[str, ...]]] = {
             rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="20 Hz")),
             damper(rb.SphericalCavity(diameter="20 mm")),
         ),
-        ("shaker", "sphere, diameter 20 mm", "a harmonic displacement of 1 mm at 20 Hz"),
+        ("shaker", "sphere, 20 mm in diameter", "a harmonic displacement of 1 mm at 20 Hz"),
     ),
     "inclined cylinder": (
         on(rb.Fixed(), damper(rb.Cylinder(diameter="16 mm", length="20 mm", axis=(1, 0, 1)))),
-        ("fixed", "cylinder, diameter 16 mm, 20 mm long"),
+        ("fixed", "cylinder, 16 mm in diameter, 20 mm long"),
     ),
     "end of a cylinder": (on(rb.Fixed(), damper(rb.Cylinder(diameter="16 mm", length="20 mm", axis="y"))), ("16 mm",)),
     "many particles": (
