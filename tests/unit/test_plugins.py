@@ -139,6 +139,6 @@ def test_a_kind_may_be_defined_after_the_first_case(tmp_path: Path) -> None:
     (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     (tmp_path / "case.toml").write_text(CASE)
     first = "import rattlebox as rb\nrb.reference_case()\n"
-    last = "\nassert rb.Case.from_file('case.toml').particle_dampers[0].cavity.words() == Prism(side=0.05, length=0.035).words()"
+    last = "\nassert rb.Case.from_file('case.toml').dampers[0].cavity.words() == Prism(side=0.05, length=0.035).words()"
     result = program(tmp_path, first + code + last)
     assert result.returncode == 0, result.stderr
