@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.owned_folder import read_marker
-from rattlebox.studies.stored import progress_of
+from rattlebox.studies.run.stored import progress_of
 
 
 @dataclass
@@ -107,6 +107,6 @@ def is_complete(store: Path) -> bool:
 
 
 if __name__ == "__main__":
-    from rattlebox.studies.runner import run_work
+    from rattlebox.studies.run.runner import run_work
 
     run_work(Logistic(pause=float(sys.argv[2])), store=sys.argv[1], block=5)

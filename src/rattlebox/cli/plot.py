@@ -16,7 +16,7 @@ from rattlebox.plots.maps import plot_map
 from rattlebox.plots.selection import nearest_value_notes, select
 from rattlebox.plots.style import WIDTHS
 from rattlebox.studies.kinds import KINDS
-from rattlebox.studies.stored import open_study
+from rattlebox.studies.run.stored import open_study
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,7 +15,7 @@ from rattlebox.report.write import write_report
 from rattlebox.results import load
 from rattlebox.results.snapshots import Snapshots
 from rattlebox.studies.design.trial_store import count_trials
-from rattlebox.studies.stored import has_map, open_study
+from rattlebox.studies.run.stored import has_map, open_study
 
 
 def write(results: Sequence[Path], out: Path | None, title: str | None, question: str | None) -> None:

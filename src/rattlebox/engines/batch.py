@@ -19,7 +19,7 @@ class BlockOutput:
     Attributes
     ----------
     measures
-        Names of measures (see `rattlebox.studies.measures`).
+        Names of measures (see `rattlebox.studies.work.measures`).
     shape
         Mode shapes at the observed point [kg^-1/2]: (m,), or (m, ...) over the grid.
     base

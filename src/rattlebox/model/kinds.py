@@ -31,7 +31,7 @@ def register(cls: type[BaseModel]) -> None:
         )
     base.kinds[field.default] = cls
     if _compiled:
-        _compile_again()
+        _compile_again(cls)
 
 
 class AnyKind:
@@ -45,11 +45,9 @@ class AnyKind:
         return core_schema.tagged_union_schema(choices, discriminator="kind")
 
 
-def _compile_again() -> None:
-    """Build all validators anew, for a class that was defined after the first case."""
-    from .base import Part
-
-    parts: list[type[BaseModel]] = [Part]
+def _compile_again(added: type[BaseModel]) -> None:
+    """Build the validators of all parts anew, for a class that was defined after the first case."""
+    parts = [next(base for base in reversed(added.__mro__) if issubclass(base, BaseModel) and base is not BaseModel)]
     for part in parts:  # grows while it is walked
         parts.extend(part.__subclasses__())
     # A validator contains those of its fields, so that all must go before the first is built.

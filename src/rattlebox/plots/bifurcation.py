@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from rattlebox._util.narrow import present
 
 from ..model.errors import Hint, nearest
-from ..studies.orbits import Motion
+from ..studies.work.orbits import Motion
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen, scaled
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from rattlebox.studies.measures import INTERVAL
+from rattlebox.studies.work.measures import INTERVAL
 
 from .labels import LabelledValues
 from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen

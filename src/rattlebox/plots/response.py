@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import nearest
-from ..studies.orbits import Motion
+from ..studies.work.orbits import Motion
 from .labels import log_ticks
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
 

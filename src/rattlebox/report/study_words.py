@@ -21,8 +21,8 @@ from rattlebox.report.limits import ENERGY_BOUNDS, mode_limits
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Limit, Table
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.measures import INTERVAL
-from rattlebox.studies.outcomes import status_counts, status_lines
+from rattlebox.studies.run.outcomes import status_counts, status_lines
+from rattlebox.studies.work.measures import INTERVAL
 
 if TYPE_CHECKING:
     import xarray as xr

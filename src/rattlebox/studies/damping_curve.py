@@ -23,10 +23,10 @@ from rattlebox.model.packing import Bed, Lattice
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 from rattlebox.prepare.time_step import exceeded_limits
-from rattlebox.studies.evaluate_cases import evaluate_cases
-from rattlebox.studies.robust import no_random_packing
-from rattlebox.studies.sampling import Spaced
-from rattlebox.studies.steady import EXTENSIONS, steady_run
+from rattlebox.studies.grid.robust import no_random_packing
+from rattlebox.studies.grid.sampling import Spaced
+from rattlebox.studies.run.evaluate_cases import evaluate_cases
+from rattlebox.studies.work.steady import EXTENSIONS, steady_run
 
 if TYPE_CHECKING:
     import xarray

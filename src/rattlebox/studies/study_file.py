@@ -19,10 +19,9 @@ from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
 from rattlebox.model.units import Whole
-
-from . import sampling
-from .kinds import KINDS
-from .study import Axes, SpacedTable, Study, Table, make_study, table_shape
+from rattlebox.studies.grid import sampling
+from rattlebox.studies.kinds import KINDS
+from rattlebox.studies.run.study import Axes, SpacedTable, Study, Table, make_study, table_shape
 
 _EXAMPLE = '[axes]\n       "damper.gap" = { from = "0.1 mm", to = "2 mm", count = 20 }'
 _ROOTS = {*Case.model_fields, *Case.aliases}

@@ -22,8 +22,8 @@ from support.waiting import wait_for
 
 import rattlebox as rb
 from rattlebox.core.choose import choice, supported
-from rattlebox.studies.runner import Stopped, run_work
-from rattlebox.studies.stored import progress_of
+from rattlebox.studies.run.runner import Stopped, run_work
+from rattlebox.studies.run.stored import progress_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rattlebox.core.choose import choice
-from rattlebox.studies.stored import open_study
+from rattlebox.studies.run.stored import open_study
 from rattlebox.studies.study_file import study_from_toml
 
 ROOT = Path(__file__).parents[3]

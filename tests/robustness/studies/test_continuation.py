@@ -17,8 +17,8 @@ from support.logistic_study import variants_in
 from support.waiting import wait_for
 
 import rattlebox as rb
-from rattlebox.studies.runner import Stopped
-from rattlebox.studies.stored import progress_of
+from rattlebox.studies.run.runner import Stopped
+from rattlebox.studies.run.stored import progress_of
 
 AMPLITUDE = "structure.motion.amplitude"
 STUDY = """\

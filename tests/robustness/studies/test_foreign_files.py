@@ -14,8 +14,8 @@ from support.logistic_study import Logistic
 
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER, Marker, fill, read_marker, remove, write_marker
-from rattlebox.studies.runner import run_work
-from rattlebox.studies.stored import open_study
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.run.stored import open_study
 
 CASE = """
 duration = "50 ms"

@@ -14,11 +14,11 @@ from support.logistic_study import variants_in
 from support.waiting import wait_for
 
 import rattlebox as rb
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.runner import Stopped, run_work
-from rattlebox.studies.stored import open_study, progress_of
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.runner import Stopped, run_work
+from rattlebox.studies.run.stored import open_study, progress_of
 from rattlebox.studies.study_file import read_study
+from rattlebox.studies.work.impact_work import ImpactWork
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 STUDY = f"""\
@@ -30,7 +30,7 @@ file = "{EXAMPLE}"
 "load.amplitude" = ["2 kN", "5 kN"]
 """
 SMALL_BLOCKS = """\
-from rattlebox.studies.runner import run_work
+from rattlebox.studies.run.runner import run_work
 from rattlebox.studies.study_file import read_study
 study = read_study("study.toml")
 run_work(study.work, store="study.zarr", workers=1, block=100)

@@ -14,8 +14,8 @@ from support.datasets import bits
 from support.logistic_study import Logistic
 
 import rattlebox as rb
-from rattlebox.studies.runner import Stopped, run_work
-from rattlebox.studies.stored import progress_of
+from rattlebox.studies.run.runner import Stopped, run_work
+from rattlebox.studies.run.stored import progress_of
 
 for module in (logistic_study, sys.modules[__name__]):  # worker processes cannot import the tests
     cloudpickle.register_pickle_by_value(module)

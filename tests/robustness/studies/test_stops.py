@@ -21,8 +21,8 @@ from support.waiting import wait_for
 
 import rattlebox as rb
 from rattlebox.studies.design.trial_store import count_trials
-from rattlebox.studies.runner import Stopped, run_work
-from rattlebox.studies.stored import open_study, progress_of
+from rattlebox.studies.run.runner import Stopped, run_work
+from rattlebox.studies.run.stored import open_study, progress_of
 
 SCRIPT = Path(logistic_study.__file__)
 

@@ -20,8 +20,8 @@ from support.mounts import needs_mounts, with_own_mounts
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER, read_marker, write_marker
 from rattlebox.cli.show import show_study
-from rattlebox.studies.runner import run_work
-from rattlebox.studies.stored import open_study, progress_of
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.run.stored import open_study, progress_of
 
 SCRIPT = Path(logistic_study.__file__)
 
@@ -106,7 +106,7 @@ def test_store_of_another_study_is_refused(tmp_path: Path, monkeypatch: pytest.M
     with pytest.raises(rb.StoreError, match=r'version: "[0-9.]+" there, "9\.9" here'):
         study(store)
     monkeypatch.undo()
-    monkeypatch.setattr("rattlebox.studies.runner._core", lambda: "v9")
+    monkeypatch.setattr("rattlebox.studies.run.runner._core", lambda: "v9")
     with pytest.raises(rb.StoreError, match="try: RATTLEBOX_SIMD="):
         study(store)
     assert bits(open_study(store)) == before

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from rattlebox.studies.stored import progress_of
+from rattlebox.studies.run.stored import progress_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 STUDY = f"""\

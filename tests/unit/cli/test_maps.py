@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
-from rattlebox.studies.runner import Stopped
+from rattlebox.studies.run.runner import Stopped
 from rattlebox.studies.study_file import read_study
 
 from .conftest import RunCli

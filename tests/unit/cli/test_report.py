@@ -58,7 +58,7 @@ def test_unfinished_run(run_cli: RunCli) -> None:
 
 def test_unfinished_study(run_cli: RunCli) -> None:
     """The report of a study that was stopped is about its finished variants, and states their number."""
-    from rattlebox.studies.stored import progress_of
+    from rattlebox.studies.run.stored import progress_of
     from rattlebox.studies.study_file import read_study
 
     study = read_study("study.toml")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.stored import open_study
+from rattlebox.studies.run.stored import open_study
 
 from .conftest import RunCli
 

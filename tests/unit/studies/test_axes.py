@@ -13,8 +13,8 @@ import xarray as xr
 
 import rattlebox as rb
 from rattlebox.model.paths import replaced
-from rattlebox.studies.axes import parse_axes, read_axes
-from rattlebox.studies.grid import Grid
+from rattlebox.studies.grid.axes import parse_axes, read_axes
+from rattlebox.studies.grid.grid import Grid
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 

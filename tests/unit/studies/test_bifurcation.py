@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.continuation import ContinuationWork
-from rattlebox.studies.orbits import Motion
-from rattlebox.studies.runner import run_work
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.work.continuation import ContinuationWork
+from rattlebox.studies.work.orbits import Motion
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "bifurcation.py"
 AMPLITUDE = "structure.motion.amplitude"

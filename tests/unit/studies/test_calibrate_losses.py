@@ -14,11 +14,11 @@ import pytest
 from scipy.stats import chi2
 
 import rattlebox as rb
-from rattlebox.studies.axes import read_axes
 from rattlebox.studies.calibration.fit import Fit
 from rattlebox.studies.calibration.space import Space
 from rattlebox.studies.calibration.work import CalibrationWork, simulation_of
-from rattlebox.studies.runner import Stopped
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.runner import Stopped
 
 E, DAMPING = "damper.contact.restitution", "structure.damping_ratio"
 RANGES = {E: (0.4, 0.9)}
@@ -131,7 +131,7 @@ def test_a_box_of_particles_is_calibrated_by_both_measurements(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each sample has a packing of its own; ring-down and shaker of one box together bound its restitution."""
-    monkeypatch.setattr("rattlebox.studies.budget.TIMED", 0.02)
+    monkeypatch.setattr("rattlebox.studies.run.budget.TIMED", 0.02)
     monkeypatch.setattr("rattlebox.studies.calibration.by_simulation._ROUNDS", 1)
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="4 mm", count=6),

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.continuation import ContinuationWork, without_states
+from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.kinds.sweep import sweep
-from rattlebox.studies.runner import run_work
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.work.continuation import ContinuationWork, without_states
 
 QUIET = {"progress": False}
 

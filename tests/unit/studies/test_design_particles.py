@@ -14,9 +14,9 @@ from scipy.stats import t
 import rattlebox as rb
 from rattlebox.cli.show import show_study
 from rattlebox.cli.sweep import run_sweep
-from rattlebox.studies.budget import Budget, duration
 from rattlebox.studies.design import search
 from rattlebox.studies.design.search import DesignSearch
+from rattlebox.studies.run.budget import Budget, duration
 
 COUNT, SIZE, NUMBER, SEED = (
     "damper.particles.count",

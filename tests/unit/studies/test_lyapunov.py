@@ -10,7 +10,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox import analysis
-from rattlebox.studies.axes import read_axes
+from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.kinds.lyapunov import LyapunovWork
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "lyapunov.py"

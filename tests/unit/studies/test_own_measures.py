@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.fingerprint import fingerprint
 from rattlebox.studies.study_file import read_study
+from rattlebox.studies.work.fingerprint import fingerprint
 
 LIMIT = 1e-3
 AXES = {"damper.gap": ["0.4 mm", "0.8 mm"]}

@@ -10,8 +10,8 @@ import pytest
 import xarray
 
 import rattlebox as rb
-from rattlebox.studies.response_work import steady_motion
-from rattlebox.studies.runner import Stopped
+from rattlebox.studies.run.runner import Stopped
+from rattlebox.studies.work.response_work import steady_motion
 
 STRUCTURE = rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping="20 N s/m")
 QUICK: dict[str, Any] = {"cycles": (5, 6), "samples": 16, "progress": False}

@@ -12,9 +12,9 @@ import rattlebox as rb
 from rattlebox.analysis import shaken_cavity
 from rattlebox.prepare import settle
 from rattlebox.results import Run
-from rattlebox.studies import particle_work
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.runner import Stopped
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.runner import Stopped
+from rattlebox.studies.work import particle_work
 
 AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
 

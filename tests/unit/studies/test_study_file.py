@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.sampling import RandomDesign, Replicas
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.grid.sampling import RandomDesign, Replicas
 from rattlebox.studies.study_file import read_study, study_from_toml
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

@@ -10,10 +10,10 @@ import rattlebox as rb
 from rattlebox import analysis
 from rattlebox.core import _core
 from rattlebox.model.paths import replaced
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.measures import MEASURES
-from rattlebox.studies.runner import run_work
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.measures import MEASURES
 
 PLASTIC_RIGID = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid"), ending="zero_overlap")
 AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "8 kN"]}

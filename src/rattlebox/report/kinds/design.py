@@ -19,9 +19,9 @@ from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import system_words
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.studies.budget import duration
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
-from rattlebox.studies.measures import INTERVAL, MEASURES
+from rattlebox.studies.run.budget import duration
+from rattlebox.studies.work.measures import INTERVAL, MEASURES
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,7 @@ from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Picture, Table
-from rattlebox.studies.orbits import Motion
+from rattlebox.studies.work.orbits import Motion
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,7 +15,7 @@ from rattlebox.report import study_words as words
 from rattlebox.report.kinds.sweep import KIND as SWEEP
 from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.studies.measures import MEASURES
+from rattlebox.studies.work.measures import MEASURES
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -17,22 +17,20 @@ from rattlebox._util.progress import announce
 from rattlebox._util.quantities import amount
 from rattlebox.model.errors import Hint, several
 from rattlebox.prepare.time_step import WARNINGS
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.budget import duration, workers_of
-from rattlebox.studies.runner import run_work
-from rattlebox.studies.sampling import random_design
-from rattlebox.studies.store import exclusive_writer
-
-from .fit import Fit
-from .response_surface import least_points
-from .work import CalibrationWork, Point, Simulation
+from rattlebox.studies.calibration.fit import Fit
+from rattlebox.studies.calibration.response_surface import least_points
+from rattlebox.studies.calibration.work import CalibrationWork, Point, Simulation
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.grid.sampling import random_design
+from rattlebox.studies.run.budget import duration, workers_of
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.run.store import exclusive_writer
 
 if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
-
-    from .space import Space
+    from rattlebox.studies.calibration.space import Space
 
 FloatArray = NDArray[np.float64]
 

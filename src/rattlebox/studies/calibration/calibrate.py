@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, at
 from rattlebox.model.units import parse, whole_number
-from rattlebox.studies.store import save_result
-
-from .by_simulation import Calibration
-from .measurements import Contacts, Losses, read_data, source_of
-from .restitution import restitution_of
-from .space import Space
-from .work import simulation_of
+from rattlebox.studies.calibration.by_simulation import Calibration
+from rattlebox.studies.calibration.measurements import Contacts, Losses, read_data, source_of
+from rattlebox.studies.calibration.restitution import restitution_of
+from rattlebox.studies.calibration.space import Space
+from rattlebox.studies.calibration.work import simulation_of
+from rattlebox.studies.run.store import save_result
 
 if TYPE_CHECKING:
     import xarray

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, fdtri
 
 from rattlebox._util.quantities import amount
-
-from .response_surface import Agreement, Region, Surfaces
-from .space import NORMAL, Space
+from rattlebox.studies.calibration.response_surface import Agreement, Region, Surfaces
+from rattlebox.studies.calibration.space import NORMAL, Space
 
 FloatArray = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from rattlebox.analysis.damping_curve import damping_over_amplitude
 from rattlebox.model.dampers import Sphere
 from rattlebox.model.errors import Hint, at, nearest, one_of, several
 from rattlebox.model.units import parse, plain, whole_number
-from rattlebox.studies.study import whole_cycles
+from rattlebox.studies.run.study import whole_cycles
 
 FloatArray = NDArray[np.float64]
 MeasuredTo = Literal["bottom", "centre", "top"]

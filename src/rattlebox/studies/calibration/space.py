@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint, at, nearest
-from rattlebox.studies.axes import materials_in
-from rattlebox.studies.parameter import Parameter
-
-from .measurements import read_column
-from .response_surface import Known
+from rattlebox.studies.calibration.measurements import read_column
+from rattlebox.studies.calibration.response_surface import Known
+from rattlebox.studies.grid.axes import materials_in
+from rattlebox.studies.grid.parameter import Parameter
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

@@ -19,19 +19,18 @@ from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.space import unit_vector
 from rattlebox.model.structures import Shaker
 from rattlebox.prepare.time_step import WARNINGS
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.budget import RunGroup, time_of_particle_runs
-from rattlebox.studies.case_digest import describe_case
+from rattlebox.studies.calibration.measurements import Losses, RingDown, ShakerLoss
 from rattlebox.studies.damping_curve import Remarks, damping_curve_cases, mode_of, random_starts, ratios_of_decays
-from rattlebox.studies.particle_work import ParticleWork
-from rattlebox.studies.work import Values
-from rattlebox.studies.work_of_case import work_of_case
-
-from .measurements import Losses, RingDown, ShakerLoss
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.budget import RunGroup, time_of_particle_runs
+from rattlebox.studies.work.case_digest import describe_case
+from rattlebox.studies.work.particle_work import ParticleWork
+from rattlebox.studies.work.work import Values
+from rattlebox.studies.work.work_of_case import work_of_case
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
-    from rattlebox.studies.grid import Grid
+    from rattlebox.studies.grid.grid import Grid
 
 FloatArray = NDArray[np.float64]
 

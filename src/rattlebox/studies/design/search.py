@@ -23,21 +23,20 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.prepare.time_step import WARNINGS
-from rattlebox.studies.axes import ParsedAxes, materials_in, read_axes
-from rattlebox.studies.budget import TRIAL, Budget, RunGroup, time_of_particle_runs, workers_of
-from rattlebox.studies.case_digest import describe_case
 from rattlebox.studies.damping_curve import OTHER_MOTION, Way, damping_curve, damping_curve_cases
-from rattlebox.studies.fingerprint import fingerprint
-from rattlebox.studies.grid import Grid
-from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.measures import INTERVAL, MEASURES, check_names
-from rattlebox.studies.parameter import Parameter
-from rattlebox.studies.particle_work import ParticleWork
-from rattlebox.studies.runner import run_work
-from rattlebox.studies.study import known_measures
-from rattlebox.studies.work_of_case import first_refused, work_of_case
-
-from .space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
+from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
+from rattlebox.studies.grid.axes import ParsedAxes, materials_in, read_axes
+from rattlebox.studies.grid.grid import Grid
+from rattlebox.studies.grid.parameter import Parameter
+from rattlebox.studies.run.budget import TRIAL, Budget, RunGroup, time_of_particle_runs, workers_of
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.run.study import known_measures
+from rattlebox.studies.work.case_digest import describe_case
+from rattlebox.studies.work.fingerprint import fingerprint
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, check_names
+from rattlebox.studies.work.particle_work import ParticleWork
+from rattlebox.studies.work.work_of_case import first_refused, work_of_case
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,9 +16,8 @@ import numpy as np
 
 from rattlebox._util.exceptions import StoreError
 from rattlebox._util.owned_folder import read_marker
-from rattlebox.studies.store import JOURNAL, exclusive_writer
-
-from .space import DesignVariable
+from rattlebox.studies.design.space import DesignVariable
+from rattlebox.studies.run.store import JOURNAL, exclusive_writer
 
 if TYPE_CHECKING:
     import xarray as xr

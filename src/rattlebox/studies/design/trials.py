@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from rattlebox.studies.budget import Budget
-
-from .search import MOST_COMBINATIONS, DesignSearch, Evaluation, Values
-from .space import ADDED_MASS
-from .trial_store import finished_trials, trial_seed
+from rattlebox.studies.design.search import MOST_COMBINATIONS, DesignSearch, Evaluation, Values
+from rattlebox.studies.design.space import ADDED_MASS
+from rattlebox.studies.design.trial_store import finished_trials, trial_seed
+from rattlebox.studies.run.budget import Budget
 
 
 class Trials:

@@ -11,10 +11,20 @@ from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox.model.case import Case
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.measures import with_required
-from rattlebox.studies.orbits import (
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.store import save_result
+from rattlebox.studies.run.study import (
+    CONFIG,
+    Axes,
+    CyclesToCompare,
+    Fraction,
+    Measures,
+    Study,
+    study_function,
+)
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.measures import with_required
+from rattlebox.studies.work.orbits import (
     Motion,
     Orbits,
     attractors,
@@ -23,16 +33,6 @@ from rattlebox.studies.orbits import (
     reduced_strobes,
     unsettled,
     without_speed,
-)
-from rattlebox.studies.store import save_result
-from rattlebox.studies.study import (
-    CONFIG,
-    Axes,
-    CyclesToCompare,
-    Fraction,
-    Measures,
-    Study,
-    study_function,
 )
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class Basins(Study):
     point
         Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     workers, backend, store, progress
-        Execution and storage; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.run.study.Study`.
 
     Returns
     -------

@@ -13,14 +13,10 @@ from pydantic.dataclasses import dataclass
 from rattlebox._util.exceptions import CaseError
 from rattlebox.core import _core
 from rattlebox.model.errors import Hint
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.continuation import ContinuationWork, without_states
-from rattlebox.studies.grid import Grid
-from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.measures import with_required
-from rattlebox.studies.orbits import classify, labels, reduced_strobes, unsettled, without_speed
-from rattlebox.studies.store import save_result
-from rattlebox.studies.study import (
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.grid.grid import Grid
+from rattlebox.studies.run.store import save_result
+from rattlebox.studies.run.study import (
     CONFIG,
     CyclesToCompare,
     Fraction,
@@ -29,6 +25,10 @@ from rattlebox.studies.study import (
     Values,
     study_function,
 )
+from rattlebox.studies.work.continuation import ContinuationWork, without_states
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.measures import with_required
+from rattlebox.studies.work.orbits import classify, labels, reduced_strobes, unsettled, without_speed
 
 if TYPE_CHECKING:
     import xarray
@@ -73,7 +73,7 @@ class Bifurcation(Study):
     point
         Observed point of the structure, "storey 2 - storey 1" for a drift, or "mode 2"; default that of the first damper.
     workers, backend, store, progress
-        Execution and storage; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.run.study.Study`.
 
     Returns
     -------

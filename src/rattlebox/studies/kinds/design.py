@@ -16,17 +16,17 @@ from rattlebox._util.interrupts import deadline
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import announce, progress_bar
 from rattlebox.model.errors import Hint
-from rattlebox.studies.axes import ParsedAxes, parse_axes
-from rattlebox.studies.budget import duration
 from rattlebox.studies.damping_curve import Way, read_amplitudes
 from rattlebox.studies.design.search import Curve, DesignSearch, Robust
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
 from rattlebox.studies.design.trial_store import LAYOUT, load_study, quiet, trial_storage
 from rattlebox.studies.design.trials import Trials
-from rattlebox.studies.robust import packing_axis, robust_axes
-from rattlebox.studies.runner import Stopped
-from rattlebox.studies.store import save_result
-from rattlebox.studies.study import (
+from rattlebox.studies.grid.axes import ParsedAxes, parse_axes
+from rattlebox.studies.grid.robust import packing_axis, robust_axes
+from rattlebox.studies.run.budget import duration
+from rattlebox.studies.run.runner import Stopped
+from rattlebox.studies.run.store import save_result
+from rattlebox.studies.run.study import (
     CONFIG,
     Axes,
     Bounds,

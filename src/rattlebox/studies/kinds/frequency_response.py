@@ -18,17 +18,11 @@ from rattlebox.model.particle_case import direction_of_base, inertia_along
 from rattlebox.model.space import unit_vector
 from rattlebox.model.units import Whole
 from rattlebox.prepare.particles import resolve_softening
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.continuation import ContinuationWork, without_states
-from rattlebox.studies.grid import Grid
-from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.grid.grid import Grid
 from rattlebox.studies.kinds.sweep import result_notes
-from rattlebox.studies.measures import interval_warning, with_required
-from rattlebox.studies.observed import Observed
-from rattlebox.studies.orbits import Orbits, unsettled
-from rattlebox.studies.response_work import QUANTITIES, ParticleContinuation, ParticleResponse, steady_motion
-from rattlebox.studies.store import save_result
-from rattlebox.studies.study import (
+from rattlebox.studies.run.store import save_result
+from rattlebox.studies.run.study import (
     CONFIG,
     Cycles,
     Fraction,
@@ -37,6 +31,12 @@ from rattlebox.studies.study import (
     Values,
     study_function,
 )
+from rattlebox.studies.work.continuation import ContinuationWork, without_states
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.measures import interval_warning, with_required
+from rattlebox.studies.work.observed import Observed
+from rattlebox.studies.work.orbits import Orbits, unsettled
+from rattlebox.studies.work.response_work import QUANTITIES, ParticleContinuation, ParticleResponse, steady_motion
 
 if TYPE_CHECKING:
     import xarray
@@ -75,7 +75,7 @@ class FrequencyResponse(Study):
         Largest difference between positions of the structure and of the balls of impact dampers one period apart, over
         their range.
     workers, backend, store, progress
-        Execution and storage; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.run.study.Study`.
 
     Returns
     -------

@@ -13,12 +13,10 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.structures import Shaker
-from rattlebox.studies.axes import ParsedAxes, parse_axes, read_axes
+from rattlebox.studies.grid.axes import ParsedAxes, parse_axes, read_axes
 from rattlebox.studies.kinds.sweep import result_notes
-from rattlebox.studies.map_work import AMPLITUDE, FREQUENCY, ImpactMapWork, ParticleMapWork
-from rattlebox.studies.steady import EXTENSIONS
-from rattlebox.studies.store import save_result
-from rattlebox.studies.study import (
+from rattlebox.studies.run.store import save_result
+from rattlebox.studies.run.study import (
     CONFIG,
     Cycles,
     Samples,
@@ -26,6 +24,8 @@ from rattlebox.studies.study import (
     Values,
     study_function,
 )
+from rattlebox.studies.work.map_work import AMPLITUDE, FREQUENCY, ImpactMapWork, ParticleMapWork
+from rattlebox.studies.work.steady import EXTENSIONS
 
 if TYPE_CHECKING:
     import xarray
@@ -60,7 +60,7 @@ class LossMap(Study):
     samples
         Number of equally spaced samples in the averaged cycles, for the masses; default 64 per cycle.
     workers, backend, store, progress
-        Execution and storage; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.run.study.Study`.
 
     Returns
     -------

@@ -17,13 +17,10 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.units import Number, Whole
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.case_digest import describe_case
-from rattlebox.studies.case_work import Extra
-from rattlebox.studies.grid import Grid
-from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.neighbour_pairs import Pairs
-from rattlebox.studies.study import (
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.grid.grid import Grid
+from rattlebox.studies.kinds.neighbour_pairs import Pairs
+from rattlebox.studies.run.study import (
     CONFIG,
     Axes,
     Count,
@@ -33,7 +30,10 @@ from rattlebox.studies.study import (
     Study,
     study_function,
 )
-from rattlebox.studies.work import Cancelled, Values
+from rattlebox.studies.work.case_digest import describe_case
+from rattlebox.studies.work.case_work import Extra
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.work import Cancelled, Values
 
 if TYPE_CHECKING:
     import xarray
@@ -65,7 +65,7 @@ class Lyapunov(Study):
     seed
         Random seed of the directions of the neighbours and of the differences of the initial states.
     workers, backend, store, progress
-        Execution and storage; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.run.study.Study`.
 
     Returns
     -------

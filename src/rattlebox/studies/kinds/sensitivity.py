@@ -19,13 +19,12 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.axes import ParsedAxes, parse_axes
+from rattlebox.studies.grid.axes import ParsedAxes, parse_axes
+from rattlebox.studies.grid.robust import robust_axes
+from rattlebox.studies.grid.sampling import RandomDesign, random_design
 from rattlebox.studies.kinds.sweep import Sweep
-from rattlebox.studies.measures import INTERVAL
-from rattlebox.studies.robust import robust_axes
-from rattlebox.studies.sampling import RandomDesign, random_design
-from rattlebox.studies.store import save_result
-from rattlebox.studies.study import (
+from rattlebox.studies.run.store import save_result
+from rattlebox.studies.run.study import (
     CONFIG,
     Axes,
     Bounds,
@@ -39,6 +38,7 @@ from rattlebox.studies.study import (
     split_bounds,
     study_function,
 )
+from rattlebox.studies.work.measures import INTERVAL
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,10 +11,9 @@ from pydantic.dataclasses import dataclass
 
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.measures import MEASURES, interval_warning
-from rattlebox.studies.store import add_attributes
-from rattlebox.studies.study import (
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.run.store import add_attributes
+from rattlebox.studies.run.study import (
     CONFIG,
     Axes,
     Cycles,
@@ -24,13 +23,14 @@ from rattlebox.studies.study import (
     Study,
     study_function,
 )
-from rattlebox.studies.work_of_case import first_refused, work_of_case
+from rattlebox.studies.work.measures import MEASURES, interval_warning
+from rattlebox.studies.work.work_of_case import first_refused, work_of_case
 
 if TYPE_CHECKING:
     import xarray
 
-    from rattlebox.studies.impact_work import ImpactWork
-    from rattlebox.studies.particle_work import ParticleWork
+    from rattlebox.studies.work.impact_work import ImpactWork
+    from rattlebox.studies.work.particle_work import ParticleWork
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -64,7 +64,7 @@ class Sweep(Study):
     last
         Number of impacts to return from the end of each variant; impact dampers only.
     workers, backend, store, progress
-        Execution and storage; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.run.study.Study`.
 
     Returns
     -------

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from .blocks import Blocks
-from .case_work import CaseWork
-from .grid import Grid
+from rattlebox.studies.grid.grid import Grid
+from rattlebox.studies.work.blocks import Blocks
+from rattlebox.studies.work.case_work import CaseWork
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

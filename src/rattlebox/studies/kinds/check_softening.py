@@ -9,8 +9,8 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.particles import resolve_softening
-from rattlebox.studies.compare_variants import compared
-from rattlebox.studies.robust import packing_axis
+from rattlebox.studies.grid.robust import packing_axis
+from rattlebox.studies.kinds.compare_variants import compared
 
 if TYPE_CHECKING:
     import xarray

@@ -10,10 +10,10 @@ import numpy as np
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.particles import count_steps, resolve_softening
-from rattlebox.studies.axes import read_axes
-from rattlebox.studies.compare_variants import compared
-from rattlebox.studies.particle_work import ParticleWork
-from rattlebox.studies.robust import packing_axis
+from rattlebox.studies.grid.axes import read_axes
+from rattlebox.studies.grid.robust import packing_axis
+from rattlebox.studies.kinds.compare_variants import compared
+from rattlebox.studies.work.particle_work import ParticleWork
 
 if TYPE_CHECKING:
     import xarray

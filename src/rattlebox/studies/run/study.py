@@ -34,11 +34,10 @@ from rattlebox.analysis import equivalent_damping
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, PositiveTime, Whole
-
-from .measures import MEASURES, check_names
-from .runner import run_work
-from .sampling import RandomDesign, Replicas, Spaced
-from .work import Work
+from rattlebox.studies.grid.sampling import RandomDesign, Replicas, Spaced
+from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.work.measures import MEASURES, check_names
+from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
     import xarray as xr

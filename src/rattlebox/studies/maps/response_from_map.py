@@ -17,10 +17,9 @@ from rattlebox.model.modes import ModalModel
 from rattlebox.model.space import Triple, unit_vector
 from rattlebox.model.structures import StructurePart
 from rattlebox.model.units import parse, whole_number
-
-from .loss_table import LossTable
-from .map_response import FLAGS, MapResponse, Transfer
-from .sampling import Spaced
+from rattlebox.studies.grid.sampling import Spaced
+from rattlebox.studies.maps.loss_table import LossTable
+from rattlebox.studies.maps.map_response import FLAGS, MapResponse, Transfer
 
 if TYPE_CHECKING:
     import xarray

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from rattlebox.analysis.shaken import force_harmonics
 from rattlebox.model.particle_case import direction_of_base
-
-from .case_work import Extra
-from .impact_work import ImpactWork
-from .particle_work import ParticleWork
+from rattlebox.studies.work.case_work import Extra
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.particle_work import ParticleWork
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

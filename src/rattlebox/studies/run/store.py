@@ -31,10 +31,19 @@ from rattlebox._util.owned_folder import (
     write_marker,
 )
 from rattlebox.model.differences import differences
-
-from .blocks import Blocks
-from .plan import Plan, with_texts
-from .stored import FORMAT, KIND, MAP, Chunks, check_marker, has_map, open_runs, report_damage, study_marker
+from rattlebox.studies.run.plan import Plan, with_texts
+from rattlebox.studies.run.stored import (
+    FORMAT,
+    KIND,
+    MAP,
+    Chunks,
+    check_marker,
+    has_map,
+    open_runs,
+    report_damage,
+    study_marker,
+)
+from rattlebox.studies.work.blocks import Blocks
 
 if TYPE_CHECKING:
     import xarray as xr

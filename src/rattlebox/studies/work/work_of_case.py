@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.core._core import Status
-
-from .impact_work import ImpactWork
-from .particle_work import ParticleWork
+from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.particle_work import ParticleWork
 
 if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
-
-    from .grid import Grid
+    from rattlebox.studies.grid.grid import Grid
 
 
 def work_of_case(case: Case, grid: Grid, **options: Any) -> ImpactWork | ParticleWork:
@@ -27,7 +25,7 @@ def work_of_case(case: Case, grid: Grid, **options: Any) -> ImpactWork | Particl
     case, grid
         Base case and the grid of its variants.
     **options
-        Further attributes of the work; see `rattlebox.studies.case_work.CaseWork`.
+        Further attributes of the work; see `rattlebox.studies.work.case_work.CaseWork`.
     """
     return ParticleWork(case, grid, **options) if case.particle_dampers else ImpactWork(case, grid, **options)
 

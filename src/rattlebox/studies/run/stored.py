@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import RattleboxError, StoreError
 from rattlebox._util.owned_folder import DamagedError, Marker, damaged_files, read_marker
-
-from .blocks import Blocks
+from rattlebox.studies.work.blocks import Blocks
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,12 +14,11 @@ import numpy as np
 from rattlebox._util.interrupts import remember_ctrl_c
 from rattlebox._util.progress import progress_bar
 from rattlebox.model.errors import Hint
-
-from .backends import make_backend, wait_for
-from .blocks import Blocks
-from .plan import MemoryResult, Plan
-from .store import RESERVED, Store
-from .work import Block, Chain, ChainedWork, Values, Work, make_chains
+from rattlebox.studies.run.backends import make_backend, wait_for
+from rattlebox.studies.run.plan import MemoryResult, Plan
+from rattlebox.studies.run.store import RESERVED, Store
+from rattlebox.studies.work.blocks import Blocks
+from rattlebox.studies.work.work import Block, Chain, ChainedWork, Values, Work, make_chains
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import ResourceError
 from rattlebox.model.particle_damper import memory
-
-from .blocks import Blocks
-from .work import Output
+from rattlebox.studies.work.blocks import Blocks
+from rattlebox.studies.work.work import Output
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -17,11 +17,10 @@ from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 from rattlebox.prepare.pack import Batch, pack_parts
-
-from .case_work import CaseWork, Extra
-from .measures import INTERVAL, MEASURES, interval_of
-from .observed import Observed
-from .work import Cancelled, Values, proceed_unless
+from rattlebox.studies.work.case_work import CaseWork, Extra
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, interval_of
+from rattlebox.studies.work.observed import Observed
+from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
 
 @dataclass

@@ -30,10 +30,9 @@ from rattlebox.prepare.time_step import WARNINGS, exceeded_limits
 from rattlebox.results import Run
 from rattlebox.results.damper_force import mean_damper_force
 from rattlebox.results.schema import variables
-
-from .case_work import CaseWork, Extra
-from .measures import INTERVAL, MEASURES, MOST_BATCHES, interval_of
-from .work import Cancelled, Values, proceed_unless
+from rattlebox.studies.work.case_work import CaseWork, Extra
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, MOST_BATCHES, interval_of
+from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
     import xarray

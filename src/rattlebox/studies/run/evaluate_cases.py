@@ -11,9 +11,8 @@ import numpy as np
 
 from rattlebox._util.progress import progress_bar
 from rattlebox.engines.simulate import simulate_many
-
-from .backends import make_backend
-from .work import Block, Cancelled, Chain, Values, proceed_unless
+from rattlebox.studies.run.backends import make_backend
+from rattlebox.studies.work.work import Block, Cancelled, Chain, Values, proceed_unless
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

@@ -15,14 +15,13 @@ from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
-
-from .along_last import AlongLast
-from .case_work import Extra
-from .gather_variants import gather_values, gather_variants
-from .grid import Grid
-from .impact_work import ImpactWork, with_intervals
-from .measures import MEASURES, check_names, name_of
-from .work import Cancelled, Values, proceed_unless
+from rattlebox.studies.grid.grid import Grid
+from rattlebox.studies.work.along_last import AlongLast
+from rattlebox.studies.work.case_work import Extra
+from rattlebox.studies.work.gather_variants import gather_values, gather_variants
+from rattlebox.studies.work.impact_work import ImpactWork, with_intervals
+from rattlebox.studies.work.measures import MEASURES, check_names, name_of
+from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
     import xarray

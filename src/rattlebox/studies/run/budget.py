@@ -13,8 +13,7 @@ import numpy as np
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.engines.dem import simulate_dem
 from rattlebox.prepare.particles import count_steps, settle_all
-
-from .backends import cores
+from rattlebox.studies.run.backends import cores
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

@@ -14,17 +14,15 @@ from rattlebox.core import _core
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.random_vibration import Random
-
-from .case_digest import describe_case
-from .fingerprint import fingerprint
-from .measures import INTERVAL, MEASURES, name_of
-from .observed import Observed
+from rattlebox.studies.work.case_digest import describe_case
+from rattlebox.studies.work.fingerprint import fingerprint
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, name_of
+from rattlebox.studies.work.observed import Observed
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.results import Run
-
-    from .grid import Grid
+    from rattlebox.studies.grid.grid import Grid
 
 Extra = tuple[tuple[str, int], ...]
 """Dimensions of an output beyond those of the grid, with their lengths."""

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from rattlebox.analysis.describing_function import MassTable, Solutions, damping_of_modes, solve, solve_near
 from rattlebox.model.modes import ModalModel
-
-from .loss_table import LossTable
+from rattlebox.studies.maps.loss_table import LossTable
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -21,8 +21,7 @@ from typing import Any, Protocol, TypeVar
 from rattlebox._util.exceptions import CaseError, ResourceError
 from rattlebox._util.interrupts import StoppableCalls, raise_if_pressed
 from rattlebox.model.errors import Hint
-
-from .work import Block, Cancelled, Chain, Values, Work, last_values, run_block
+from rattlebox.studies.work.work import Block, Cancelled, Chain, Values, Work, last_values, run_block
 
 Results = Generator[tuple[Block, Values]]
 """Blocks with their outputs, in the order in which they finish. Closing the generator stops the rest."""

@@ -17,10 +17,9 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.particle_case import direction_of_base
 from rattlebox.model.space import unit_vector
-
-from .map_work import AMPLITUDE, FREQUENCY
-from .measures import INTERVAL
-from .stored import open_study
+from rattlebox.studies.run.stored import open_study
+from rattlebox.studies.work.map_work import AMPLITUDE, FREQUENCY
+from rattlebox.studies.work.measures import INTERVAL
 
 if TYPE_CHECKING:
     import xarray

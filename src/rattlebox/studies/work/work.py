@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from .blocks import Blocks
+    from rattlebox.studies.work.blocks import Blocks
 
 Values = Mapping[str, NDArray[Any]]
 """Arrays by the name of the output, variants first."""
@@ -33,7 +33,7 @@ def proceed_unless(cancelled: Cancelled) -> Callable[..., bool]:
 
 
 class VariantGrid(Protocol):
-    """Variants along the dimensions of a study; see `rattlebox.studies.grid.Grid`."""
+    """Variants along the dimensions of a study; see `rattlebox.studies.grid.grid.Grid`."""
 
     @property
     def dims(self) -> tuple[str, ...]:

@@ -22,9 +22,8 @@ from rattlebox.model.paths import Place, get_field, place_of, unit_of
 from rattlebox.model.restitutions import Constant
 from rattlebox.model.signals import Signal
 from rattlebox.model.units import parse, plain
-
-from .grid import Column
-from .sampling import Spaced
+from rattlebox.studies.grid.grid import Column
+from rattlebox.studies.grid.sampling import Spaced
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
-
-from .gather_variants import gather_values, gather_variants
-from .work import Cancelled
+from rattlebox.studies.work.gather_variants import gather_values, gather_variants
+from rattlebox.studies.work.work import Cancelled
 
 if TYPE_CHECKING:
     from rattlebox.studies.kinds.lyapunov import LyapunovWork

@@ -19,10 +19,9 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, all_paths, get, place_of, replaced
 from rattlebox.model.plausibility import plausibility_notes
-
-from .grid import Column, Grid, labels
-from .parameter import Parameter, Values, objects
-from .sampling import RandomDesign, Replicas, number_of_variants
+from rattlebox.studies.grid.grid import Column, Grid, labels
+from rattlebox.studies.grid.parameter import Parameter, Values, objects
+from rattlebox.studies.grid.sampling import RandomDesign, Replicas, number_of_variants
 
 Axes = (
     Mapping[Any, Any] | RandomDesign | Replicas | Sequence["Mapping[Any, Any] | RandomDesign | Replicas | ParsedAxes"]

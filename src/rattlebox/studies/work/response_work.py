@@ -16,13 +16,12 @@ from rattlebox.engines.end_state import EndState
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.prepare.particles import settle_all
-
-from .along_last import AlongLast
-from .case_work import Extra
-from .measures import INTERVAL
-from .orbits import Motion, classify
-from .particle_work import ParticleWork
-from .work import Cancelled, Values, proceed_unless
+from rattlebox.studies.work.along_last import AlongLast
+from rattlebox.studies.work.case_work import Extra
+from rattlebox.studies.work.measures import INTERVAL
+from rattlebox.studies.work.orbits import Motion, classify
+from rattlebox.studies.work.particle_work import ParticleWork
+from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

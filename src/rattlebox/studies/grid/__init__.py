@@ -1,0 +1,1 @@
+"""Axes, parameters and samples: which variants a study has."""

@@ -1,0 +1,1 @@
+"""Loss maps, and the response of structures from them."""

@@ -1,0 +1,1 @@
+"""Computation of the variants: engine, order and reduction."""
