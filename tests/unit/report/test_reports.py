@@ -398,7 +398,7 @@ def test_only_unchanged_reports_are_replaced(tmp_path: Path) -> None:
 )
 def test_bad_names_are_refused(name: str, words: str, tmp_path: Path) -> None:
     """The name of another kind of file, or in a missing folder, is an error before anything is drawn."""
-    with pytest.raises(rb.DataError, match="was not written by Rattlebox, or has changed"):
+    with pytest.raises(rb.DataError, match=words):
         result_of("run").report(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
