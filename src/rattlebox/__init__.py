@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 _NAMES = re.findall(r"^from (\S+) import \w+ as (\w+)$", Path(__file__).with_suffix(".pyi").read_text("utf-8"), re.M)
 _MODULES = {name: module for module, name in _NAMES}
