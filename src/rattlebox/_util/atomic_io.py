@@ -34,20 +34,7 @@ _WRITERS = {
 
 
 def check_suffix(path: Path, own: str) -> None:
-    """Raise if the suffix of a path belongs to another kind of file.
-
-    Parameters
-    ----------
-    path
-        The file, or a folder.
-    own
-        Suffix of the file to be written; "" for a folder.
-
-    Raises
-    ------
-    DataError
-        If the suffix belongs to another kind; the message names the function that writes the other kind.
-    """
+    """Raise if the suffix of a path belongs to another kind of file."""
     suffix = path.suffix.lower()
     if suffix != own and suffix in _WRITERS:
         what = f"a {own} file" if own else "a folder"
@@ -56,35 +43,13 @@ def check_suffix(path: Path, own: str) -> None:
 
 
 def require_folder(path: Path) -> None:
-    """Raise if the folder of a file does not exist.
-
-    Parameters
-    ----------
-    path
-        The file.
-
-    Raises
-    ------
-    DataError
-        If there is no such folder.
-    """
+    """Raise if the folder of a file does not exist."""
     if not path.parent.is_dir():
         raise DataError(f"{path} cannot be written: there is no folder {path.parent}", "another folder, or create it")
 
 
 def require_readable(path: Path) -> None:
-    """Raise if a file cannot be read, with the reason, which HDF5 does not report.
-
-    Parameters
-    ----------
-    path
-        The file.
-
-    Raises
-    ------
-    DataError
-        If there is no such file, if it is a folder, or if the system refuses to open it.
-    """
+    """Raise if a file cannot be read, with the reason, which HDF5 does not report."""
     if path.is_dir():
         raise DataError(f"{path} is a folder, not a file")
     if path.exists() and not path.is_file():  # opening a pipe would wait for somebody to write to it
@@ -98,22 +63,7 @@ def require_readable(path: Path) -> None:
 
 
 def check_format(path: Path, version: object, own: int) -> None:
-    """Raise if a file has a different version of its format.
-
-    Parameters
-    ----------
-    path
-        The file.
-    version
-        Version of the format in the file.
-    own
-        Version of the format that the package reads and writes.
-
-    Raises
-    ------
-    DataError
-        If the versions differ.
-    """
+    """Raise if a file has a different version of its format."""
     if version != own:
         raise DataError(
             f"{path} has format {version}, and this version of Rattlebox reads format {own}",
@@ -142,13 +92,7 @@ def _identity(path: Path) -> Identity | None:
 
 @contextmanager
 def watch(paths: Iterable[Path]) -> Iterator[None]:
-    """Let `atomic_write` in this block write to paths only while nobody else has created or changed their files.
-
-    Parameters
-    ----------
-    paths
-        Files, which need not exist.
-    """
+    """Let `atomic_write` in this block write to paths only while nobody else has created or changed their files."""
     now = {os.path.abspath(path): [_identity(path)] for path in paths}
     token = _watched.set({**now, **(_watched.get() or {})})  # an outer block has looked earlier
     try:
@@ -158,13 +102,7 @@ def watch(paths: Iterable[Path]) -> Iterator[None]:
 
 
 def unchanged(path: Path) -> bool:
-    """Return whether a file is still as it was when a block of `watch` began, or is not watched.
-
-    Parameters
-    ----------
-    path
-        The file, which need not exist.
-    """
+    """Return whether a file is still as it was when a block of `watch` began, or is not watched."""
     seen = (_watched.get() or {}).get(os.path.abspath(path))
     return seen is None or seen[0] == _identity(path)
 
@@ -188,25 +126,6 @@ def atomic_write(
     The content is flushed to the disk before the temporary file is renamed, and the new name before the context ends: after
     a crash of the program or the machine, the target is either the new or the earlier file. If the target is a symbolic
     link, the file to which it points is replaced.
-
-    Parameters
-    ----------
-    path
-        File to write, in an existing folder.
-    advice
-        Advice in the message about a full disk.
-    replace
-        Whether an existing file is replaced. Default: a file that is watched, if it is unchanged since; others, except
-        in commands (see `only_watched_files`).
-
-    Raises
-    ------
-    FileTaken
-        If the target exists and must not be replaced. It is unchanged.
-    DataError
-        If the file cannot be written. An earlier file is then unchanged, and the temporary file is removed.
-    ResourceError
-        If no space is left on the disk, with the same state of the files.
     """
     path = Path(path)
     with disk_errors(path, advice):
@@ -234,22 +153,7 @@ def atomic_write(
 
 
 def install(source: Path, path: Path, *, replace: bool | None = None) -> None:
-    """Give a complete file its name.
-
-    Parameters
-    ----------
-    source
-        The file.
-    path
-        New name in the same file system.
-    replace
-        Whether an existing file is replaced, as in `atomic_write`.
-
-    Raises
-    ------
-    FileTaken
-        If another file has the name that must not be replaced.
-    """
+    """Give a complete file its name."""
     target = path.resolve() if path.is_symlink() else path
     seen = (_watched.get() or {}).get(os.path.abspath(path))
     if replace is None and seen:
@@ -290,41 +194,18 @@ def _taken(target: Path) -> FileTaken:
 
 
 def temporaries(path: Path) -> list[Path]:
-    """Return the temporary files of processes that were killed in `atomic_write`.
-
-    Parameters
-    ----------
-    path
-        Target of the write.
-    """
+    """Return the temporary files of processes that were killed in `atomic_write`."""
     return list(path.parent.glob(glob.escape(f".{path.name}.") + "?" * 8 + glob.escape(f".partial{path.suffix}")))
 
 
 def remove_temporaries(path: Path) -> None:
-    """Remove the temporary files of killed processes. The caller must be the only writer of the file.
-
-    Parameters
-    ----------
-    path
-        Target of the write, which is not changed.
-    """
+    """Remove the temporary files of killed processes. The caller must be the only writer of the file."""
     for temporary in temporaries(path):
         temporary.unlink(missing_ok=True)
 
 
 def sync(path: Path) -> None:
-    """Flush the content of a file, or the names in a folder, to the disk.
-
-    Parameters
-    ----------
-    path
-        The file or the folder.
-
-    Raises
-    ------
-    OSError
-        If the content of a file cannot be written. Systems that cannot flush folders raise no error.
-    """
+    """Flush the content of a file, or the names in a folder, to the disk."""
     folder = path.is_dir()
     with suppress(*(OSError,) if folder else ()):
         handle = os.open(path, os.O_RDONLY if folder else os.O_RDWR)
@@ -336,22 +217,7 @@ def sync(path: Path) -> None:
 
 @contextmanager
 def disk_errors(path: Path, advice: str = DISK_HINT) -> Iterator[None]:
-    """Convert errors of a full or read-only disk to errors of the package.
-
-    Parameters
-    ----------
-    path
-        File to be written.
-    advice
-        Advice in the message about a full disk.
-
-    Raises
-    ------
-    ResourceError
-        If no space is left.
-    DataError
-        If the file cannot be written for another reason.
-    """
+    """Convert errors of a full or read-only disk to errors of the package."""
     try:
         yield
     except RattleboxError:
@@ -370,18 +236,6 @@ def reserve_space(path: Path, size: int) -> None:
 
     HDF5 buffers part of a file and crashes if the disk is full when it writes that part. Space is therefore reserved for
     files that it changes in place.
-
-    Parameters
-    ----------
-    path
-        An existing file.
-    size
-        Number of bytes.
-
-    Raises
-    ------
-    OSError
-        If there is no space.
     """
     if hasattr(os, "posix_fallocate"):
         with path.open("r+b") as file:

@@ -19,13 +19,7 @@ _SCALES = frozenset(
 
 
 def array_digest(arrays: Iterable[NDArray[Any]]) -> bytes:
-    """Return the digest of types, shapes and bytes of arrays.
-
-    Parameters
-    ----------
-    arrays
-        The arrays, in a fixed order.
-    """
+    """Return the digest of types, shapes and bytes of arrays."""
     digest = hashlib.blake2b(digest_size=SIZE)
     for array in arrays:
         _add(digest, array)
@@ -33,18 +27,7 @@ def array_digest(arrays: Iterable[NDArray[Any]]) -> bytes:
 
 
 def group_digest(group: Any, growing: Container[str] = (), *, nested: bool = True) -> str:
-    """Return the digest of all names, attributes, types, shapes and values in a group of an HDF5 file.
-
-    Parameters
-    ----------
-    group
-        Group of h5py. Its own attribute "digest" is not part of the digest.
-    growing
-        Paths below the group that change later: datasets, of which only type and shape are included, and attributes as
-        "path@name", which are excluded.
-    nested
-        Whether to include the content of subgroups; otherwise only their names.
-    """
+    """Return the digest of all names, attributes, types, shapes and values in a group of an HDF5 file."""
     digest = hashlib.blake2b(digest_size=SIZE)
 
     def add(path: str, item: Any) -> None:

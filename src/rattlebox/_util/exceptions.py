@@ -14,17 +14,7 @@ _PUBLIC = "rattlebox"
 
 
 class RattleboxError(Exception):
-    """Base class of all errors of the package.
-
-    Parameters
-    ----------
-    complaint
-        The error, and the values that are allowed.
-    suggestion
-        Advice; printed on a separate line.
-    place
-        Location of the value in the part that raises: names of fields, numbers in lists.
-    """
+    """Base class of all errors of the package."""
 
     _source: ClassVar[tuple[str, str]] = (__name__, "RattleboxError")  # module and name of the class, for pickles
 
@@ -91,14 +81,6 @@ def named(place: Sequence[str | int]) -> str:
 
 
 def message(head: str, *rest: str) -> str:
-    """Return the head, further lines below it, and the last argument as a suggestion.
-
-    Parameters
-    ----------
-    head
-        First line.
-    rest
-        Further lines, which are indented; the last is the suggestion, or "".
-    """
+    """Return the head, further lines below it, and the last argument as a suggestion."""
     *complaint, suggestion = rest
     return "\n".join([head, *(f"  {line}" for line in complaint), *([f"  try: {suggestion}"] if suggestion else [])])

@@ -15,62 +15,28 @@ _CELL = 'style="text-align:{align}; vertical-align:top; padding:2px 10px"'
 
 
 def escape(text: str) -> str:
-    """Return a text as content of an HTML element that shows it literally; not for attributes.
-
-    Parameters
-    ----------
-    text
-        Any text, also from files.
-    """
+    """Return a text as content of an HTML element that shows it literally; not for attributes."""
     return _escape(printable(text), quote=False)
 
 
 def paragraph(title: str, text: str = "") -> str:
-    """Return a paragraph that begins with a title in bold, if there is one.
-
-    Parameters
-    ----------
-    title, text
-        Plain texts.
-    """
+    """Return a paragraph that begins with a title in bold, if there is one."""
     return f"<p><b>{escape(title)}</b> {escape(text)}</p>" if title else f"<p>{escape(text)}</p>"
 
 
 def code_block(text: str) -> str:
-    """Return a text with its line breaks, in a fixed-width font.
-
-    Parameters
-    ----------
-    text
-        Plain text.
-    """
+    """Return a text with its line breaks, in a fixed-width font."""
     return f'<pre style="line-height:1.3">{escape(text)}</pre>'
 
 
 def bullets(lines: Iterable[str]) -> str:
-    """Return a list of sentences, empty if there are none.
-
-    Parameters
-    ----------
-    lines
-        Plain texts.
-    """
+    """Return a list of sentences, empty if there are none."""
     items = "".join(f"<li>{escape(line)}</li>" for line in lines)
     return f"<ul>{items}</ul>" if items else ""
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[str]], numbers: bool = False) -> str:
-    """Return a table.
-
-    Parameters
-    ----------
-    header
-        Titles of the columns; no header is written if all are empty.
-    rows
-        Texts of each row.
-    numbers
-        Whether all columns but the first contain numbers, which are aligned to the right.
-    """
+    """Return a table."""
 
     def line(texts: Sequence[str], tag: str) -> str:
         aligns = ["left", *["right" if numbers else "left"] * (len(texts) - 1)]
@@ -91,13 +57,7 @@ class Catalogue(dict[str, Entry]):
     columns: ClassVar[tuple[str, ...]]
 
     def row(self, name: str, entry: Entry) -> Sequence[str]:
-        """Return the texts of one row.
-
-        Parameters
-        ----------
-        name, entry
-            Key and value.
-        """
+        """Return the texts of one row."""
         raise NotImplementedError
 
     def __repr__(self) -> str:

@@ -95,13 +95,7 @@ class StoppableCalls:
         return self._stopped
 
     def call(self, function: Callable[[], Result]) -> Result | None:
-        """Return the result of a function; None if the calls are stopped.
-
-        Parameters
-        ----------
-        function
-            The function.
-        """
+        """Return the result of a function; None if the calls are stopped."""
         own = threading.get_ident()
         try:
             with self._lock:

@@ -25,20 +25,7 @@ _DEPTH = 64
 
 
 def check_mat(content: bytes) -> None:
-    """Raise if a MAT file is damaged.
-
-    Parameters
-    ----------
-    content
-        The whole file.
-
-    Raises
-    ------
-    ValueError
-        If a size, a type or an index contradicts the rest of the file.
-    NotImplementedError
-        If it is of version 7.3, which is HDF5.
-    """
+    """Raise if a MAT file is damaged."""
     if len(content) < 20:
         raise ValueError("the file is cut off")
     if 0 in content[:4]:

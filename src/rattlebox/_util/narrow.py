@@ -8,38 +8,14 @@ Value = TypeVar("Value")
 
 
 def present(value: Value | None) -> Value:
-    """Return an optional value; raise if it is None.
-
-    Parameters
-    ----------
-    value
-        The value.
-
-    Raises
-    ------
-    TypeError
-        If it is None, which an earlier check of the caller should have excluded.
-    """
+    """Return an optional value; raise if it is None."""
     if value is None:
         raise TypeError("a value is None, which an earlier check should have excluded")
     return value
 
 
 def instance(value: object, kind: type[Value]) -> Value:
-    """Return a value; raise if it is not of a class.
-
-    Parameters
-    ----------
-    value
-        The value.
-    kind
-        Its class.
-
-    Raises
-    ------
-    TypeError
-        If it is of another class, which an earlier check of the caller should have excluded.
-    """
+    """Return a value; raise if it is not of a class."""
     if not isinstance(value, kind):
         raise TypeError(f"{value!r:.60} is not a {kind.__name__}, which an earlier check should have excluded")
     return value

@@ -9,27 +9,7 @@ from .exceptions import MissingDependency
 
 
 def optional_import(module: str, extra: str, otherwise: str = "") -> Any:
-    """Import a module of an optional library.
-
-    Parameters
-    ----------
-    module
-        Name of the module.
-    extra
-        Extra of rattlebox that installs the library.
-    otherwise
-        Alternative without the library, for the message.
-
-    Returns
-    -------
-    module
-        The module.
-
-    Raises
-    ------
-    MissingDependency
-        If the library is not installed; the message contains the command to install it.
-    """
+    """Import a module of an optional library."""
     library = module.partition(".")[0]
     try:
         import_module(library)

@@ -34,28 +34,12 @@ _recognise: dict[str, Callable[[Path], bool]] = {}
 
 
 def register_format(suffix: str, recognise: Callable[[Path], bool]) -> None:
-    """Register how a format of Rattlebox is recognised.
-
-    Parameters
-    ----------
-    suffix
-        Suffix of its files.
-    recognise
-        Function that returns whether an existing file has the format.
-    """
+    """Register how a format of Rattlebox is recognised."""
     _recognise[suffix] = recognise
 
 
 def seal(content: bytes, suffix: str) -> bytes:
-    """Return the content of a file with a seal, in a place of its format for comments.
-
-    Parameters
-    ----------
-    content
-        Complete file: PNG, HTML, or a ZIP archive without a comment.
-    suffix
-        Its suffix.
-    """
+    """Return the content of a file with a seal, in a place of its format for comments."""
 
     def text(before: bytes) -> bytes:
         return f"Rattlebox {_SEALS[suffix]}, SHA-256 of the text above: {hashlib.sha256(before).hexdigest()}".encode()
@@ -73,13 +57,7 @@ def seal(content: bytes, suffix: str) -> bytes:
 
 
 def sealed_kind(path: Path) -> str:
-    """Return the kind of a sealed file, "" without a seal; "changed" if the bytes before the seal have changed.
-
-    Parameters
-    ----------
-    path
-        An existing file.
-    """
+    """Return the kind of a sealed file, "" without a seal; "changed" if the bytes before the seal have changed."""
     content = path.read_bytes()
     seals = list(_SEAL.finditer(content, max(0, len(content) - _LONGEST_END)))
     if not seals:
@@ -90,18 +68,7 @@ def sealed_kind(path: Path) -> str:
 
 
 def may_replace(path: Path) -> bool:
-    """Return whether there is no file at a path, or an unchanged one of Rattlebox of the kind of its suffix.
-
-    Parameters
-    ----------
-    path
-        File to be written.
-
-    Raises
-    ------
-    DataError
-        If the file, or the marker of its folder, cannot be read.
-    """
+    """Return whether there is no file at a path, or an unchanged one of Rattlebox of the kind of its suffix."""
     if not os.path.lexists(path):
         return True
     if not path.is_file():
@@ -116,18 +83,7 @@ def may_replace(path: Path) -> bool:
 
 
 def folder_marker(folder: Path) -> Marker | None:
-    """Return the marker of a folder; None if there is none.
-
-    Parameters
-    ----------
-    folder
-        The folder.
-
-    Raises
-    ------
-    DataError
-        If the marker is damaged.
-    """
+    """Return the marker of a folder; None if there is none."""
     try:
         return read_marker(folder)
     except DamagedError as error:
@@ -135,18 +91,7 @@ def folder_marker(folder: Path) -> Marker | None:
 
 
 def check_replaceable(path: Path) -> None:
-    """Raise if there is a file at a path that must not be replaced.
-
-    Parameters
-    ----------
-    path
-        File to be written.
-
-    Raises
-    ------
-    DataError
-        If there is such a file.
-    """
+    """Raise if there is a file at a path that must not be replaced."""
     if not may_replace(path):
         raise DataError(
             f"{path} was not written by Rattlebox, or has changed since, and is not overwritten",
@@ -155,23 +100,7 @@ def check_replaceable(path: Path) -> None:
 
 
 def list_files(folder: Path, version: str, files: Mapping[str, str | None]) -> None:
-    """Add files to the list in the marker of a folder of results.
-
-    Parameters
-    ----------
-    folder
-        The folder; a marker is written if it has none.
-    version
-        Version of Rattlebox.
-    files
-        Digest by name, see `digest_of`; "" for a file that is about to be written, or recognised by its format; None for
-        a file that is removed from the list.
-
-    Raises
-    ------
-    DataError
-        If the folder contains a study, or the marker cannot be read or written.
-    """
+    """Add files to the list in the marker of a folder of results."""
     marker = folder_marker(folder)
     if marker and marker.name not in (RUN_FOLDER, REPLACEMENT, ""):
         raise DataError(f"{folder} contains a study, and results of a run need a folder of their own", "another folder")
@@ -182,20 +111,7 @@ def list_files(folder: Path, version: str, files: Mapping[str, str | None]) -> N
 
 @contextmanager
 def claim(paths: Iterable[Path], *, named: bool = False) -> Iterator[None]:
-    """Check that files may be written, and let `atomic_write` in this block replace them only if they did not change.
-
-    Parameters
-    ----------
-    paths
-        Files to be written in the block.
-    named
-        Whether the user named them, and so allows to replace them.
-
-    Raises
-    ------
-    DataError
-        If one of the files exists and must not be replaced.
-    """
+    """Check that files may be written, and let `atomic_write` in this block replace them only if they did not change."""
     paths = list(paths)
     for path in paths:
         if not named:

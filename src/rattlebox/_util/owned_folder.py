@@ -33,23 +33,7 @@ class ForeignFile(DataError):
 
 @dataclass(frozen=True)
 class Marker:
-    """Content of the marker of an owned folder.
-
-    Attributes
-    ----------
-    name
-        Kind of the folder.
-    version
-        Version of Rattlebox that created the folder.
-    identifier
-        Unique text.
-    complete
-        Whether all files of the list were written.
-    about
-        Further information, JSON types only.
-    files
-        Digests of the files of the fixed part by their paths in the folder; "" before the folder is complete.
-    """
+    """Content of the marker of an owned folder."""
 
     name: str
     version: str
@@ -60,20 +44,7 @@ class Marker:
 
 
 def read_marker(folder: Path) -> Marker | None:
-    """Return the marker of a folder; None if there is none.
-
-    Parameters
-    ----------
-    folder
-        The folder, which need not exist.
-
-    Raises
-    ------
-    DamagedError
-        If the marker is damaged.
-    OSError
-        If it cannot be read.
-    """
+    """Return the marker of a folder; None if there is none."""
     file = folder / MARKER
     try:
         text = file.read_text(encoding="utf-8")
@@ -95,22 +66,7 @@ def read_marker(folder: Path) -> Marker | None:
 
 
 def write_marker(folder: Path, marker: Marker, *, new: bool = False) -> None:
-    """Write the marker of a folder.
-
-    Parameters
-    ----------
-    folder
-        The folder, which exists.
-    marker
-        Content of the marker.
-    new
-        Whether to retain a marker that another process has written in the meantime.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
+    """Write the marker of a folder."""
     path = folder / MARKER
     text = json.dumps({**asdict(marker), "digest": _digest(_text(marker).encode())}, indent=1)
     if new:
@@ -122,43 +78,13 @@ def write_marker(folder: Path, marker: Marker, *, new: bool = False) -> None:
 
 
 def is_free(folder: Path, also: Iterable[str] = ()) -> bool:
-    """Return whether a folder is empty, except for temporary files of the marker.
-
-    Parameters
-    ----------
-    folder
-        The folder, which exists.
-    also
-        Further names that are allowed.
-    """
+    """Return whether a folder is empty, except for temporary files of the marker."""
     allowed = {path.name for path in temporaries(folder / MARKER)}
     return {path.name for path in folder.iterdir()} <= {*allowed, *also}
 
 
 def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
-    """Write the fixed part of an owned folder; it replaces an earlier one.
-
-    Parameters
-    ----------
-    folder
-        The folder, created if missing.
-    marker
-        Its marker, without files.
-    files
-        Content by path in the folder, with slashes.
-
-    Returns
-    -------
-    Marker
-        The marker with the digests.
-
-    Raises
-    ------
-    ForeignFile
-        If one of the files exists and is foreign; nothing is changed then.
-    OSError
-        If a file cannot be written.
-    """
+    """Write the fixed part of an owned folder; it replaces an earlier one."""
     earlier = read_marker(folder)
     own = earlier.files if earlier else {}
     foreign = [name for name in files if name not in own and os.path.lexists(folder / name)]
@@ -179,28 +105,12 @@ def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
 
 
 def damaged_files(folder: Path, marker: Marker) -> list[str]:
-    """Return the files of the fixed part that are missing or have changed.
-
-    Parameters
-    ----------
-    folder
-        The folder.
-    marker
-        Its marker.
-    """
+    """Return the files of the fixed part that are missing or have changed."""
     return [name for name, digest in marker.files.items() if digest_of(folder / name) != digest]
 
 
 def remove(folder: Path, names: Iterable[str]) -> None:
-    """Remove files of an owned folder by name, and subfolders that are then empty.
-
-    Parameters
-    ----------
-    folder
-        The folder, which is not removed.
-    names
-        Paths in the folder, with slashes. They need not exist.
-    """
+    """Remove files of an owned folder by name, and subfolders that are then empty."""
     root = folder.resolve()
     for name in names:
         path = folder / name
@@ -232,13 +142,7 @@ def _digest(content: bytes) -> str:
 
 
 def digest_of(path: Path) -> str:
-    """Return the digest of a file; "" if it cannot be read.
-
-    Parameters
-    ----------
-    path
-        The file.
-    """
+    """Return the digest of a file; "" if it cannot be read."""
     try:
         return _digest(path.read_bytes())
     except OSError:

@@ -23,10 +23,6 @@ class Report:
 
     Parameters
     ----------
-    progress
-        True, False or a function.
-    what
-        Name of what is counted, in the plural.
     delay
         Time after which a bar appears [s].
     """
@@ -84,10 +80,6 @@ def progress_bar(progress: Progress, what: str, *, delay: float = _DELAY) -> Ite
 
     Parameters
     ----------
-    progress
-        True for a bar, False for none, or a function that is called instead.
-    what
-        Name of what is counted, in the plural.
     delay
         Time after which the bar appears [s].
     """
@@ -99,15 +91,7 @@ def progress_bar(progress: Progress, what: str, *, delay: float = _DELAY) -> Ite
 
 
 def announce(progress: Progress, line: str) -> None:
-    """Print a line on the standard error if progress is shown.
-
-    Parameters
-    ----------
-    progress
-        The argument of the call; nothing is printed for False and for functions.
-    line
-        The line.
-    """
+    """Print a line on the standard error if progress is shown."""
     if progress is True:
         print(line, file=sys.stderr, flush=True)
 

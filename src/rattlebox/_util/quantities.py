@@ -23,22 +23,7 @@ def _exponent(value: float, significant: int) -> int:
 
 
 def prefix(value: float, least: float = 1.0) -> tuple[float, str]:
-    """Return the SI prefix in which `value` is at least `least` and less than 1000 `least`.
-
-    Parameters
-    ----------
-    value
-        Number in the unit without prefix; zero and non-finite numbers get no prefix.
-    least
-        Power of ten.
-
-    Returns
-    -------
-    scale : float
-        Divisor of the value.
-    name : str
-        Prefix of the unit.
-    """
+    """Return the SI prefix in which `value` is at least `least` and less than 1000 `least`."""
     if value == 0.0 or not math.isfinite(value):
         return 1.0, ""
     power = min(max(3 * (_exponent(value / least, 4) // 3), min(PREFIXES)), max(PREFIXES))
@@ -49,15 +34,6 @@ def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
     """Return the divisor and the prefixed unit for a number.
 
     Masses are written in grams, kilograms and tonnes: kkg and Mg are not used.
-
-    Parameters
-    ----------
-    value
-        Number in SI units.
-    unit
-        SI unit.
-    least
-        Smallest number to be written in the unit, a power of ten.
     """
     base = 1.0
     if unit == "kg":
@@ -68,15 +44,7 @@ def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
 
 
 def digits(value: float, significant: int = 4) -> str:
-    """Format a number with a fixed number of significant digits; with an exponent only below 1e-4 and from 1e7.
-
-    Parameters
-    ----------
-    value
-        Number.
-    significant
-        Count of significant digits.
-    """
+    """Format a number with a fixed number of significant digits; with an exponent only below 1e-4 and from 1e7."""
     if not math.isfinite(value):
         return MISSING if math.isnan(value) else str(value)
     if value == 0.0:
@@ -89,16 +57,6 @@ def digits(value: float, significant: int = 4) -> str:
 
 def quantity(value: float, unit: str, significant: int = 4) -> str:
     """Format a number with its unit and an SI prefix.
-
-    Parameters
-    ----------
-    value
-        Number in SI units.
-    unit
-        Unit, such as "m" or "m/s"; "" or "1" for a pure number, "%" for a share in per cent, of which less than 1e-12 is
-        written as 0.
-    significant
-        Count of significant digits.
 
     Examples
     --------
@@ -118,15 +76,6 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
 def amount(value: float, unit: str = "", significant: int = 4) -> str:
     """Format a number with its unit, without trailing zeros, as inputs are written: 20 kg, 0.4 mm.
 
-    Parameters
-    ----------
-    value
-        Number in SI units.
-    unit
-        Unit; "" or "1" for a pure number, "%" for a share in per cent. Units outside of `PREFIXED_UNITS` get no prefix.
-    significant
-        Largest number of significant digits.
-
     Examples
     --------
     >>> amount(0.0004, "m"), amount(20.0, "kg"), amount(7850.0, "kg/m^3")
@@ -145,11 +94,5 @@ def amount(value: float, unit: str = "", significant: int = 4) -> str:
 
 
 def without_zeros(text: str) -> str:
-    """Return a text without zeros at the end of the decimals of its numbers.
-
-    Parameters
-    ----------
-    text
-        Numbers, with or without units.
-    """
+    """Return a text without zeros at the end of the decimals of its numbers."""
     return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", text)

@@ -15,8 +15,6 @@ def settled_after(t: NDArray[np.float64], x: NDArray[np.float64], limit: float) 
         Increasing times [s].
     x : (N,) float
         Signal about its rest position.
-    limit
-        Half width of the band.
     """
     side = np.where(np.abs(x) > limit, np.sign(x), 0.0)
     begins = np.flatnonzero(np.diff(side, prepend=np.nan))  # of intervals on one side, or within the band

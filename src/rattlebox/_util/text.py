@@ -9,22 +9,10 @@ _NOT_IN_NAMES, _NOT_PRINTED = re.compile(f"[{_CONTROLS}\t\n]"), re.compile(f"[{_
 
 
 def has_controls(name: str) -> bool:
-    """Return whether a name contains line breaks or other control characters.
-
-    Parameters
-    ----------
-    name
-        The name.
-    """
+    """Return whether a name contains line breaks or other control characters."""
     return _NOT_IN_NAMES.search(name) is not None
 
 
 def printable(text: str) -> str:
-    """Return a text in which control characters except line breaks and tabs are question marks.
-
-    Parameters
-    ----------
-    text
-        Text to print.
-    """
+    """Return a text in which control characters except line breaks and tabs are question marks."""
     return _NOT_PRINTED.sub("?", text)

@@ -34,25 +34,6 @@ UNSTEADY = "unsteady"
 class CycleLoss:
     """Energies of one cycle, averaged over the whole cycles at the end of a run [J].
 
-    Attributes
-    ----------
-    work
-        Work of the walls on the particles, which is the loss of the structure.
-    dissipated
-        Energy lost in contacts.
-    stored
-        Rise of the energy of the particles: kinetic, elastic, and potential of gravity.
-    raised
-        Rise of the potential of gravity alone, the weight times the rise of the centre of mass.
-    drift
-        Change of the work from the first to the second half of the cycles.
-    cycles
-        Number of cycles.
-    scale
-        m V^2, with the mass m of the particles and the velocity amplitude V of the first cavity.
-    is_settled, is_balanced, is_constant
-        Whether the centre of mass, the stored energy, and the work have no trend that matters.
-
     Notes
     -----
     work = dissipated + stored. In a steady motion nothing is stored over whole cycles. A bed that sinks also dissipates its
@@ -103,19 +84,8 @@ def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] |
 
     Parameters
     ----------
-    run
-        Run with at least this many cycles.
     frequency
         Frequency of the motion [Hz].
-    cycles
-        Number of cycles at the end of the run.
-    dampers
-        Indices of the dampers; default all.
-
-    Returns
-    -------
-    CycleLoss
-        The energies and the test of steadiness.
 
     Notes
     -----

@@ -54,8 +54,6 @@ class MassTable:
         Rising amplitudes of the cavity, two or more: displacements [m] or accelerations [m/s^2].
     mass : (K, J) complex
         Apparent mass m' - i m'' [kg]; NaN where it is unknown.
-    is_acceleration
-        Whether amplitudes are accelerations.
 
     References
     ----------
@@ -100,8 +98,6 @@ class MassTable:
         ----------
         frequency : (F,) float
             Frequencies within the table [Hz].
-        store
-            Whether to store the curves for the next call: many arrangements of dampers are computed at the same frequencies.
         """
         key = frequency.tobytes()
         curves = self._latest.get(key)
@@ -259,8 +255,6 @@ def solve(
 
     Parameters
     ----------
-    table
-        Apparent mass of one damper.
     frequency : (F,) float
         Frequencies [Hz]; outside of the table there are no solutions.
     gain : (F, P, P) complex
@@ -269,11 +263,6 @@ def solve(
         Accelerations of the cavities at level 1 without dampers.
     levels : (L,) float
         Levels of the load or base motion, above zero.
-
-    Returns
-    -------
-    Solutions
-        The motions.
 
     Notes
     -----
@@ -306,21 +295,7 @@ def solve_near(
     levels: FloatArray,
     solutions: Solutions,
 ) -> Solutions:
-    """Return the motions for a table that differs little from that of known motions.
-
-    Parameters
-    ----------
-    table, frequency, gain, drive, levels
-        As for `solve`, but with the other table.
-    solutions
-        Motions with the known table, from `solve`.
-
-    Returns
-    -------
-    Solutions
-        The motions close to the known ones, from Newton's method. At frequencies where it does not find one of them, and
-        for one cavity at all, those of `solve`.
-    """
+    """Return the motions for a table that differs little from that of known motions."""
     if drive.shape[1] == 1:
         return solve(table, frequency, gain, drive, levels)
     place = np.nonzero(np.isfinite(solutions.acceleration).all(axis=-1))
@@ -349,12 +324,8 @@ class _System:
 
     Attributes
     ----------
-    table, curves
-        Apparent mass, and its values at all frequencies.
     rows : (F,) int
         Numbers of the frequencies in the curves.
-    frequency, gain, drive
-        As for `solve`.
     """
 
     table: MassTable
@@ -634,16 +605,12 @@ def damping_of_modes(
 
     Parameters
     ----------
-    table
-        Apparent mass of one damper.
     stiffness : (m,) float
         Squared natural frequencies of the structure [1/s^2].
     damping : (m, m) float
         Modal damping matrix D [1/s].
     shapes : (P, m) float
         Mass-normalised mode shapes at the cavities [kg^-1/2].
-    number
-        Number of dampers at each cavity.
 
     Returns
     -------

@@ -28,12 +28,6 @@ class _Segments:
     ----------
     rate
         Sampling rate [Hz].
-    length, shift
-        Samples in a segment, and between the starts of two segments.
-    count
-        Number of segments.
-    independent
-        Number of independent segments with the same variance of the average.
     """
 
     rate: float

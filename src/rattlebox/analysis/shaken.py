@@ -195,8 +195,6 @@ def force_harmonics(
         Momentum of the particles along the motion of the cavity [kg m/s].
     frequency
         Frequency of the motion [Hz].
-    count
-        Largest number of a harmonic.
 
     Returns
     -------

@@ -42,26 +42,7 @@ def said(error: BaseException) -> str:
 
 
 class Draft:
-    """Case that a page edits, also while it is not valid.
-
-    Parameters
-    ----------
-    folder
-        Folder of the files that the case may name.
-
-    Attributes
-    ----------
-    text
-        Case file, as the user sees it.
-    given
-        Its tables; those of the last text that was TOML.
-    case
-        The case; None while it is not valid.
-    errors
-        Texts by path ("damper.gap"); "" for those without a field.
-    is_toml
-        Whether the text is TOML. Otherwise the tables are older than the text and cannot be changed.
-    """
+    """Case that a page edits, also while it is not valid."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -153,13 +134,7 @@ def by_field(message: str) -> dict[str, str]:
 
 
 def outside(node: Any, folder: Path) -> None:
-    """Raise if a case names a file that is not in the folder.
-
-    Raises
-    ------
-    CaseError
-        With the name of the file.
-    """
+    """Raise if a case names a file that is not in the folder."""
     for file in _named_files(node):
         if not (folder / file).resolve().is_relative_to(folder.resolve()):
             raise rb.CaseError(

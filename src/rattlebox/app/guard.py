@@ -13,18 +13,7 @@ MOST_BYTES = 2_000_000
 
 
 class Guard:
-    """ASGI middleware that accepts requests of the user's browser only.
-
-    Parameters
-    ----------
-    app
-        Application behind it.
-    token
-        Random token that the first request has in its URL, and later ones in a cookie.
-    hosts
-        Allowed values of the host header, such as "127.0.0.1:8642". A page of another site that resolves to this machine
-        has another one.
-    """
+    """ASGI middleware that accepts requests of the user's browser only."""
 
     def __init__(self, app: Any, token: str, hosts: Iterable[str]) -> None:
         self._app, self._token, self._hosts = app, token, frozenset(hosts)

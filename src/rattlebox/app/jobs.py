@@ -61,20 +61,7 @@ class Worker:
         return self._process.pid
 
     async def do(self, *task: Any, progress: Callable[..., object] = lambda *_: None) -> Any:
-        """Send a task and return its result.
-
-        Parameters
-        ----------
-        *task
-            Name of a task of `rattlebox.app.worker` and its arguments.
-        progress
-            Function called with each report of the task.
-
-        Raises
-        ------
-        TaskFailed
-            If the task ends with an error, or its process ends.
-        """
+        """Send a task and return its result."""
         if not self._process.is_alive():
             self._start()
         connection = self._connection
@@ -103,10 +90,6 @@ class Live:
 
     Parameters
     ----------
-    show
-        Function called with the result.
-    fail
-        Function called with the text of an error.
     longest
         Time after which a computation is stopped [s].
     """

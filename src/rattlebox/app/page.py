@@ -61,15 +61,7 @@ OUTDATED = "the pictures show an earlier case"
 
 
 class Page:
-    """One open page.
-
-    Parameters
-    ----------
-    folder
-        Folder for files.
-    bodies
-        Functions that return the binary bodies which the browser may fetch, by key; the page adds and removes its own.
-    """
+    """One open page."""
 
     runs_in_progress: ClassVar[set[str]] = set()
     """Names of the runs that the pages of this server compute; their checkpoints are not those of paused runs."""
@@ -379,13 +371,7 @@ class Page:
             self._particles.show(self._particles._props.get("url", ""), growing=False)
 
     async def resume(self, name: str) -> None:
-        """Resume a paused run of the folder from its checkpoint.
-
-        Raises
-        ------
-        DataError
-            If its files are not in the folder, or a run of this page is in progress.
-        """
+        """Resume a paused run of the folder from its checkpoint."""
         if self._worker is not None:
             raise rb.DataError("a run of this page is in progress", "Pause or Cancel in the tab Watch first")
         self.use_text(paused_case(self.folder, name))

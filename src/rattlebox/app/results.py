@@ -150,13 +150,7 @@ def _is_name(name: str) -> bool:
 
 
 def inside(folder: Path, name: str, suffix: str) -> Path:
-    """Return the file of a result in the folder.
-
-    Raises
-    ------
-    DataError
-        If the name is not one of a result in the folder.
-    """
+    """Return the file of a result in the folder."""
     path = folder / f"{name}{suffix}"
     if not _is_name(name) or not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
         raise rb.DataError(f"{name!r} is not the name of a result", "letters, digits and -")
@@ -166,13 +160,7 @@ def inside(folder: Path, name: str, suffix: str) -> Path:
 
 
 def store_file(folder: Path, name: str, content: bytes) -> None:
-    """Write a file of data to the folder.
-
-    Raises
-    ------
-    DataError
-        If the name is not a plain one with a suffix of `DATA_FILES`, or is taken.
-    """
+    """Write a file of data to the folder."""
     if not re.fullmatch(r"[\w-][\w .-]{0,80}", name) or not name.lower().endswith(DATA_FILES):
         raise rb.DataError(f"{name!r} is not the name of a data file", f"a name that ends in {', '.join(DATA_FILES)}")
     path = folder / name

@@ -26,15 +26,7 @@ MOST_DIFFERENCES = 12
 
 
 class RunsTab:
-    """List of the runs in the folder.
-
-    Parameters
-    ----------
-    page
-        Page of the tab.
-    tab
-        Its handle, whose label has the number of paused runs.
-    """
+    """List of the runs in the folder."""
 
     def __init__(self, page: Page, tab: ui.tab) -> None:
         self._page, self._tab = page, tab

@@ -24,17 +24,7 @@ HOST = "127.0.0.1"
 
 
 def build(folder: Path, port: int, token: str) -> None:
-    """Add the page, its data and the guard to the application of NiceGUI.
-
-    Parameters
-    ----------
-    folder
-        Folder from which files are read and to which they are written.
-    port
-        Port of the server, for the host header.
-    token
-        Random token of the URL.
-    """
+    """Add the page, its data and the guard to the application of NiceGUI."""
     bodies: Bodies = {}
 
     @ui.page("/", title="Rattlebox")
@@ -60,24 +50,7 @@ def build(folder: Path, port: int, token: str) -> None:
 
 
 def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
-    """Start the application and serve it until Ctrl-C.
-
-    Parameters
-    ----------
-    folder
-        Folder for case files and results; created if it does not exist.
-    port
-        Port on 127.0.0.1; 0 chooses a free one.
-    show
-        Whether to open the page in the browser.
-
-    Raises
-    ------
-    DataError
-        If the folder cannot be created or written.
-    ResourceError
-        If the port is in use.
-    """
+    """Start the application and serve it until Ctrl-C."""
     place = _folder(Path(folder))
     port = _free_port(port)
     token = secrets.token_urlsafe(24)

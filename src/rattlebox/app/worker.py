@@ -72,11 +72,6 @@ def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tup
     """Run a case, write its results, and report views of the motion so far.
 
     A particle run is stopped at intervals and resumed from its checkpoint, which gives the same bits.
-
-    Returns
-    -------
-    tuple
-        View of the run, why it could not be written (then `save` writes it later), and its name.
     """
     case = rb.Case.from_toml(toml, folder=Path(folder))
     target = Path(folder) / f"{name}.nc"

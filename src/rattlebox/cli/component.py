@@ -22,13 +22,7 @@ def write_fmu(case: Path, out: Path | None, fmi: Any, by: Any, alone: bool, othe
 
 
 def write_packed(case: Path, out: Path | None, alone: bool) -> None:
-    """Write a case file as a packed case, for `rattlebox.h`.
-
-    Raises
-    ------
-    DataError
-        If the file would overwrite the case file, or its folder does not exist.
-    """
+    """Write a case file as a packed case, for `rattlebox.h`."""
     default = f"{case.stem}.bin"
     if (file := out or Path(default)).exists() and file.samefile(case):
         raise DataError(f"-o {file}: this is the case file, which is not overwritten", f"-o {default}")

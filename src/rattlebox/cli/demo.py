@@ -42,13 +42,7 @@ def demo_cases() -> dict[str, Case]:
 
 
 def gain(result: Comparison) -> str:
-    """Return in one sentence, without its full stop, what the ball gains.
-
-    Parameters
-    ----------
-    result
-        Comparison of the cases of the demonstration.
-    """
+    """Return in one sentence, without its full stop, what the ball gains."""
     before, after = (f"{float(result.values[name]['settling_time[mass]']):.2g} s" for name in (BARE, DAMPED))
     case = result.runs[DAMPED].case
     share = 100 * float(case.impact_dampers[0].masses.sum()) / instance(case.structure, SDOF).mass
@@ -61,26 +55,14 @@ def runs_of(result: Comparison) -> dict[str, Run]:
 
 
 def figure(result: Comparison) -> Figure:
-    """Return the figure of the comparison.
-
-    Parameters
-    ----------
-    result
-        Comparison of the cases of the demonstration.
-    """
+    """Return the figure of the comparison."""
     text = "20 kg on a spring, struck once by 5 kN for 1 ms. Eight moments of the first oscillation, motion magnified:"
     runs = runs_of(result)
     return plot_gain(runs[BARE], runs[DAMPED], gain(result), text, until=UNTIL)
 
 
 def run_demo(out: Path) -> None:
-    """Simulate both cases, print the comparison and the gain, and write the figure and the netCDF and case files.
-
-    Parameters
-    ----------
-    out
-        Folder for results, created if needed.
-    """
+    """Simulate both cases, print the comparison and the gain, and write the figure and the netCDF and case files."""
     cases = demo_cases()
     stems = {name: name.replace(" ", "_") for name in cases}
     files = [*(f"{stem}.{suffix}" for stem in stems.values() for suffix in ("nc", "toml")), "demo.png"]

@@ -41,18 +41,7 @@ WRITTEN = (
 
 
 def make_folder(out: Path) -> None:
-    """Create a folder for results.
-
-    Parameters
-    ----------
-    out
-        Folder.
-
-    Raises
-    ------
-    DataError
-        If the folder cannot be created.
-    """
+    """Create a folder for results."""
     try:
         out.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
@@ -63,25 +52,7 @@ def make_folder(out: Path) -> None:
 
 @dataclass(frozen=True)
 class RunFolder:
-    """Paths to which a run writes its files.
-
-    Attributes
-    ----------
-    out
-        Folder of the results.
-    folder
-        Folder to write to: `out`, or a folder in it whose files replace those of an earlier run at the end.
-    checkpoint
-        Checkpoint file of the run.
-    snapshots
-        Snapshot file of the run.
-    rewritten
-        Names of the files of an earlier run of the same case, which are written again.
-    notes
-        Messages for the user about unfinished runs in the folder.
-    removed
-        Names of the files of an earlier run of another case, which are removed at the end.
-    """
+    """Paths to which a run writes its files."""
 
     out: Path
     folder: Path
@@ -92,20 +63,7 @@ class RunFolder:
     removed: tuple[str, ...] = ()
 
     def finish(self, names: Sequence[str], *, keep_checkpoint: bool) -> Path:
-        """Move the files to the results folder, and remove those that they replace.
-
-        Parameters
-        ----------
-        names
-            Names of the files that were written.
-        keep_checkpoint
-            Whether to keep the checkpoint.
-
-        Returns
-        -------
-        Path
-            Path of the checkpoint, which exists only if it is kept.
-        """
+        """Move the files to the results folder, and remove those that they replace."""
         own_checkpoint = [CHECKPOINT] if keep_checkpoint and self.checkpoint == self.folder / CHECKPOINT else []
         if self.folder == self.out:
             list_files(self.out, rattlebox.__version__, digests(self.out, [*names, *own_checkpoint]))
@@ -123,31 +81,7 @@ class RunFolder:
 
 @contextmanager
 def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> Iterator[RunFolder]:
-    """Lock a folder for the results of a case; it may contain results of an earlier run of the same case.
-
-    Parameters
-    ----------
-    out
-        Folder.
-    case
-        Case to run.
-    checkpoint
-        Checkpoint file outside the default place; None for run.checkpoint in the folder.
-    replace
-        Whether to replace a run of another case. All its files stay until those of the new run are complete; a run that
-        is stopped before then leaves them unchanged. A checkpoint of the same case stays, since the run resumes from it.
-
-    Yields
-    ------
-    RunFolder
-        Paths to which the run writes.
-
-    Raises
-    ------
-    DataError
-        If the folder cannot be created, if it contains a study, a run of another case or a foreign file, if another
-        process uses it, or if a result would overwrite an input file of the case.
-    """
+    """Lock a folder for the results of a case; it may contain results of an earlier run of the same case."""
     make_folder(out)
     marker = folder_marker(out)
     if (out / "zarr.json").exists() or (marker and marker.name not in (RUN_FOLDER, "")):
@@ -190,18 +124,7 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
 
 
 def replacements(out: Path) -> list[Path]:
-    """Return the folders of unfinished runs that will replace another run.
-
-    Parameters
-    ----------
-    out
-        Folder of the results.
-
-    Returns
-    -------
-    list of Path
-        Folders in `out`, sorted.
-    """
+    """Return the folders of unfinished runs that will replace another run."""
     paths = []
     for path in sorted(out.glob("replacement-*")):
         try:
@@ -236,13 +159,7 @@ def _replacement(out: Path, case: Case) -> Iterator[Path]:
 
 
 def _install(out: Path, folder: Path) -> None:
-    """Move the files of a finished replacement to the results folder, also if an earlier move was interrupted.
-
-    Raises
-    ------
-    FileTaken
-        If others have put files of the same names there; the new ones are then still in the folder of the replacement.
-    """
+    """Move the files of a finished replacement to the results folder, also if an earlier move was interrupted."""
     marker = read_marker(folder)
     if not marker or not marker.complete:
         return
@@ -293,15 +210,7 @@ _SELF_DESCRIBING = (RUN, SNAPSHOTS, CHECKPOINT)
 
 
 def digests(folder: Path, names: Iterable[str]) -> dict[str, str]:
-    """Return the digests of files of a run for the marker of their folder.
-
-    Parameters
-    ----------
-    folder
-        Folder of the files.
-    names
-        Names of the files.
-    """
+    """Return the digests of files of a run for the marker of their folder."""
     return {name: "" if name in _SELF_DESCRIBING else digest_of(folder / name) for name in names}
 
 
@@ -350,34 +259,12 @@ def _bare(text: str) -> str:
 
 
 def is_run(path: Path) -> bool:
-    """Return whether a path is a file of a run, or the folder of one, finished or not.
-
-    Parameters
-    ----------
-    path
-        File or folder, which need not exist.
-
-    Returns
-    -------
-    bool
-        For a path that does not exist, whether its suffix is that of a file of a run.
-    """
+    """Return whether a path is a file of a run, or the folder of one, finished or not."""
     if path.exists():
         return path.is_file() or any((path / name).is_file() for name in (RUN, CHECKPOINT, SNAPSHOTS))
     return path.suffix in (".nc", ".vtkhdf")
 
 
 def files_in(folder: Path) -> list[str]:
-    """Return the names of the files of a run that exist in a folder.
-
-    Parameters
-    ----------
-    folder
-        Folder of the run.
-
-    Returns
-    -------
-    list of str
-        Names, in the order of `WRITTEN`.
-    """
+    """Return the names of the files of a run that exist in a folder."""
     return [name for name in WRITTEN if (folder / name).is_file()]

@@ -11,25 +11,7 @@ from rattlebox._util.own_files import claim
 
 @contextmanager
 def output_file(out: Path | None, default: str) -> Iterator[tuple[Path, str]]:
-    """Claim the file that a command writes in this block.
-
-    Parameters
-    ----------
-    out
-        File that the user named, which may be replaced.
-    default
-        Name in the current folder otherwise.
-
-    Yields
-    ------
-    tuple of Path and str
-        The file, and a note for the user if it replaces an earlier one of the default name, else "".
-
-    Raises
-    ------
-    DataError
-        If a file has the default name that Rattlebox did not write, or that has changed since.
-    """
+    """Claim the file that a command writes in this block."""
     path = out or Path(default)
     note = " (replaced an earlier file; choose another name with -o)" if out is None and path.exists() else ""
     with claim([path], named=out is not None):

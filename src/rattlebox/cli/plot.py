@@ -36,32 +36,7 @@ def plot_study(
     number: int | None,
     size: str | None,
 ) -> None:
-    """Draw a study and write the figure.
-
-    Parameters
-    ----------
-    study
-        Folder of the study.
-    out
-        File to write: PNG, SVG or PDF; default study.png in the current folder.
-    kind
-        "map" or "lines" of one measure, or the kind of the study; default the latter.
-    of
-        Name of the measure to draw.
-    at
-        Texts "axis=value".
-    number
-        Number of a snapshot; must be None, since a study has no snapshots.
-    size
-        Width of the figure: "column", "page" or "slide"; None for the default of the figure.
-
-    Raises
-    ------
-    CaseError
-        If an option does not apply to the study.
-    DataError
-        If there is no such study.
-    """
+    """Draw a study and write the figure."""
     check_output(out, size)
     with output_file(out, "study.png") as (file, note):
         if number is not None:
@@ -84,18 +59,7 @@ def plot_study(
 
 
 def refuse_particle_options(**options: str | None) -> None:
-    """Raise if an option is given that applies to pictures of particles only.
-
-    Parameters
-    ----------
-    **options
-        Options by name; None if not given.
-
-    Raises
-    ------
-    CaseError
-        With the first option that is given.
-    """
+    """Raise if an option is given that applies to pictures of particles only."""
     for name, value in options.items():
         if value is not None:
             raise CaseError(
@@ -105,24 +69,7 @@ def refuse_particle_options(**options: str | None) -> None:
 
 
 def check_output(out: Path | None, size: str | None, formats: Sequence[str] = FORMATS) -> None:
-    """Raise if a figure cannot be written to a file.
-
-    Parameters
-    ----------
-    out
-        File to write, if given.
-    size
-        Width of the figure, if given.
-    formats
-        Allowed suffixes.
-
-    Raises
-    ------
-    CaseError
-        If the suffix or the size is not allowed.
-    DataError
-        If the folder of the file does not exist.
-    """
+    """Raise if a figure cannot be written to a file."""
     if out is not None and out.suffix not in formats:
         raise CaseError(
             f"-o {out}: the suffix must be one of {', '.join(formats)}\n  try: -o {out.stem or 'study'}.png"

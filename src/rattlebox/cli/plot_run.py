@@ -39,34 +39,7 @@ def plot_run(
     view: str | None = None,
     pixels: str | None = None,
 ) -> None:
-    """Draw a run or its snapshots and write the figure or the film.
-
-    Parameters
-    ----------
-    path
-        run.nc, run.vtkhdf, or their folder. In a folder, films and numbered snapshots are drawn from run.vtkhdf.
-    out
-        File to write: PNG, SVG or PDF; GIF or MP4 for a film; default run.png in the current folder.
-    kind
-        "motion", "energy", "impacts", "particles" or "case"; default "motion", and "particles" for snapshots.
-    of, at
-        Options of studies; must be empty.
-    number
-        Number of the snapshot, from 0; default the last.
-    size
-        Width of the figure: "column", "page" or "slide"; None for the default of the figure.
-    colour, view
-        Colour of particles, and name of a view or "azimuth,elevation" in degrees.
-    pixels
-        Width and height of a film, "1280x720".
-
-    Raises
-    ------
-    CaseError
-        If an option does not apply to the file.
-    DataError
-        If the file does not exist.
-    """
+    """Draw a run or its snapshots and write the figure or the film."""
     check_output(out, size, (*FORMATS, *FILMS))
     with output_file(out, "run.png") as (file, note):
         _plot(path, file, kind=kind, of=of, at=at, number=number, size=size, colour=colour, view=view, pixels=pixels)

@@ -19,24 +19,7 @@ from rattlebox.studies.run.stored import has_map, open_study
 
 
 def write(results: Sequence[Path], out: Path | None, title: str | None, question: str | None) -> None:
-    """Write a report about results on disk, and print its name.
-
-    Parameters
-    ----------
-    results
-        Folders of runs or studies, or files run.nc.
-    out
-        File to write; default named after the first results, in the current folder.
-    title, question
-        See `rattlebox.write_report`.
-
-    Raises
-    ------
-    CaseError
-        If the same results are given twice.
-    DataError
-        If results are missing or damaged, or the file exists and is not a report.
-    """
+    """Write a report about results on disk, and print its name."""
     path = out or Path(f"{results[0].resolve().with_suffix('').name}.html")
     replaces = path.exists()
     found: dict[str, Any] = {}
@@ -52,20 +35,7 @@ def write(results: Sequence[Path], out: Path | None, title: str | None, question
 
 
 def read_result(path: Path) -> Any:
-    """Return a run, an unfinished run, or the dataset of a study.
-
-    Parameters
-    ----------
-    path
-        Folder of a run or of a study, or run.nc.
-
-    Raises
-    ------
-    DataError
-        If there is no such result.
-    StoreError
-        If a study is damaged.
-    """
+    """Return a run, an unfinished run, or the dataset of a study."""
     if not is_run(path):
         trials = count_trials(path)
         if trials is not None and not has_map(path):

@@ -98,22 +98,7 @@ def run_case(
     checkpoint: Path | None = None,
     replace: bool = False,
 ) -> None:
-    """Simulate a case file, write its results and print its summary.
-
-    Parameters
-    ----------
-    path
-        Case file.
-    out
-        Folder for results, created if needed.
-    csv, mat, figures
-        Whether to write CSV files, run.mat and figures besides run.nc.
-    checkpoint
-        Checkpoint file of a run with particles, from which it resumes; default run.checkpoint in the folder. It is
-        removed when the results are written.
-    replace
-        Whether to replace the results of another case in the folder.
-    """
+    """Simulate a case file, write its results and print its summary."""
     case = Case.from_file(path)
     if checkpoint is not None and not case.particle_dampers:
         raise CaseError(

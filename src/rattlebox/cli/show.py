@@ -26,13 +26,7 @@ _MAX_TRIALS = 12
 
 
 def show_study(path: Path) -> None:
-    """Print the progress of a study, its axes, the range of each result, and the status of its runs.
-
-    Parameters
-    ----------
-    path
-        Folder of the study.
-    """
+    """Print the progress of a study, its axes, the range of each result, and the status of its runs."""
     console = terminal()
     trials = count_trials(path)
     if trials is None:

@@ -13,18 +13,7 @@ from rattlebox.results import load
 
 
 def show_run(path: Path) -> None:
-    """Print the date, version and platform of a run, its summary with its notes, and the files in its folder.
-
-    Parameters
-    ----------
-    path
-        run.nc, or the folder of the run.
-
-    Raises
-    ------
-    DataError
-        If the file does not exist or is not a run.
-    """
+    """Print the date, version and platform of a run, its summary with its notes, and the files in its folder."""
     console, file = terminal(), path / RUN if path.is_dir() else path
     files = f"  files: {', '.join(files_in(file.parent))}" if file.name == RUN else ""
     if path.is_dir() and not file.is_file():

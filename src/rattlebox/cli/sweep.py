@@ -24,19 +24,7 @@ from rattlebox.studies.study_file import read_study
 
 
 def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:
-    """Run a study file and store its results, or resume a stored study.
-
-    Parameters
-    ----------
-    path
-        Study file.
-    out
-        Folder of the store; default named after the study file.
-    workers
-        Number of threads of this process; default that of the study file, or one per core.
-    dask
-        Address or scheduler file of a Dask cluster on which to run instead.
-    """
+    """Run a study file and store its results, or resume a stored study."""
     if dask and workers:
         raise typer.BadParameter("--workers counts threads of this machine; --dask runs on the workers of the cluster")
     study = read_study(path)

@@ -21,16 +21,5 @@ class _Printable(Console):
 
 
 def terminal(*, stderr: bool = False) -> Console:
-    """Return a console without markup, since names of files and parts may contain square brackets and colons.
-
-    Parameters
-    ----------
-    stderr
-        Whether to print on standard error.
-
-    Returns
-    -------
-    Console
-        Console of rich.
-    """
+    """Return a console without markup, since names of files and parts may contain square brackets and colons."""
     return _Printable(stderr=stderr, highlight=False, markup=False, emoji=False)

@@ -37,15 +37,7 @@ def _x86_64_level() -> int:
 
 @cache
 def choice() -> tuple[str, str]:
-    """Return the level that is used and why.
-
-    Raises
-    ------
-    MissingDependency
-        When there is no compiled core.
-    ResourceError
-        When RATTLEBOX_SIMD asks for a level that is not there or that the processor cannot run.
-    """
+    """Return the level that is used and why."""
     possible = supported()
     if not possible:
         raise MissingDependency("no compiled core was found", "python -m pip install --force-reinstall rattlebox")

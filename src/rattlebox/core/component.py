@@ -74,13 +74,7 @@ def component_library() -> Path:
 
 
 def other_libraries() -> dict[str, Path]:
-    """Return the libraries for other systems, by the name of the system in FMI 3. They are compiled and were never run.
-
-    Raises
-    ------
-    ResourceError
-        If they are not installed.
-    """
+    """Return the libraries for other systems, by the name of the system in FMI 3. They are compiled and were never run."""
     for folder in _folders():
         found = {file.name.split(".")[1]: file for file in sorted(folder.glob("rattlebox_component.*.*"))}
         if found:

@@ -18,27 +18,13 @@ class BlockOutput:
 
     Attributes
     ----------
-    measures
-        Names of measures (see `rattlebox.studies.work.measures`).
     shape
         Mode shapes at the observed point [kg^-1/2]: (m,), or (m, ...) over the grid.
-    base
-        1 if the point moves with the base, 0 for the difference of two points and for a mode.
     participation, residual_mass
         Participation of the modes (m, ...) [kg^1/2] and residual mass [kg], for the force on the base; empty if unknown.
     start, period
         Time from which measures are evaluated [s] and length of a cycle [s]; numbers, or arrays that broadcast over the
         grid.
-    samples
-        Number of equally spaced samples of the motion from `start` to the end of the run, both included.
-    motion
-        Whether to return those samples.
-    last
-        Number of impacts to return, counted from the end of the run.
-    state
-        Whether to return the state at the end.
-    batched
-        Names of measures that are evaluated in up to 64 equal parts of the window, of whole cycles, too.
     """
 
     measures: Sequence[str] = ()
@@ -66,22 +52,6 @@ def run_block(
     progress: Callable[[int], bool | None] | None = None,
 ) -> dict[str, NDArray[Any]] | None:
     """Run a range of the variants of a batch.
-
-    Parameters
-    ----------
-    packed
-        The batch, from `pack_batch`.
-    shape
-        Shape of the grid.
-    start, stop
-        First variant and the one after the last, in C order of the grid.
-    output
-        Quantities to return.
-    threads
-        Number of threads. The results are bitwise independent of it.
-    progress
-        Function called about fifty times a second with the number of variants done; the run stops if it returns
-        False.
 
     Returns
     -------

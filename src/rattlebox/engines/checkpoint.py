@@ -57,16 +57,12 @@ class CheckpointData:
 
     Attributes
     ----------
-    numbers
-        Fingerprint of the core's input (see `fingerprint`).
     time
         Simulated time that the run has reached [s].
     seconds
         Computing time so far [s].
     positions
         Start positions of the particles of each damper, (n, 3) [m].
-    records
-        Samples so far.
     state : (bytes,) uint8
         State of the core.
     """
@@ -80,13 +76,7 @@ class CheckpointData:
 
 
 def is_checkpoint(path: Path) -> bool:
-    """Return whether a file is a Rattlebox checkpoint, of any run.
-
-    Parameters
-    ----------
-    path
-        An existing file.
-    """
+    """Return whether a file is a Rattlebox checkpoint, of any run."""
     try:
         with path.open("rb") as content, np.load(content, allow_pickle=False) as file:
             return bool({"case", "numbers"} <= json.loads(file["about"].tobytes()).keys())
@@ -106,18 +96,7 @@ class Unfinished(NamedTuple):
 
 
 def read_unfinished(path: Path) -> Unfinished:
-    """Return the case and the progress of a run from its checkpoint, of any case and version.
-
-    Parameters
-    ----------
-    path
-        An existing file.
-
-    Raises
-    ------
-    DataError
-        If the file is not an intact checkpoint.
-    """
+    """Return the case and the progress of a run from its checkpoint, of any case and version."""
     require_readable(path)
     try:
         with zipfile.ZipFile(path) as archive:
@@ -133,15 +112,7 @@ def read_unfinished(path: Path) -> Unfinished:
 
 
 class Checkpoint:
-    """The file that stores the state of a run, and from which the run resumes.
-
-    Parameters
-    ----------
-    path
-        Checkpoint file, which need not exist.
-    case
-        Case of the run.
-    """
+    """The file that stores the state of a run, and from which the run resumes."""
 
     def __init__(self, path: str | os.PathLike[str], case: Case) -> None:
         self.path = Path(path)
@@ -151,14 +122,7 @@ class Checkpoint:
 
     @contextmanager
     def lock(self) -> Iterator[None]:
-        """Reserve the file for this run.
-
-        Raises
-        ------
-        DataError
-            If another process has locked the file (the lock ends with that process), or if the folder is missing or not
-            writable.
-        """
+        """Reserve the file for this run."""
         with disk_errors(self.path, _DISK_HINT):
             require_folder(self.path)
             name = self.path.with_name(f".{self.path.name}.lock")
@@ -180,15 +144,7 @@ class Checkpoint:
             lock.release()
 
     def read(self) -> CheckpointData | None:
-        """Return the content of the file; None if there is no file.
-
-        Raises
-        ------
-        DataError
-            If the file is no checkpoint or is damaged.
-        CheckpointMismatch
-            If it belongs to another case, version or core; the message lists the differences.
-        """
+        """Return the content of the file; None if there is no file."""
         if not self.path.exists():
             return None
         require_readable(self.path)
@@ -233,15 +189,7 @@ class Checkpoint:
             )
 
     def write(self, dem: _core.Dem, packed: _core.DemProblem, records: _core.Records, seconds: float) -> None:
-        """Replace the state in the file.
-
-        Raises
-        ------
-        DataError
-            If the file cannot be written; it is then unchanged.
-        ResourceError
-            If no space is left on the disk; the file is then unchanged.
-        """
+        """Replace the state in the file."""
         time = dem.step * packed.dt
         header = {
             "format": FORMAT,
@@ -279,26 +227,14 @@ def _read_array(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
 
 
 def concatenate(pieces: Sequence[_core.Records]) -> _core.Records:
-    """Concatenate the samples of consecutive parts of a run.
-
-    Parameters
-    ----------
-    pieces
-        Samples of each part, earliest first.
-    """
+    """Concatenate the samples of consecutive parts of a run."""
     return _core.Records(
         **{name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in _core.Records.fields()}
     )
 
 
 def comparable_toml(case: Case) -> str:
-    """Return the text of a case file without the fields that do not affect the results.
-
-    Parameters
-    ----------
-    case
-        Case to write.
-    """
+    """Return the text of a case file without the fields that do not affect the results."""
     parts = {name: getattr(case, name) for name in _FREE_FIELDS}
     free = {name: dict.fromkeys(_FREE_FIELDS[name] & type(part).model_fields.keys()) for name, part in parts.items()}
     return case.model_copy(update={name: part.model_copy(update=free[name]) for name, part in parts.items()}).to_toml()

@@ -53,37 +53,7 @@ def simulate_dem(
     checkpoint: Path | None = None,
     snapshots: Path | None = None,
 ) -> Run:
-    """Run a case with particle dampers.
-
-    Parameters
-    ----------
-    case
-        Case with particle dampers.
-    threads
-        Number of threads; default that of the method, or one for each core with at least `PARTICLES_PER_THREAD`
-        particles.
-    progress
-        Function called at intervals with the number of steps done and the total; the run stops if it returns False.
-    checkpoint
-        File that stores the state; if it exists, the run resumes from it.
-    snapshots
-        File to which snapshots are written.
-
-    Returns
-    -------
-    Run
-        Results with the status with which the run ended.
-
-    Raises
-    ------
-    CaseError
-        If the time step is too long, or the particles do not settle.
-    DataError
-        If the checkpoint belongs to another run or is in use, if a file is a folder, if both files are the same, or if
-        a file cannot be written.
-    ResourceError
-        If no space is left on the disk.
-    """
+    """Run a case with particle dampers."""
     _check_files(checkpoint, snapshots)
     if case.output.snapshots == ():
         snapshots = None
@@ -101,25 +71,6 @@ def continue_dem(
 
     Particles, contacts with their history and the structure continue, and so does a harmonic load if the run before lasted
     whole cycles. Time, work and losses count from the beginning.
-
-    Parameters
-    ----------
-    case
-        Case with the particles, structure and contacts of the run before.
-    before
-        State at the end of the run before; None to start from the initial state of the case.
-    threads, progress
-        See `simulate_dem`.
-
-    Returns
-    -------
-    tuple of Run and EndState
-        The run, and its state at the end.
-
-    Raises
-    ------
-    CaseError
-        If the time step is too long, or the particles do not settle.
     """
     method = instance(case.method, Dem)
     prepared = prepare(case, None if before is None else before.positions)

@@ -19,19 +19,7 @@ CHECKPOINT_INTERVAL = 600.0
 
 
 class DemRun:
-    """A particle run in progress.
-
-    Parameters
-    ----------
-    dem
-        The core.
-    packed
-        Input of the core.
-    checkpoint
-        Checkpoint file, if any.
-    method
-        Method, which sets the interval of checkpoints.
-    """
+    """A particle run in progress."""
 
     def __init__(self, dem: _core.Dem, packed: _core.DemProblem, checkpoint: Checkpoint | None, method: Dem) -> None:
         self.checkpoint = checkpoint
@@ -46,13 +34,7 @@ class DemRun:
         self._snapshot_steps: list[int] = []
 
     def resume(self, data: CheckpointData) -> None:
-        """Restore the state of a checkpoint.
-
-        Raises
-        ------
-        DataError
-            If the state does not fit the case.
-        """
+        """Restore the state of a checkpoint."""
         try:
             self._dem.restore(data.state)
         except ValueError as error:
@@ -70,13 +52,7 @@ class DemRun:
         self._pieces = [end.sample()]
 
     def add_snapshots(self, snapshots: SnapshotFile, steps: Sequence[int]) -> None:
-        """Take snapshots at the given steps. Those before a resumed checkpoint must already be in the file.
-
-        Raises
-        ------
-        DataError
-            If they are missing, or the file holds something else.
-        """
+        """Take snapshots at the given steps. Those before a resumed checkpoint must already be in the file."""
         self._snapshots, self._snapshot_steps = snapshots, list(steps)
         before = sum(step + 1 < self._dem.step for step in steps)
         if not before:
@@ -101,19 +77,7 @@ class DemRun:
         return self._pieces[0]
 
     def run(self, progress: Callable[[int, int], object] | None = None) -> Status:
-        """Run to the end. Ctrl-C ends the run with the status `interrupted`.
-
-        Parameters
-        ----------
-        progress
-            Function called at intervals with the number of steps done and the total; the run stops if it returns
-            False.
-
-        Returns
-        -------
-        Status
-            Status of the run.
-        """
+        """Run to the end. Ctrl-C ends the run with the status `interrupted`."""
         last = self._packed.steps
         try:
             if self._dem.step == 0:

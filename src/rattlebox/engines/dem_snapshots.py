@@ -22,29 +22,7 @@ SPACING = 1.25
 
 
 def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[SnapshotFile, list[int]]:
-    """Plan the snapshots of a run.
-
-    Parameters
-    ----------
-    case
-        Case of the run.
-    packed
-        Input of the core.
-    path
-        File to write.
-
-    Returns
-    -------
-    SnapshotFile
-        The file, which is not created yet.
-    list of int
-        Steps at which snapshots are taken, without repetition.
-
-    Raises
-    ------
-    CaseError
-        If more snapshots are requested than the run has steps.
-    """
+    """Plan the snapshots of a run."""
     dt, last = packed.dt, packed.steps
     count = case.output.snapshots
     if isinstance(count, int) and count > last + 1:

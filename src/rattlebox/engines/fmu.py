@@ -53,17 +53,7 @@ MOST_INPUTS, MOST_DAMPERS, MOST_OUTPUTS = 90, 100, 1000
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of an FMU.
-
-    Attributes
-    ----------
-    name, reference, unit, description
-        Name, value reference, unit ("" for none) and description.
-    causality, variability
-        As in FMI.
-    start
-        Start value; None for outputs.
-    """
+    """A variable of an FMU."""
 
     name: str
     reference: int

@@ -30,8 +30,6 @@ def responses(
 
     Parameters
     ----------
-    case
-        Case of the run.
     q, p : (T, M) float
         Modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
     load : (T, L) float
@@ -98,8 +96,6 @@ def base_at_points(case: Case, base: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    case
-        Case of the run.
     base : (T,) or (T, 3) float
         Displacement, velocity or acceleration of the base; three components in a 3-D run.
 

@@ -33,17 +33,8 @@ def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tu
 
     Parameters
     ----------
-    case
-        Case of the run.
     offsets
         Distances of all balls from their places in the packed, centred row, (T, balls) [m].
-    impacts
-        The impact log.
-
-    Returns
-    -------
-    tuple of str
-        Warnings.
     """
     notes: list[str] = []
     first = 0
@@ -66,8 +57,6 @@ def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[n
 
     Parameters
     ----------
-    case
-        Case of the stepper.
     overlaps, speeds
         Largest overlap [m] and approach speed [m/s] of each contact, those of one damper after the other; 0 without contact.
     """
@@ -91,12 +80,6 @@ class ContactLimit:
     ----------
     quantity
         "overlap" or "speed": of approach [m/s]. Overlaps are in m in impact dampers, over the radius in particle dampers.
-    index
-        Contact (impact dampers, those of one damper after the other) or damper (particle dampers).
-    value
-        The limit.
-    text
-        Consequence of exceeding it, and advice.
     """
 
     quantity: Literal["overlap", "speed"]
@@ -106,15 +89,7 @@ class ContactLimit:
 
 
 def validity_limits(case: Case, prepared: Prepared | None) -> Iterator[ContactLimit]:
-    """Yield the limits within which the contacts of a component are valid.
-
-    Parameters
-    ----------
-    case
-        Case of the component.
-    prepared
-        Preparation of a case with particle dampers; None for impact dampers.
-    """
+    """Yield the limits within which the contacts of a component are valid."""
     if prepared is not None:
         yield from _limits_of_particles(prepared)
         return
@@ -226,8 +201,6 @@ def table_notes(case: Case, speeds: Sequence[float]) -> Iterator[str]:
 
     Parameters
     ----------
-    case
-        Case of the run.
     speeds
         Largest approach speed in each damper [m/s].
     """
@@ -239,13 +212,7 @@ def table_notes(case: Case, speeds: Sequence[float]) -> Iterator[str]:
 
 
 def extrapolation_notes(count: int) -> Iterator[str]:
-    """Yield a warning about impacts outside the range of a fitted restitution law.
-
-    Parameters
-    ----------
-    count
-        Number of these impacts.
-    """
+    """Yield a warning about impacts outside the range of a fitted restitution law."""
     if count:
         yield (
             f"warning: {count} impacts are faster than the range for which the restitution law was fitted; the law was "
@@ -254,13 +221,7 @@ def extrapolation_notes(count: int) -> Iterator[str]:
 
 
 def simultaneous_notes(count: int) -> Iterator[str]:
-    """Yield a note about hard impacts at the same time.
-
-    Parameters
-    ----------
-    count
-        Number of instants with several impacts.
-    """
+    """Yield a note about hard impacts at the same time."""
     if count:
         yield (
             f"note: at {count} instant{'s' * (count > 1)} several hard impacts began at the same time and were resolved "
@@ -320,16 +281,12 @@ def particle_notes(
 
     Parameters
     ----------
-    case
-        Case of the run.
     first_touches
         Number of contacts that began, (dampers, partners).
     contacts
         Number of contacts at the samples, (T, dampers, partners).
     centre_of_mass
         Centre of mass of the particles in each cavity, (T, dampers, 3) [m].
-    overlaps
-        Largest overlap over the smaller radius in each damper.
     """
     for index, damper in enumerate(case.particle_dampers):
         name = " ".join(damper.label(index).split())

@@ -84,17 +84,8 @@ def final_status(ledger: Ledger, limit: float, mass: float) -> Status:
 
     Parameters
     ----------
-    ledger
-        Energies of the run.
-    limit
-        Largest allowed energy residual, over the energy put in.
     mass
         Mass of all balls or particles [kg]. A residual below their kinetic energy at 1 nm/s counts as rounding.
-
-    Returns
-    -------
-    Status
-        `finished`, `energy_error` or `not_finite`; see `Ledger.is_balanced` for the criterion.
     """
     if not np.isfinite(ledger.residual).all():
         return Status.not_finite
@@ -118,23 +109,10 @@ def describe(
 
     Parameters
     ----------
-    status
-        Status of the run.
     time
         Time at which the run stopped [s].
-    contact
-        Name of the contact that stopped the run; "" if none did.
     value
         Approach speed at that contact [m/s], or the energy residual.
-    method
-        Kind of the method, as in case files.
-    softened
-        Whether the contact is softened.
-
-    Returns
-    -------
-    tuple of str
-        Name and message.
     """
     happened, advice = MESSAGES[status], ADVICE.get(status, {})
     own = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))

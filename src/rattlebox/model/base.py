@@ -178,13 +178,7 @@ class Part(BaseModel, metaclass=_PartMeta):
 
 
 def full_text(value: Any) -> str:
-    """Return a text that two values share only if they are equal; the representation of a part is shortened.
-
-    Parameters
-    ----------
-    value
-        A part, a list, tuple or dictionary of them, or anything else, whose representation is returned.
-    """
+    """Return a text that two values share only if they are equal; the representation of a part is shortened."""
     if isinstance(value, Part):
         return f"{type(value).__name__} {value.model_dump_json()}"
     if isinstance(value, (list, tuple)):

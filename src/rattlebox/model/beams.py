@@ -232,15 +232,6 @@ class Beam(DampedModes):
 def wave_numbers(ends: Ends, count: int, mu: float = 0.0) -> Vector:
     """Compute the dimensionless wave numbers beta L of the lowest elastic modes of a beam.
 
-    Parameters
-    ----------
-    ends
-        The two ends, as for `Beam`.
-    count
-        Number of modes.
-    mu
-        Mass at the free second end over the mass of the beam.
-
     Returns
     -------
     (count,) float

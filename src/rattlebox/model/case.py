@@ -553,18 +553,7 @@ class Case(Part):
 def case_and_materials(
     given: dict[str, Any], *, source: str = "case", folder: Path | None = None
 ) -> tuple[Case, dict[str, Material]]:
-    """Return the case of the parsed content of a case file, and the materials that the file defines, by name.
-
-    Parameters
-    ----------
-    given, source, folder
-        See `Case.from_dict`.
-
-    Raises
-    ------
-    CaseError
-        If a value is not allowed.
-    """
+    """Return the case of the parsed content of a case file, and the materials that the file defines, by name."""
     if not given:
         raise CaseError(f"{source}: the file is empty", "rattlebox demo, which writes two case files")
     if "case" in given and "structure" not in given:

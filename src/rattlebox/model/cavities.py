@@ -36,14 +36,10 @@ class Walls:
 
     Attributes
     ----------
-    names : tuple of str
-        Names of the walls.
     axis : (w, 3) float
         Outward normal of a plane, axis of a cylinder's side; zeros for a sphere.
     offset : (w,) float
         Distance of a plane from the centre, radius of a cylinder or a sphere [m].
-    form : tuple of str
-        "plane", "cylinder" for the side of a cylinder, or "sphere".
     """
 
     names: tuple[str, ...]

@@ -48,13 +48,6 @@ EXTRAPOLATED = 1000.0
 class FixedDamping(NamedTuple):
     """A dashpot with the same restitution at every speed.
 
-    Attributes
-    ----------
-    ratio
-        Damping ratio zeta of the contact: alpha / 5^(1/2) of Tsuji's law, c / (2 (k m*)^(1/2)) of a linear contact.
-    ending
-        End of the contact: "zero_force" or "zero_overlap".
-
     See Also
     --------
     rattlebox.restitution_of_alpha : Restitution of a damping ratio, with equation and source.

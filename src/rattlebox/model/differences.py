@@ -14,18 +14,7 @@ _NOTHING = object()
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
-    """Describe the differences between two trees in a few lines.
-
-    Parameters
-    ----------
-    there, here
-        Trees of JSON types, on disk and in memory; texts may be TOML.
-
-    Returns
-    -------
-    list of str
-        A line for each difference, at most eight; the first difference only of two lists of equal length.
-    """
+    """Describe the differences between two trees in a few lines."""
     lines = [f"  {line}" for line in _differences(there, here)]
     return lines if len(lines) <= _MAX_LINES else [*lines[:_MAX_LINES], f"  and {len(lines) - _MAX_LINES} more"]
 

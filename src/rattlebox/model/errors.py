@@ -38,13 +38,7 @@ def at(*place: str | int) -> Iterator[None]:
 
 
 def one_of(advice: str, **alternatives: Any) -> None:
-    """Raise unless exactly one of the alternatives is not None.
-
-    Raises
-    ------
-    Hint
-        If none or more than one is given; `advice` is the suggestion.
-    """
+    """Raise unless exactly one of the alternatives is not None."""
     given = [name for name, value in alternatives.items() if value is not None]
     if not given:
         raise Hint(f"{' or '.join(alternatives)} is needed", advice)
@@ -84,24 +78,7 @@ def _close(name: str, known: Sequence[str]) -> list[str]:
 def translate(
     error: ValidationError, source: str | os.PathLike[str], vocabulary: Vocabulary, given: Any = None
 ) -> RattleboxError:
-    """Translate the errors of pydantic into one error of Rattlebox.
-
-    Parameters
-    ----------
-    error
-        Error of pydantic.
-    source
-        Name of the file or class that was validated.
-    vocabulary
-        Known fields.
-    given
-        Input as written by the user, whose names and values the message has.
-
-    Returns
-    -------
-    RattleboxError
-        A DataError or ResourceError if all errors are one, else a CaseError.
-    """
+    """Translate the errors of pydantic into one error of Rattlebox."""
     findings = _without_echoes(
         _misspelt_fields_first(error.errors(include_url=False), str(source), vocabulary), vocabulary
     )

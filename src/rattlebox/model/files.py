@@ -32,26 +32,14 @@ _SEVERAL = {"damper": "dampers", "load": "loads", "ball": "balls", "particles": 
 
 
 def absolute(path: Any) -> str:
-    """Return an absolute path.
-
-    Raises
-    ------
-    Hint
-        If the value is not a path.
-    """
+    """Return an absolute path."""
     if not isinstance(path, (str, os.PathLike)):
         raise Hint("a path must be text", 'file = "push.csv"')
     return os.path.abspath(os.fspath(path))
 
 
 def existing(path: str | os.PathLike[str]) -> Path:
-    """Return the file at a path.
-
-    Raises
-    ------
-    DataError
-        If there is none; with files of similar name.
-    """
+    """Return the file at a path."""
     file = Path(path)
     if file.is_file():
         return file
@@ -65,13 +53,7 @@ def existing(path: str | os.PathLike[str]) -> Path:
 
 
 def read_toml(content: str, source: str) -> dict[str, Any]:
-    """Parse the text of a case file.
-
-    Raises
-    ------
-    CaseError
-        If the text is not TOML; with the line at fault.
-    """
+    """Parse the text of a case file."""
     if _has_long_key(content):  # for which tomllib needs a time that grows with the square of its length
         raise CaseError(f"{source}: a key has more than {MOST_PARTS} parts", "fewer dots in one key")
     try:
@@ -113,23 +95,7 @@ def _has_long_key(content: str) -> bool:
 
 
 def read_arrays(file: Path) -> dict[str, Array]:
-    """Read all numeric arrays of a NPY, NPZ or MAT file.
-
-    Parameters
-    ----------
-    file
-        Path of an existing file.
-
-    Returns
-    -------
-    dict of str to float array
-        Arrays by name; fields of a MATLAB struct as "struct.field", the only array of a NPY file as "".
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read.
-    """
+    """Read all numeric arrays of a NPY, NPZ or MAT file."""
     try:
         with errors_of(file, file.suffix[1:].upper()):
             file.open("rb").close()  # SciPy would hide the reason if this fails
@@ -182,13 +148,7 @@ def _is_real(value: NDArray[Any]) -> bool:
 
 
 def check_finite(array: Array, where: str) -> Array:
-    """Return the array if all of its numbers are finite and at most `LARGEST`.
-
-    Raises
-    ------
-    DataError
-        If they are not; the message begins with `where`.
-    """
+    """Return the array if all of its numbers are finite and at most `LARGEST`."""
     bad = np.argwhere(~(np.abs(array) <= LARGEST))
     if len(bad):
         place = ", ".join(f"{word} {i + 1}" for word, i in zip(("row", "column"), bad[0], strict=False))

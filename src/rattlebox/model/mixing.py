@@ -23,23 +23,6 @@ _MEANS: dict[Mixing, Callable[[float, float], float]] = {
 def mixed(one: Any, other: Any, rule: Mixing) -> Any:
     """Return the law with the means of the numbers of two laws of the same kind.
 
-    Parameters
-    ----------
-    one, other
-        Laws of contact, friction or rolling resistance; None is a coefficient of zero.
-    rule
-        Kind of mean.
-
-    Returns
-    -------
-    Part or None
-        The law between the two species.
-
-    Raises
-    ------
-    TypeError
-        If the laws differ in more than numbers.
-
     Notes
     -----
     For two numbers a and b: "arithmetic" (a + b)/2, "geometric" (a b)^(1/2), "harmonic" 2 a b/(a + b), "smaller" min(a, b),

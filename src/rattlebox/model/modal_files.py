@@ -38,11 +38,6 @@ def read_modes(path: str, count: int | None, *, has_mass_unit: bool = False) -> 
     """Read modes from a file of any supported kind; from a TOML file as fields of Modal.
 
     Units of a universal file that contradict each other are no error if the user states the unit of mass.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read.
     """
     file = existing(path)
     ending = file.suffix.lower()
@@ -83,29 +78,7 @@ def _from_toml(file: Path) -> dict[str, Any]:
 
 
 def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any], list[str]]:
-    """Return the fields of Modal with the modes of a file, and notes of assumptions.
-
-    Parameters
-    ----------
-    given
-        Other fields: points, mode_count, mass_unit, modal_masses, damping_ratios, damping_ratio, participation.
-    path
-        The file.
-
-    Returns
-    -------
-    dict of str to object
-        Fields of Modal, in SI units.
-    list of str
-        Notes of assumptions.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read.
-    Hint
-        If the other fields do not fit the file.
-    """
+    """Return the fields of Modal with the modes of a file, and notes of assumptions."""
     count = given.get("mode_count")
     if count is not None:
         with at("mode_count"):
@@ -178,13 +151,7 @@ def _check_numbers(modes: ModesInFile, path: str) -> None:
 
 
 def _modes_of_toml(table: dict[str, Any], path: str, masses: Vector | None, *, has_mass_unit: bool) -> ModesInFile:
-    """Return the modes of a TOML table.
-
-    Raises
-    ------
-    DataError
-        If a field is not what it should be; with the name of the file.
-    """
+    """Return the modes of a TOML table."""
     with at("file"), errors_of(path, "a table of modes"):
         for name in table:
             if not isinstance(table[name], dict if name == "shapes" else list) or not table[name]:
@@ -220,13 +187,7 @@ def _modes_of_toml(table: dict[str, Any], path: str, masses: Vector | None, *, h
 
 
 def _modal_masses(values: Any, given: Mapping[str, Any], *, in_kg: bool) -> Vector:
-    """Read modal masses [kg]; numbers without unit are in kg, or, unless `in_kg`, in the unit of mass of the file.
-
-    Raises
-    ------
-    Hint
-        If `mass_unit` states another unit than kg for masses that are in kg: it would multiply them.
-    """
+    """Read modal masses [kg]; numbers without unit are in kg, or, unless `in_kg`, in the unit of mass of the file."""
     masses, own = zip(*(parse(mass, ("kg",)) for mass in values), strict=True) if len(values) else ((), ())
     if given.get("mass_unit") not in (None, "kg") and (in_kg or any(own)):
         raise Hint(

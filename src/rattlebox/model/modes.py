@@ -30,10 +30,6 @@ class ModalModel:
         Inertia of each mode per unit of base acceleration [kg^1/2]; three components for points in 3-D.
     q0, p0 : (m,) float
         Initial modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
-    spatial : frozenset of str
-        Names of the points that move in 3-D.
-    attached : frozenset of str
-        Names of the points of tuned masses; the others are those of the structure.
     total_mass : float, (3, 3) float or None
         Mass r^T M r that moves with the base if the structure is rigid [kg]; a matrix if points move in 3-D.
 
@@ -63,13 +59,7 @@ class ModalModel:
         return np.asarray(self.total_mass - (rows.T @ rows))
 
     def point(self, name: str | None) -> str:
-        """Return the name of a point; None is the only point of the structure.
-
-        Raises
-        ------
-        CaseError
-            If the point does not exist, or the name is None and there are several.
-        """
+        """Return the name of a point; None is the only point of the structure."""
         if name is None:
             own = [known for known in self.shapes if known not in self.attached]
             if len(own) != 1:
@@ -80,13 +70,7 @@ class ModalModel:
         return name
 
     def shape(self, name: str | None, direction: str | Triple | None = None) -> Vector:
-        """Return the mode shapes at a point, (m,); along a direction if the point moves in 3-D.
-
-        Raises
-        ------
-        CaseError
-            If the point does not exist, moves in 3-D and the direction is None, or moves along a line and it is not.
-        """
+        """Return the mode shapes at a point, (m,); along a direction if the point moves in 3-D."""
         point = self.point(name)
         if point not in self.spatial:
             if direction is not None:

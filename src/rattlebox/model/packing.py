@@ -425,10 +425,6 @@ class Crowd:
 
     Attributes
     ----------
-    count
-        Number of particles.
-    volume
-        Mean volume of a particle [m^3].
     largest
         Radius of the largest particle [m].
     """
@@ -466,19 +462,10 @@ def random_density(cavity: AnyCavity, diameter: float, fill: float = 1.0, up: Ve
 
     Parameters
     ----------
-    cavity
-        Cavity around the spheres.
     diameter
         Diameter of the spheres [m].
-    fill
-        Volume below the lid over that of the cavity.
     up
         Unit vector against gravity, (3,); None if there is no lid.
-
-    Returns
-    -------
-    float
-        Volume of spheres over the volume below the lid.
 
     Notes
     -----
@@ -502,21 +489,10 @@ def bed_density(cavity: AnyCavity, diameter: float, bulk: float, fill: float, up
 
     Parameters
     ----------
-    cavity
-        Cavity around the bed.
     diameter
         Diameter of the spheres [m].
-    bulk
-        Volume of spheres over that of the bed far from walls.
-    fill
-        Volume of the bed over that of the cavity.
     up
         Unit vector against gravity, (3,); None without gravity.
-
-    Returns
-    -------
-    float
-        Volume of spheres over that of the bed, at most that which can be inserted (see `random_density`).
 
     Notes
     -----
@@ -587,19 +563,10 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector, allowed: 
 
     Parameters
     ----------
-    cavity
-        Cavity around the spheres.
     positions
         Centres, (n, 3) [m].
     radii
         Radii, (n,) [m].
-    allowed
-        Largest overlap over the smaller radius.
-
-    Raises
-    ------
-    Hint
-        With the indices of the particles in their damper (from 0), and the overlap.
     """
     room = cavity.room(positions, radii)
     worst = int((room / radii).argmin())

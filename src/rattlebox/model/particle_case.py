@@ -20,20 +20,7 @@ if TYPE_CHECKING:
 
 
 def direction_of_base(case: Case, signal: Signal) -> Vector:
-    """Return the direction in which a signal moves the base, (3,): its own, or that of all dampers.
-
-    Parameters
-    ----------
-    case
-        The case.
-    signal
-        A signal of its base or of its shaker.
-
-    Raises
-    ------
-    Hint
-        If the signal has no direction and the dampers have several.
-    """
+    """Return the direction in which a signal moves the base, (3,): its own, or that of all dampers."""
     if signal.direction is not None:
         return unit_vector(signal.direction)
     directions = {damper.direction for damper in case.particle_dampers}
@@ -54,18 +41,7 @@ def inertia_along(case: Case, direction: Vector) -> Vector:
 
 
 def check_particle_case(case: Case) -> None:
-    """Raise if the parts of a case with particle dampers are inconsistent.
-
-    Parameters
-    ----------
-    case
-        The case.
-
-    Raises
-    ------
-    Hint
-        If methods, output times, gravity or directions are inconsistent.
-    """
+    """Raise if the parts of a case with particle dampers are inconsistent."""
     first = case.particle_dampers[0]
     if case.impact_dampers:
         raise Hint(

@@ -132,19 +132,7 @@ class Start:
 
 @dataclass(frozen=True)
 class Entry:
-    """Laws of one kind of pair.
-
-    Attributes
-    ----------
-    pair
-        Reference bodies: particles of the mean radius of a species, or a fixed wall.
-    contact, friction, rolling
-        The laws.
-    names
-        Names of the two species, or of a species and the wall.
-    place, friction_place, rolling_place
-        Places of the laws in the damper, for messages.
-    """
+    """Laws of one kind of pair."""
 
     pair: Pair
     contact: AnyContact
@@ -162,8 +150,6 @@ class ContactTable:
 
     Attributes
     ----------
-    entries
-        The entries.
     particle_entry : (k, k) int
         Index of the entry of two species.
     wall_entry : (k, w) int

@@ -28,26 +28,7 @@ _STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
 
 
 def place_of(case: Case, path: str) -> Place:
-    """Return the place in a case that a path refers to.
-
-    Parameters
-    ----------
-    case
-        The case.
-    path
-        Names of fields and numbers in lists, as in case files and messages: "damper.gap", "dampers[1].balls[0].radius",
-        "structure.damping_ratio". The index of the only item of a list may be omitted.
-
-    Returns
-    -------
-    tuple
-        Names of fields and all indices: ("dampers", 0, "gap").
-
-    Raises
-    ------
-    CaseError
-        If the field does not exist, or the path is ambiguous.
-    """
+    """Return the place in a case that a path refers to."""
     place: list[str | int] = []
     node: Any = case
     steps = _steps(path)
@@ -101,25 +82,7 @@ def spelt(case: Case, place: Place) -> str:
 
 
 def get(case: Case, path: str) -> Any:
-    """Return the value at a path, in SI units.
-
-    Parameters
-    ----------
-    case
-        The case.
-    path
-        Path, see `place_of`.
-
-    Returns
-    -------
-    object
-        Number, text, part or tuple of parts.
-
-    Raises
-    ------
-    CaseError
-        If the field does not exist.
-    """
+    """Return the value at a path, in SI units."""
     return part_at(case, place_of(case, path))
 
 
@@ -157,15 +120,7 @@ def unit_of(case: Case, path: str) -> str | None:
 
 
 def unit_of_field(part: Part, name: str) -> str | None:
-    """Return the SI unit of the numbers of a field, "1" for dimensionless numbers, None for other values.
-
-    Parameters
-    ----------
-    part
-        The part.
-    name
-        Name of the field.
-    """
+    """Return the SI unit of the numbers of a field, "1" for dimensionless numbers, None for other values."""
     if isinstance(part, Signal) and name in ("amplitude", "values"):
         return part.unit
     field = type(part).model_fields[name]
@@ -188,24 +143,6 @@ def replaced(case: Case, values: Mapping[str, Any]) -> Case:
 
     A new value removes alternatives that exclude it: a damping ratio replaces a damping. Dampers store their gap: balls of
     another radius do not change the gap unless the length of the cavity is given as well.
-
-    Parameters
-    ----------
-    case
-        The case.
-    values
-        New values by path (see `place_of`), in the notation of case files: numbers in SI units, text with units, names of
-        materials, whole parts.
-
-    Returns
-    -------
-    Case
-        The new case.
-
-    Raises
-    ------
-    CaseError
-        If a path does not exist, or the new case is invalid.
     """
     places = places_of(case, values)
     tree: Any = case
@@ -220,25 +157,7 @@ def replaced(case: Case, values: Mapping[str, Any]) -> Case:
 
 
 def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
-    """Return values by place, with None at the places of alternatives that they exclude.
-
-    Parameters
-    ----------
-    case
-        The case.
-    values
-        Values by path.
-
-    Returns
-    -------
-    dict
-        Values by place.
-
-    Raises
-    ------
-    CaseError
-        If a path does not exist, or two paths refer to the same place.
-    """
+    """Return values by place, with None at the places of alternatives that they exclude."""
     paths: dict[Place, str] = {}
     for path in values:
         place = place_of(case, path)

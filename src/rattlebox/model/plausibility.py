@@ -45,20 +45,7 @@ _DENSITIES = 5.0, 25e3  # kg/m^3
 
 
 def plausibility_notes(case: Case, *, signals: bool = True) -> tuple[str, ...]:
-    """Return notes on assumed units and warnings about numbers that are likely slips.
-
-    Parameters
-    ----------
-    case
-        The case.
-    signals
-        Whether loads and base motions are checked, too.
-
-    Returns
-    -------
-    tuple of str
-        Notes, beginning with "note: ", then warnings, beginning with "warning: ".
-    """
+    """Return notes on assumed units and warnings about numbers that are likely slips."""
     dampers = (
         warning
         for index, damper in enumerate(case.dampers)
@@ -238,11 +225,6 @@ def change_by_interpolation(rate: float, frequency: Vector, power: Vector, natur
         Frequencies of the sampled signal [Hz], up to R / 2, and its power there.
     natural, decay
         Natural frequency f_0 and decay rate over 2 pi of the mode [Hz].
-
-    Returns
-    -------
-    float
-        RMS response to the straight lines over that to the band-limited signal, minus one.
 
     Notes
     -----

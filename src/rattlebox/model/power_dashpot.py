@@ -19,25 +19,6 @@ SMALLEST = 1e-3
 def dimensionless_damping(restitution: float, exponent: float, damping_exponent: float, zero_overlap: bool) -> float:
     """Compute the dimensionless dashpot coefficient for a restitution.
 
-    Parameters
-    ----------
-    restitution
-        Restitution at the speed V, from 0.001 to 1.
-    exponent, damping_exponent
-        Exponents n and p of the overlap in N = k d^n + c d^p d'.
-    zero_overlap
-        Whether the contact ends at zero overlap; else it ends at zero force.
-
-    Returns
-    -------
-    float
-        gamma, with c = gamma m V / L^(p+1) and L = (m V^2 / k)^(1/(n+1)).
-
-    Raises
-    ------
-    Hint
-        If no dashpot coefficient has this restitution.
-
     Notes
     -----
     With overlap over L and time over L/V the motion obeys x'' + gamma x^p x' + x^n = 0, x(0) = 0, x'(0) = 1. `PowerLaw`

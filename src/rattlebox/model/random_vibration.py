@@ -214,13 +214,7 @@ class Random(Sampled):
 
 
 def _densities(psd: Any, unit: str | None) -> tuple[NDArray[np.float64], Any]:
-    """Return the points of a density in SI, (n, 2), and the SI unit of the signal.
-
-    Raises
-    ------
-    Hint
-        If a number or a unit is wrong, or units contradict each other.
-    """
+    """Return the points of a density in SI, (n, 2), and the SI unit of the signal."""
     factor, found = 1.0, None
     if unit is not None:
         with at("unit"):

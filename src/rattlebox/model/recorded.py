@@ -33,13 +33,7 @@ _SCALE_FACTOR = re.compile(r"\bscale\s+factor\b\W*([\d.]+)(\s*\(?[a-z].*/)?", re
 
 
 def _time_factor(columns: Columns) -> float:
-    """Return the factor of the times to seconds.
-
-    Raises
-    ------
-    DataError
-        If the file states a unit that is unknown.
-    """
+    """Return the factor of the times to seconds."""
     try:
         factor, _ = unit_above(columns.headings[0], ("s",)) or (1.0, "s")
     except Hint as hint:
@@ -48,24 +42,7 @@ def _time_factor(columns: Columns) -> float:
 
 
 def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple[float, str] | None, list[str]]:
-    """Return the factor to SI and the SI unit of the values as the file states it, and notes; None if it states none.
-
-    Parameters
-    ----------
-    columns
-        Content of the file.
-    wanted
-        Unit that the user states; it has priority over free lines of the file, and must not contradict the heading.
-    name
-        Name of the file, for notes.
-
-    Raises
-    ------
-    DataError
-        If the file states a unit that is unknown, or several, and the user none.
-    Hint
-        If the heading of the column and the user state different units.
-    """
+    """Return the factor to SI and the SI unit of the values as the file states it, and notes; None if it states none."""
     own = None if wanted is None else factor_of(wanted, UNITS)
     try:
         stated = unit_above(columns.headings[1], UNITS)
@@ -118,13 +95,7 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
 
 
 def _time_history(path: Path, columns: Any) -> Columns:
-    """Read a time history of a universal file, by its name or number in `columns`; None stands for the only one.
-
-    Raises
-    ------
-    DataError
-        If there is no such time history, or several and `columns` is None.
-    """
+    """Read a time history of a universal file, by its name or number in `columns`; None stands for the only one."""
     functions = [each for each in read_functions(path) if each.kind in (0, 1) and not np.iscomplexobj(each.values)]
     names = [each.name for each in functions]
     if not functions:
@@ -141,13 +112,7 @@ def _time_history(path: Path, columns: Any) -> Columns:
 
 
 def _ground_motion(path: Path, unit: Any) -> Columns:
-    """Read an AT2 file.
-
-    Raises
-    ------
-    DataError
-        If neither the file nor the field `unit` states a unit.
-    """
+    """Read an AT2 file."""
     motion = read_ground_motion(path)
     times = np.arange(motion.values.size, dtype=float) * motion.step
     columns = Columns(times, motion.values, ([], [f"a ({motion.unit})"] if motion.unit else []), motion.lines)

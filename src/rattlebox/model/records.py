@@ -56,10 +56,6 @@ class Columns:
         Times and values, in the units of the file.
     headings
         Text (names, units) above the times and above the values, from top to bottom.
-    lines
-        Other lines above the numbers.
-    notes
-        Assumptions about the file.
     """
 
     times: Array
@@ -157,25 +153,8 @@ def read_columns(path: str, columns: Selection = None, step: float | None = None
 
     Parameters
     ----------
-    path
-        CSV and other text, with columns separated by comma, semicolon, tab or blank; lines above the numbers and lines that
-        begin with # or % are not data. NPY, NPZ, MAT: an array of columns, or a variable for each, numbered in the order of
-        the file; without `columns` also an array of two rows.
-    columns
-        Columns or variables with times and values, or with a time step only that of the values. Optional if there are no
-        others, or variables called time and value. "rows" for samples that go on from row to row.
     step
         Time between evenly spaced samples [s], the first at 0 s; None for a column of times, or a step in the first line.
-
-    Returns
-    -------
-    Columns
-        Times and values, with the text above them.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read; with the line at fault, or the available columns.
     """
     with errors_of(path, "columns of numbers"):
         file = existing(path)
@@ -299,13 +278,7 @@ def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) ->
 
 
 def as_columns(value: Any, count: int = 2) -> Any:
-    """Return `count` columns as a tuple; None and "rows" are returned unchanged.
-
-    Raises
-    ------
-    Hint
-        If the value is not a sequence of so many numbers and names.
-    """
+    """Return `count` columns as a tuple; None and "rows" are returned unchanged."""
     if value is None or value == "rows":
         return value
     good = isinstance(value, (list, tuple)) and len(value) == count
@@ -401,22 +374,10 @@ def _column_indices(
 def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     """Read all columns of a text file with numbers.
 
-    Parameters
-    ----------
-    file
-        Path of an existing text file, as for `read_columns`.
-    known
-        Possible names of columns; a line of them determines the number of columns.
-
     Returns
     -------
     dict of str to (n,) float
         Columns by name, or by number from 1 if they have no names.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read; with the line at fault.
     """
     with errors_of(file, "columns of numbers"):
         text = _parse_text(file, known)
@@ -430,26 +391,10 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
 def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tuple[Array, list[list[str]]]:
     """Read some columns of a text file.
 
-    Parameters
-    ----------
-    path
-        File as for `read_columns`.
-    columns
-        Columns. Optional if the file has exactly `count`.
-    count
-        Number of columns to read.
-
     Returns
     -------
     (n, count) float
         Numbers.
-    list of list of str
-        Headings of each column.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read; with the line at fault, or the available columns.
     """
     with errors_of(path, "columns of numbers"):
         file = existing(path)
@@ -534,13 +479,7 @@ def _words(text: str) -> list[str]:
 
 
 def _number_of_samples(file: Path, rows: list[_Row]) -> tuple[float | None, str] | None:
-    """Return the time step and a note if the first line of numbers states the number of samples; None if it is data.
-
-    Raises
-    ------
-    DataError
-        If it is neither a row of the table below nor the number of its samples.
-    """
+    """Return the time step and a note if the first line of numbers states the number of samples; None if it is data."""
     first, rest = rows[0], rows[1:]
     if len(rest) < 2 or len(first.cells) > 2 or not all(map(_is_number, first.cells)):
         return None

@@ -30,13 +30,6 @@ class _Plain(str):
 def type_text(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
     """Return the name of a type without validators; a quantity with a unit accepts text as well.
 
-    Parameters
-    ----------
-    annotation
-        Type of a field.
-    metadata
-        Arguments of the `Annotated` around it.
-
     Examples
     --------
     >>> type_text(Annotated[float, SI("m")] | None)
@@ -78,13 +71,7 @@ def _takes_text(metadata: Any) -> bool:
 
 
 def part_signature(part: type[Part]) -> Signature:
-    """Return the signature of a part of a case.
-
-    Parameters
-    ----------
-    part
-        Class of the part.
-    """
+    """Return the signature of a part of a case."""
     singular = {field: name for name, field in part.aliases.items()}
     alternatives = {name for pair in part.alternatives for name in pair}
     named: list[Parameter] = []

@@ -276,13 +276,7 @@ class DampedModes(StructurePart):
 
 
 def check_damping(matrix: Vector, count: int) -> None:
-    """Raise if a modal damping matrix is invalid.
-
-    Raises
-    ------
-    Hint
-        If its shape is not (count, count), or it is not symmetric and positive semidefinite.
-    """
+    """Raise if a modal damping matrix is invalid."""
     place = ["damping_matrix"]
     if matrix.shape != (count, count):
         raise Hint(

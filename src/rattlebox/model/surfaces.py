@@ -24,8 +24,6 @@ class Surface:
     ----------
     points : (n, 3) float
         Corners, from the centre of the cavity [m].
-    polygons : tuple of tuple of int
-        Indices of the corners of each polygon, counter-clockwise as seen from inside the cavity.
     """
 
     points: Vector

@@ -177,23 +177,6 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
     The equations of the modes of the structure and of the tuned masses (see `TunedMass`), scaled to unit masses, are
     x'' + D x' + K x = f. The eigenvectors of K are the new, undamped modes; the transformed damping matrix is not diagonal
     (`Modal` names the source).
-
-    Parameters
-    ----------
-    modes
-        Modes of the structure alone, m of them; numbers may be arrays over a grid.
-    tuned
-        T tuned masses.
-
-    Returns
-    -------
-    ModalModel
-        m + T modes, with the tuned masses as further points.
-
-    Raises
-    ------
-    CaseError
-        If a point is missing, or a name is taken.
     """
     if not tuned:
         return modes

@@ -185,18 +185,6 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     ----------
     value
         A number in SI, text such as "0.4 mm", a pair (number, unit) or a pint Quantity.
-    units
-        SI units allowed; the first is the unit of bare numbers.
-
-    Returns
-    -------
-    tuple
-        The number in SI and the unit that was recognised, None for a bare number.
-
-    Raises
-    ------
-    Hint
-        If there is no finite number, the unit is unknown, or the dimension is wrong.
     """
     if isinstance(value, (bool, np.bool_, bytes)):
         raise Hint(_wanted(units), _example(units))
@@ -240,25 +228,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
 
 
 def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
-    """Read a one-sided power spectral density.
-
-    Parameters
-    ----------
-    value
-        Number, or text such as "0.04 g^2/Hz" or "3.8 (m/s^2)^2/Hz".
-    units
-        SI units allowed for the signal.
-
-    Returns
-    -------
-    tuple
-        Number in unit^2/Hz, and the SI unit of the signal; None for a bare number.
-
-    Raises
-    ------
-    Hint
-        If there is no finite number, or the unit is not the square of one of these units per Hz.
-    """
+    """Read a one-sided power spectral density."""
     match = _NUMBER.match(value) if isinstance(value, str) else None
     if match is None or not match[2]:
         return float(numbers(value)), None
@@ -279,15 +249,7 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
 
 
 def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
-    """Return the factor of a unit to SI, and the SI unit; None if it has none of these dimensions.
-
-    Parameters
-    ----------
-    unit
-        Unit in any common spelling, or a quotient that pint can read.
-    units
-        SI units of the dimensions allowed.
-    """
+    """Return the factor of a unit to SI, and the SI unit; None if it has none of these dimensions."""
     unit = _spelt(_in_words(unit.strip().strip(".\"'")))
     if "m/s^2" in units and unit.lower() in ("g", "g0", "g_0", "gn", "gal"):
         unit = unit.lower().replace("g0", "g_0")
@@ -383,13 +345,7 @@ def as_written(value: Any) -> tuple[float, str] | None:
 
 
 def are_alike(one: str, other: str) -> bool:
-    """Return whether two units have the same dimension; frequencies and angular velocities count as the same.
-
-    Raises
-    ------
-    Hint
-        If a unit is unknown.
-    """
+    """Return whether two units have the same dimension; frequencies and angular velocities count as the same."""
     if one == other or any(one in known and other in known for known in _COMMON.values()):
         return True
     one, other = (next((si for si, known in _COMMON.items() if unit in known), unit) for unit in (one, other))
@@ -437,13 +393,7 @@ def _example(units: tuple[str, ...]) -> str:
 
 
 def radius_of_diameter(values: Any) -> Any:
-    """Return the fields of a round part with a radius in place of a diameter.
-
-    Raises
-    ------
-    Hint
-        If the diameter is not a positive length, or both are given.
-    """
+    """Return the fields of a round part with a radius in place of a diameter."""
     if not isinstance(values, dict) or values.get("diameter") is None:
         return values
     if values.get("radius") is not None:
@@ -454,13 +404,7 @@ def radius_of_diameter(values: Any) -> Any:
 
 
 def numbers(value: Any) -> NDArray[np.float64]:
-    """Read an array of finite numbers.
-
-    Raises
-    ------
-    Hint
-        If an item is not a finite number.
-    """
+    """Read an array of finite numbers."""
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -474,13 +418,7 @@ def numbers(value: Any) -> NDArray[np.float64]:
 
 
 def in_si(value: Any, unit: str) -> Any:
-    """Return nested lists with numbers in an SI unit in place of quantities; arrays of numbers are returned unchanged.
-
-    Raises
-    ------
-    Hint
-        If an item is not a quantity of this dimension.
-    """
+    """Return nested lists with numbers in an SI unit in place of quantities; arrays of numbers are returned unchanged."""
     if isinstance(value, np.ndarray):
         return value if value.dtype.kind in "iuf" else in_si(value.tolist(), unit)
     if not isinstance(value, (list, tuple)) and not np.ndim(getattr(value, "magnitude", 0)):
@@ -555,26 +493,14 @@ def _not_negative(value: float) -> float:
 
 
 def not_boolean(value: Any) -> Any:
-    """Return a value unchanged unless it is a boolean, which is an integer in Python.
-
-    Raises
-    ------
-    Hint
-        If the value is a boolean.
-    """
+    """Return a value unchanged unless it is a boolean, which is an integer in Python."""
     if isinstance(value, (bool, np.bool_)):
         raise Hint("a number is needed")
     return value
 
 
 def plain(value: Any) -> Any:
-    """Return a value for a number without unit; percentages such as "36 %" become fractions.
-
-    Raises
-    ------
-    Hint
-        If the value is a boolean, or text with a comma in a number.
-    """
+    """Return a value for a number without unit; percentages such as "36 %" become fractions."""
     if isinstance(value, str):
         _check_comma(value)
     match = _NUMBER.match(value) if isinstance(value, str) else None
@@ -582,13 +508,7 @@ def plain(value: Any) -> Any:
 
 
 def whole_number(value: Any, name: str, least: int) -> int:
-    """Return a value as a whole number.
-
-    Raises
-    ------
-    Hint
-        If the value is not a whole number, or below `least`.
-    """
+    """Return a value as a whole number."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -599,13 +519,7 @@ def whole_number(value: Any, name: str, least: int) -> int:
 
 
 def bare_number(value: Any, table: Callable[[float], dict[str, Any]], need: str, advice: str) -> Any:
-    """Return the table for a bare number or percentage; return any other table unchanged.
-
-    Raises
-    ------
-    Hint
-        If the value is text or a list; `need` and `advice` are the message.
-    """
+    """Return the table for a bare number or percentage; return any other table unchanged."""
     if isinstance(value, bool):
         return value
     value = plain(value)

@@ -40,17 +40,7 @@ _BESIDE_THE_VALUES = ("", "time", "frequency", "mass", "angle", "stiffness", "da
 
 @dataclass(frozen=True)
 class Stated:
-    """A unit that a text states.
-
-    Attributes
-    ----------
-    factor
-        Factor to the SI unit.
-    unit
-        SI unit.
-    number, line
-        Number and text of the line.
-    """
+    """A unit that a text states."""
 
     factor: float
     unit: str
@@ -65,13 +55,6 @@ def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str
     ----------
     heads
         Text above the column, from top to bottom: a name, a unit, or both, as in "a (g)", "t [ms]", "force in N" or "a/g".
-    units
-        SI units that the column may have.
-
-    Raises
-    ------
-    Hint
-        If a unit in brackets is unknown or of another dimension.
     """
     for head in reversed(heads):
         known = factor_of(head, units)
@@ -105,27 +88,7 @@ def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str
 
 
 def units_in_lines(lines: Sequence[Line], units: tuple[str, ...]) -> tuple[list[Stated], list[Stated]]:
-    """Return the units that free lines above a table state for its values, and those that they only mention.
-
-    Parameters
-    ----------
-    lines
-        Numbers and texts of the lines.
-    units
-        SI units that the values may have.
-
-    Returns
-    -------
-    list of Stated
-        Units after "unit", after "in", in brackets or alone, one for each factor.
-    list of Stated
-        Other units of acceleration, such as that of a peak.
-
-    Raises
-    ------
-    Hint
-        If the lines state a known unit of another dimension.
-    """
+    """Return the units that free lines above a table state for its values, and those that they only mention."""
     stated: dict[tuple[float, str], Stated] = {}
     mentioned: dict[tuple[float, str], Stated] = {}
     for number, line in lines:

@@ -88,27 +88,7 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
 
 @run_figure("case")
 def plot_run_case(run: Run, *, size: Size = "page") -> Figure:
-    """Draw the case of a run; see `plot_case`.
-
-    Parameters
-    ----------
-    run
-        Run whose case is drawn.
-    size
-        Width of the figure: "column", "page" or "slide".
-
-    Returns
-    -------
-    Figure
-        The drawing.
-
-    Raises
-    ------
-    CaseError
-        If the run was read from a file, and a file that its case names can no longer be read.
-    ValueError
-        If the size is unknown.
-    """
+    """Draw the case of a run; see `plot_case`."""
     return plot_case(run.case, size=size)
 
 

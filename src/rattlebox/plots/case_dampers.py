@@ -159,13 +159,7 @@ def _contents(damper: ParticleDamper) -> list[str]:
 
 
 def positions_at_start(damper: ParticleDamper) -> Array:
-    """Return the initial positions of the particles, (n, 3) [m]; those of a settled bed are computed.
-
-    Parameters
-    ----------
-    damper
-        The damper.
-    """
+    """Return the initial positions of the particles, (n, 3) [m]; those of a settled bed are computed."""
     return settle(damper) if isinstance(damper.packing, Bed) else damper.start.position
 
 

@@ -41,17 +41,7 @@ _MAX_STEMS = 40
 
 
 def draw_structure(axes: Axes, case: Case, marks: Marks) -> None:
-    """Draw the structure of a case with its loads, dampers and tuned masses.
-
-    Parameters
-    ----------
-    axes
-        Axes to draw on.
-    case
-        The case.
-    marks
-        Text in the mark of each damper.
-    """
+    """Draw the structure of a case with its loads, dampers and tuned masses."""
     _draw(case.structure, axes, case, marks)
 
 

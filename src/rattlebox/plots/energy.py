@@ -74,19 +74,7 @@ def plot_energy(run: Run, *, size: Size = "column", log: bool = False) -> Figure
 
 
 def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> None:
-    """Draw the energies of structure, balls, contacts and gravity against time.
-
-    Parameters
-    ----------
-    run
-        Run to draw.
-    axes
-        Axes to draw on.
-    time
-        Scale of the horizontal axis.
-    log
-        Whether to use a logarithmic axis.
-    """
+    """Draw the energies of structure, balls, contacts and gravity against time."""
     ledger = run.ledger
     parts = {
         "structure": ledger.structure,
@@ -116,17 +104,7 @@ def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> No
 
 
 def draw_ledger(run: Run, axes: Axes, time: Scale, energy: Scale) -> None:
-    """Draw losses and remaining energy as stacked areas, and the energy supplied as a line.
-
-    Parameters
-    ----------
-    run
-        Run to draw.
-    axes
-        Axes to draw on.
-    time, energy
-        Scales of the axes.
-    """
+    """Draw losses and remaining energy as stacked areas, and the energy supplied as a line."""
     ledger = run.ledger
     parts = {name: part for name, part in ledger.channels.items() if name == "motion" or np.any(part != 0.0)}
     t = run.arrays.time / time.divisor

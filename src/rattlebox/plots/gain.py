@@ -26,17 +26,8 @@ def plot_gain(bare: Run, damped: Run, title: str, subtitle: str, *, until: float
 
     Parameters
     ----------
-    bare, damped
-        The same structure without a damper and with an impact damper of one ball.
-    title, subtitle
-        Texts above the figure.
     until
         Last time that is drawn [s].
-
-    Returns
-    -------
-    Figure
-        Figure with moments of the first oscillation, the displacement of both runs, and the energy ledger of the second.
     """
     with figure_style("page"):
         figure = StyledFigure("page", 0.64)

@@ -19,19 +19,7 @@ _MARKERS = ("x", "+", "1", "2", "3", "4", "*")
 
 
 class Gap(NamedTuple):
-    """Variants that have no value for one reason.
-
-    Attributes
-    ----------
-    text
-        Reason and number of variants.
-    mask
-        True where there is no value for this reason, over the axes of the study.
-    face, hatch
-        Fill of the cells in a map.
-    marker
-        Marker on the axis below lines.
-    """
+    """Variants that have no value for one reason."""
 
     text: str
     mask: xr.DataArray
@@ -41,20 +29,7 @@ class Gap(NamedTuple):
 
 
 def gaps_of(study: xr.Dataset, name: str) -> list[Gap]:
-    """Return the variants without a value of a measure, grouped by reason.
-
-    Parameters
-    ----------
-    study
-        Dataset over axes, with or without the status of the runs.
-    name
-        Name of the measure.
-
-    Returns
-    -------
-    list of Gap
-        One for each status that occurs, and one for finished runs whose value is not finite.
-    """
+    """Return the variants without a value of a measure, grouped by reason."""
     values = study[name]
     explained, groups = np.isfinite(values), []
     if "status" in study:
@@ -70,17 +45,7 @@ def gaps_of(study: xr.Dataset, name: str) -> list[Gap]:
 
 
 def add_gap_legend(figure: Figure, study: xr.Dataset, name: str) -> None:
-    """Add a legend of the hatches below a map, with the number of runs for each.
-
-    Parameters
-    ----------
-    figure
-        Figure with the map.
-    study
-        Study that is drawn.
-    name
-        Name of the measure.
-    """
+    """Add a legend of the hatches below a map, with the number of runs for each."""
     style: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}
     handles = [Patch(facecolor=gap.face, hatch=gap.hatch, label=gap.text, **style) for gap in gaps_of(study, name)]
     if handles:

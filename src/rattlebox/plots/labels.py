@@ -29,19 +29,7 @@ _PERCENTILE = 95.0  # of an unbounded measure, at which its scale ends
 
 
 class LabelledValues(NamedTuple):
-    """Values of a variable in a unit with prefix, or indices into a list of names.
-
-    Attributes
-    ----------
-    numbers
-        Values divided by the divisor, or indices into `names`.
-    divisor, unit
-        Divisor of the values and unit with its prefix; 1 and "" for pure numbers and names.
-    text
-        Description of the variable.
-    names
-        Names, for a variable of names; None for numbers.
-    """
+    """Values of a variable in a unit with prefix, or indices into a list of names."""
 
     numbers: Vector
     divisor: float
@@ -86,10 +74,6 @@ class StudyAxis(NamedTuple):
     ----------
     values
         Values of the axis, (n,).
-    edges
-        Edges of the cells around the values, (n + 1,), in the same unit.
-    log
-        Whether the axis is logarithmic: at least four positive values with a constant ratio.
     """
 
     values: LabelledValues
@@ -122,20 +106,7 @@ def _is_geometric(values: Vector) -> bool:
 
 
 def upper_limit(name: str, values: Vector) -> float | None:
-    """Return where the scale of an unbounded measure ends, None for a measure whose values all fit on one scale.
-
-    Parameters
-    ----------
-    name
-        Name of the measure.
-    values
-        Values of the measure, any shape.
-
-    Returns
-    -------
-    float or None
-        95th percentile of the finite values of an unbounded measure.
-    """
+    """Return where the scale of an unbounded measure ends, None for a measure whose values all fit on one scale."""
     finite = values[np.isfinite(values)]
     if name not in _UNBOUNDED or not finite.size:
         return None

@@ -22,24 +22,7 @@ _CLIP_RATIO = 4.0  # largest value over the end of the scale at which lines are 
 
 
 def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: list[str]) -> list[Line2D]:
-    """Draw a measure over the longest axis, one line for each value of the other.
-
-    Parameters
-    ----------
-    figure, axes
-        Figure and axes to draw on.
-    study
-        Dataset over the axes, optionally with replicas, whose median and band are drawn.
-    name
-        Name of the measure.
-    dims
-        One or two axes of the study.
-
-    Returns
-    -------
-    list of Line2D
-        Legend entries of the marks of runs without a value.
-    """
+    """Draw a measure over the longest axis, one line for each value of the other."""
     along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
     x_axis, values = StudyAxis.of(study[along]), study[name]
     measure = LabelledValues.of(values)

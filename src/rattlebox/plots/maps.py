@@ -166,21 +166,7 @@ def draw_map(
     *,
     text: str | None = None,
 ) -> None:
-    """Draw a measure in colours over two axes, with hatches where runs did not finish.
-
-    Parameters
-    ----------
-    figure, axes
-        Figure and axes to draw on.
-    study
-        Dataset over the two axes, optionally with replicas, whose median is drawn.
-    name
-        Name of the measure.
-    x, y
-        Axes of the study.
-    text
-        Label of the colour bar; default from the attributes.
-    """
+    """Draw a measure in colours over two axes, with hatches where runs did not finish."""
     values = study[name]
     if REPLICA in values.dims:
         values = values.median(REPLICA)

@@ -95,28 +95,13 @@ def _draw_contacts(axes: Axes, run: Run, window: slice, time: Scale) -> None:
 
 
 def label_panel(axes: Axes, name: str) -> None:
-    """Write the name of a damper to the right of its panel.
-
-    Parameters
-    ----------
-    axes
-        Panel.
-    name
-        Name of the damper.
-    """
+    """Write the name of a damper to the right of its panel."""
     style: dict[str, Any] = {"rotation": 270, "ha": "left", "va": "center", "transform": axes.transAxes}
     axes.text(1.03, 0.5, shorten(name, MAX_NAME_LETTERS), **style)
 
 
 def ball_displacements(arrays: RunArrays, damper: int) -> Any:
     """Return the displacements of the balls of one damper from the packed, centred row, and half the clearance.
-
-    Parameters
-    ----------
-    arrays
-        Arrays of the run.
-    damper
-        Index of the damper.
 
     Returns
     -------
@@ -128,19 +113,7 @@ def ball_displacements(arrays: RunArrays, damper: int) -> Any:
 
 
 def draw_structure(axes: Axes, arrays: RunArrays, window: slice, time: Scale, length: Scale) -> None:
-    """Draw the displacement of the points of the structure that move; of many points, those that move most.
-
-    Parameters
-    ----------
-    axes
-        Axes to draw on.
-    arrays
-        Arrays of the run.
-    window
-        Output times to draw.
-    time, length
-        Scales of the axes.
-    """
+    """Draw the displacement of the points of the structure that move; of many points, those that move most."""
     displacement = arrays.displacement[window] / length.divisor
     draw_largest(axes, arrays.time[window] / time.divisor, displacement, arrays.points)
     label(axes, "y", "Displacement", length.unit)
@@ -150,19 +123,6 @@ def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, window: slice, time:
     """Draw the displacements of the balls of one damper from the packed, centred row.
 
     Walls far away from the balls are not drawn.
-
-    Parameters
-    ----------
-    axes
-        Axes to draw on.
-    arrays
-        Arrays of the run.
-    damper
-        Index of the damper.
-    window
-        Output times to draw.
-    time, length
-        Scales of the axes.
     """
     own = np.flatnonzero(arrays.ball_damper == damper)
     half = arrays.clearance[damper] / 2

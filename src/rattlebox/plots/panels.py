@@ -16,15 +16,7 @@ MAX_SERIES = len(SERIES_COLOURS)
 
 
 def time_panels(size: Size, count: int) -> tuple[StyledFigure, list[Axes]]:
-    """Return a figure with panels below each other that share their time axis.
-
-    Parameters
-    ----------
-    size
-        Width of the figure: "column", "page" or "slide".
-    count
-        Number of panels.
-    """
+    """Return a figure with panels below each other that share their time axis."""
     figure = StyledFigure(size, 0.14 + 0.36 * count if size == "column" else 0.1 + 0.2 * count)
     return figure, list(np.ravel(figure.subplots(count, 1, sharex=True)))
 
@@ -34,15 +26,8 @@ def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice
 
     Parameters
     ----------
-    arrays
-        Arrays of the run.
     between
         First and last time [s].
-
-    Raises
-    ------
-    ValueError
-        If no output time lies within `between`.
     """
     if between is None:
         return slice(0, arrays.time.size)
@@ -60,16 +45,8 @@ def draw_line(axes: Axes, x: Any, y: Any, series: int, name: str | None, *, colo
 
     Parameters
     ----------
-    axes
-        Axes to draw on.
     x, y
         Points in the units of the axes, (n,).
-    series
-        Number of the line.
-    name
-        Text for the legend; None for no entry.
-    colour
-        Number of the colour; default `series`.
     """
     axes.plot(
         x,
@@ -86,12 +63,8 @@ def draw_largest(axes: Axes, x: Any, y: Any, names: Sequence[str]) -> None:
 
     Parameters
     ----------
-    axes
-        Axes to draw on.
     x, y
         Points in the units of the axes, (n,) and (n, lines).
-    names
-        Names of the lines.
     """
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
     for k, line in enumerate(largest_points(np.abs(y).max(axis=0), MAX_SERIES)):

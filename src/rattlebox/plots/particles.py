@@ -59,11 +59,6 @@ def view_axes(view: str | tuple[float, float]) -> Array:
     ----------
     view
         Name of a view, or azimuth from x towards y and elevation over the x-y plane [degrees].
-
-    Raises
-    ------
-    ValueError
-        If there is no such view.
     """
     try:
         azimuth, elevation = np.radians(np.asarray(VIEWS[view] if isinstance(view, str) else view, dtype=float))

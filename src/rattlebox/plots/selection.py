@@ -18,26 +18,7 @@ if TYPE_CHECKING:
 
 
 def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:
-    """Select the variants of a study at values of its axes.
-
-    Parameters
-    ----------
-    study
-        Dataset over axes.
-    at
-        Value by the name of a coordinate: a number in SI units or text with a unit. The nearest value in the study is
-        selected.
-
-    Returns
-    -------
-    tuple of Dataset and str
-        Study without these axes, and a text with the selected values.
-
-    Raises
-    ------
-    CaseError
-        If there is no such axis, or the value is outside its range.
-    """
+    """Select the variants of a study at values of its axes."""
     texts = []
     for name, value in at.items():
         names = [str(other) for other, coord in study.coords.items() if coord.ndim == 1]
@@ -51,18 +32,7 @@ def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:
 
 
 def nearest_value_notes(study: xr.Dataset, at: Mapping[str, Any]) -> list[str]:
-    """Return a note for each axis on which `select` replaces the requested value by the nearest one.
-
-    Parameters
-    ----------
-    study, at
-        Arguments of `select`.
-
-    Returns
-    -------
-    list of str
-        Notes on the axes where the two values differ in the digits that figures show.
-    """
+    """Return a note for each axis on which `select` replaces the requested value by the nearest one."""
     lines = []
     for name, value in at.items():
         coord = study[name]

@@ -27,18 +27,7 @@ _OVERSAMPLING = 2  # samples per pixel in each direction, which are averaged
 
 
 def default_renderer(count: int = 0) -> Renderer:
-    """Return the default renderer for a number of spheres.
-
-    Parameters
-    ----------
-    count
-        Number of spheres.
-
-    Returns
-    -------
-    str
-        "pyvista" if PyVista is installed and there are not too many spheres, otherwise "plain".
-    """
+    """Return the default renderer for a number of spheres."""
     return "pyvista" if count <= MAX_MESHES and find_spec("pyvista") is not None else "plain"
 
 
@@ -60,23 +49,12 @@ def draw_spheres(
         Radii in the unit of the places, (n,).
     colours
         Red, green, blue from 0 to 1, (n, 3).
-    extent
-        Left, right, bottom and top of the picture, in the same unit.
-    width
-        Width of the picture in pixels.
-    renderer
-        Default PyVista if it is installed and there are at most 20 000 spheres.
 
     Returns
     -------
     ndarray of uint8
         Red, green, blue and opacity, (height, width, 4); the first row is at the top; only the background is
         transparent.
-
-    Raises
-    ------
-    MissingDependency
-        If PyVista is requested and not installed.
     """
     height = max(1, round(width * (extent[3] - extent[2]) / (extent[1] - extent[0])))
     draw = _pyvista if (renderer or default_renderer(len(places))) == "pyvista" else _plain

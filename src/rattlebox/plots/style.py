@@ -264,14 +264,8 @@ def time_axis(axes: Axes, time: Any, scale: Scale, ticks: int = 6) -> None:
 
     Parameters
     ----------
-    axes
-        Lowest panel.
     time
         Drawn times [s], (n,).
-    scale
-        Scale of the axis.
-    ticks
-        Maximum number of intervals between ticks.
     """
     label(axes, "x", "Time", scale.unit)
     axes.xaxis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 5, 10]))
@@ -299,20 +293,7 @@ def legend_above(axes: Axes, **options: Any) -> None:
 
 
 def shorten(text: str, room: int) -> str:
-    """Replace the middle of a text that is too long by an ellipsis.
-
-    Parameters
-    ----------
-    text
-        Text.
-    room
-        Maximum number of letters.
-
-    Returns
-    -------
-    str
-        Text of at most `room` letters.
-    """
+    """Replace the middle of a text that is too long by an ellipsis."""
     if len(text) <= room:
         return text
     tail = (room - 1) // 2
@@ -320,18 +301,7 @@ def shorten(text: str, room: int) -> str:
 
 
 def letters(axes: Axes) -> int:
-    """Estimate the number of legend letters that fit above an axes.
-
-    Parameters
-    ----------
-    axes
-        Axes of a figure with its final width.
-
-    Returns
-    -------
-    int
-        Number of letters.
-    """
+    """Estimate the number of legend letters that fit above an axes."""
     figure, grid = present(axes.get_figure(root=True)), axes.get_gridspec()
     width = 72.0 * figure.get_figwidth() / (grid.ncols if grid is not None else 1)
     return int(0.8 * width / (0.58 * 0.9 * float(mpl.rcParams["font.size"])))

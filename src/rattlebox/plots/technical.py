@@ -21,37 +21,13 @@ Point = tuple[float, float]
 
 
 def text(axes: Axes, at: Point, words: str, **options: Any) -> None:
-    """Write a text that is never read as mathematics, since names of users may contain dollar signs.
-
-    Parameters
-    ----------
-    axes
-        Axes of the drawing.
-    at
-        Position.
-    words
-        The text.
-    **options
-        Options of `Axes.text`.
-    """
+    """Write a text that is never read as mathematics, since names of users may contain dollar signs."""
     chosen: Any = {"ha": "center", "va": "center", "parse_math": False} | options
     axes.text(*at, words, **chosen)
 
 
 def arrow(axes: Axes, start: Point, end: Point, *, both: bool = False, colour: str = INK, width: float = 0.8) -> None:
-    """Draw an arrow.
-
-    Parameters
-    ----------
-    axes
-        Axes of the drawing.
-    start, end
-        Its ends; the head is at the end.
-    both
-        Whether there is a head at both ends.
-    colour, width
-        Colour, and line width [pt at 8 pt letters].
-    """
+    """Draw an arrow."""
     style = "<|-|>" if both else "-|>"
     axes.add_patch(
         FancyArrowPatch(
@@ -69,21 +45,7 @@ def arrow(axes: Axes, start: Point, end: Point, *, both: bool = False, colour: s
 
 
 def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *, rotate: bool = False) -> None:
-    """Draw a dimension line parallel to the line between two points, with its words.
-
-    Parameters
-    ----------
-    axes
-        Axes with equal scales.
-    start, end
-        Points whose distance is shown.
-    words
-        Length with its unit.
-    offset
-        Distance of the dimension line from the points, to the left of the direction from start to end; in data units.
-    rotate
-        Whether the words are along the line.
-    """
+    """Draw a dimension line parallel to the line between two points, with its words."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     along = (b - a) / (np.linalg.norm(b - a) or 1.0)
     normal = np.array([-along[1], along[0]])
@@ -115,17 +77,7 @@ def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *
 
 
 def ground(axes: Axes, start: Point, end: Point, depth: float) -> None:
-    """Draw a fixed edge with hatches on the left of the direction from start to end.
-
-    Parameters
-    ----------
-    axes
-        Axes of the drawing.
-    start, end
-        Ends of the edge.
-    depth
-        Depth of the hatches.
-    """
+    """Draw a fixed edge with hatches on the left of the direction from start to end."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     along = (b - a) / np.linalg.norm(b - a)
     normal = np.array([-along[1], along[0]]) * depth
@@ -135,19 +87,7 @@ def ground(axes: Axes, start: Point, end: Point, depth: float) -> None:
 
 
 def spring(axes: Axes, start: Point, end: Point, width: float, turns: int = 5) -> None:
-    """Draw a spring as a zigzag.
-
-    Parameters
-    ----------
-    axes
-        Axes of the drawing.
-    start, end
-        Its ends.
-    width
-        Width of the zigzag.
-    turns
-        Number of its turns.
-    """
+    """Draw a spring as a zigzag."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     along, length = (b - a) / np.linalg.norm(b - a), float(np.linalg.norm(b - a))
     normal = np.array([-along[1], along[0]])
@@ -158,17 +98,7 @@ def spring(axes: Axes, start: Point, end: Point, width: float, turns: int = 5) -
 
 
 def dashpot(axes: Axes, start: Point, end: Point, width: float) -> None:
-    """Draw a dashpot.
-
-    Parameters
-    ----------
-    axes
-        Axes of the drawing.
-    start, end
-        Its ends.
-    width
-        Width of its cylinder.
-    """
+    """Draw a dashpot."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     along = b - a
     normal = np.array([-along[1], along[0]]) / np.linalg.norm(along) * width / 2
@@ -183,34 +113,12 @@ def dashpot(axes: Axes, start: Point, end: Point, width: float) -> None:
 
 
 def body(axes: Axes, corner: Point, width: float, height: float) -> None:
-    """Draw a rectangular body.
-
-    Parameters
-    ----------
-    axes
-        Axes of the drawing.
-    corner
-        Lower left corner.
-    width, height
-        Its edges.
-    """
+    """Draw a rectangular body."""
     axes.add_patch(Rectangle(corner, width, height, facecolor=SOLID, edgecolor=INK, lw=pen(0.8), zorder=2))
 
 
 def mark(axes: Axes, at: Point, words: str, radius: float) -> None:
-    """Draw the number of a damper in a circle; without a number a ball in a cavity.
-
-    Parameters
-    ----------
-    axes
-        Axes with equal scales.
-    at
-        Position.
-    words
-        Number.
-    radius
-        Radius of the circle.
-    """
+    """Draw the number of a damper in a circle; without a number a ball in a cavity."""
     style: Any = {"facecolor": "white", "edgecolor": MARK_COLOUR, "lw": pen(0.9), "zorder": 8}
     if not words:
         axes.add_patch(Rectangle((at[0] - 1.2 * radius, at[1] - 0.8 * radius), 2.4 * radius, 1.6 * radius, **style))

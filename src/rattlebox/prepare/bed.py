@@ -39,22 +39,8 @@ class BedMeasures:
 
     Attributes
     ----------
-    count
-        Number of particles.
-    fill_ratio
-        Volume of the particles over that of the cavity.
-    bed_fill
-        Volume of the bed, with the voids in it, over that of the cavity; NaN without gravity.
     height
         Height of the bed above the lowest point of the cavity [m]; NaN without gravity.
-    density
-        Volume of the particles over that of the bed; NaN without gravity.
-    bulk_density
-        Density at least two diameters away from the walls and from the surface; NaN if there is no such place.
-    bulk_error
-        Standard error of the bulk density.
-    full_count
-        Largest number of such particles that can be inserted into the cavity at random, as in a full compacted bed.
     """
 
     count: int
@@ -72,8 +58,6 @@ def bed_level(damper: ParticleDamper, positions: Array) -> tuple[float, float]:
 
     Parameters
     ----------
-    damper
-        The damper, with gravity.
     positions
         Positions of the particles relative to the centre of the cavity, (n, 3) [m].
 
@@ -104,17 +88,7 @@ def _levels(cavity: AnyCavity, up: tuple[float, float, float]) -> tuple[Array, A
 
 
 def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
-    """Yield a note if a bed does not fill its cavity as `bed_fill` states, and a warning if a full one has sunk.
-
-    Parameters
-    ----------
-    damper
-        The damper.
-    name
-        Name of the damper, for the note.
-    fill
-        Volume of its bed over that of the cavity.
-    """
+    """Yield a note if a bed does not fill its cavity as `bed_fill` states, and a warning if a full one has sunk."""
     asked = damper.particles[0].bed_fill
     friction = damper.largest_friction
     if asked == 1 and isinstance(damper.packing, Compacted) and damper.up is not None and friction < MIN_FRICTION:
@@ -136,17 +110,6 @@ def loose_note(damper: ParticleDamper, name: str, fill: float, acceleration: flo
     """Yield a warning if a bed fills its cavity without being locked in it.
 
     Randomly packed particles touch only some of their neighbours and walls, so that a full bed has room to move.
-
-    Parameters
-    ----------
-    damper
-        The damper.
-    name
-        Name of the damper, for the warning.
-    fill
-        Volume of its bed over that of the cavity; NaN without gravity.
-    acceleration
-        Expected amplitude of the acceleration of the cavity [m/s^2].
     """
     is_full = damper.particles[0].bed_fill == 1 or fill > FULL
     weight = float(np.linalg.norm(damper.gravity))

@@ -50,27 +50,7 @@ not matter; above `HEAVY`, an exchange once in each step may diverge (tests/veri
 
 @dataclass(frozen=True)
 class PackedComponent:
-    """A case as a component.
-
-    Attributes
-    ----------
-    data
-        The packed case: the bytes that `core/rattlebox.h` reads.
-    alone
-        Whether it is a damper alone, driven by the motion of its attachment.
-    inputs
-        Names of the inputs: components of the acceleration of the attachment, or the loads of the case.
-    outputs
-        Names of the points whose motion is an output; none for a damper alone.
-    dampers
-        Names of the dampers.
-    axes
-        1 for impact dampers, 3 for particle dampers.
-    notes
-        Notes on choices that the preparation made, such as the time step.
-    prepared
-        Preparation of a case with particle dampers.
-    """
+    """A case as a component."""
 
     data: bytes
     alone: bool
@@ -89,23 +69,11 @@ def damper_case(
 
     Parameters
     ----------
-    damper
-        The damper.
-    method
-        Method of the engine; None for the default.
-    motion
-        Largest expected motion of the attachment, from which the softening and the time step of particles are chosen; None
-        for a short fall under gravity.
     structure_mass
         Effective mass of the structure at the attachment [kg], or None for a rigid one. The dashpots of impact dampers are
         adjusted to it.
     duration
         Duration that the step must suit [s].
-
-    Raises
-    ------
-    CaseError
-        If `structure_mass` is given for particles, or together with `motion`.
     """
     structure: SDOF | Shaker | Fixed = Fixed() if motion is None else Shaker(motion=motion)
     if structure_mass is not None:
@@ -125,18 +93,8 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
 
     Parameters
     ----------
-    case
-        The case. Its loads and base accelerations become inputs.
-    alone
-        Whether only the damper is packed. The structure and its loads then serve to adjust the laws of the contacts and to
-        choose the softening and the time step of particles.
     velocity
         Initial velocity of the attachment of a damper alone [m/s]: a number, or three components for particles.
-
-    Raises
-    ------
-    CaseError
-        If the case has several dampers and no structure, or its method has no stepper.
     """
     if isinstance(case.method, TwoStep):
         raise Hint("the two-step method has no stepper", "method = EventDriven(), or Newton()")

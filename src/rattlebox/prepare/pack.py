@@ -54,23 +54,7 @@ MAX_EVENTS = 200_000
 
 
 def pack(case: Case) -> _core.Problem:
-    """Pack a case for the core.
-
-    Parameters
-    ----------
-    case
-        The case.
-
-    Returns
-    -------
-    Problem
-        Modes, loads, dampers, contacts, sample times and settings.
-
-    Raises
-    ------
-    CaseError
-        If the case has particle dampers.
-    """
+    """Pack a case for the core."""
     problem = _problem(case)
     settings = problem.settings.replace(contact_samples=0 if case.output.is_chosen else MAX_EVENTS)
     return problem.replace(settings=settings, sample_times=_array(case.sample_times()))
@@ -82,17 +66,11 @@ class Batch:
 
     Attributes
     ----------
-    packed
-        The problem, with arrays over the grid of these variants.
-    indices
-        Indices along each dimension of the whole grid, ascending.
     points
         Mode shapes at each point of the structure, (m, ...) over the grid.
     inertia
         Participation of the modes in the motion of the base, (m, ...) [kg^1/2], and "residual_mass" (1, ...) [kg] of the
         truncated modes; empty if unknown.
-    obstacle
-        Reason for a batch that is only a part of the grid; None for the whole grid.
     """
 
     packed: _core.Problem
@@ -124,26 +102,11 @@ class Batch:
 def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> _core.Problem:
     """Pack many variants of a case for the core.
 
-    Parameters
-    ----------
-    case
-        Case from which the variants differ in the values of the columns.
-    columns
-        Values by path, such as "damper.gap": arrays with as many axes as `shape` and broadcastable to it. Numbers in SI
-        units; names of materials, laws, lists and other values as objects.
-    shape
-        Shape of the grid of variants.
-
     Returns
     -------
     Problem
         As `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has the axes of
         the grid last, (n, ...). There are no sample times.
-
-    Raises
-    ------
-    CaseError
-        If a variant is invalid, or variants differ in more than numbers: in kinds of laws or in the number of balls.
     """
     first, *others = pack_parts(case, columns, shape)
     if others and first.obstacle:
@@ -155,21 +118,6 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
     """Pack many variants of a case for the core, in batches that differ in numbers only.
 
     As a check, some variants, the extreme ones included, are also packed one by one and compared with their batch.
-
-    Parameters
-    ----------
-    case, columns, shape
-        As in `pack_batch`.
-
-    Returns
-    -------
-    list of Batch
-        Batches that together cover the grid.
-
-    Raises
-    ------
-    CaseError
-        If a variant is invalid.
     """
     given = {path: column(path, values, shape) for path, values in columns.items()}
     parts = _variants(case, given, tuple(shape), {})

@@ -46,18 +46,8 @@ class Prepared:
 
     Attributes
     ----------
-    case
-        The case, with a number in place of each softening "auto".
-    notes
-        Notes on the values of softening "auto", and on beds with another volume than stated.
-    step
-        The time step and its limits.
-    tables
-        Contact laws of the pairs in each damper.
     positions
         Initial positions of the particles of each damper, (n, 3) [m].
-    fills
-        `fill_ratio` of all cavities together, and their `bed_fill` if all of them contain a bed.
     """
 
     case: Case
@@ -73,21 +63,9 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
 
     Parameters
     ----------
-    case
-        The case, with particle dampers.
     positions
         Initial positions of the particles of each damper, (n, 3) [m], from a checkpoint. By default, settled packings are
         computed.
-
-    Returns
-    -------
-    Prepared
-        The case and the results.
-
-    Raises
-    ------
-    CaseError
-        If the time step of the case is too long, or particles do not settle.
     """
     case, notes = resolve_softening(case)
     tables, step = _step(case)
@@ -103,13 +81,7 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
 
 
 def count_steps(case: Case) -> int:
-    """Return the number of time steps of a run, without its preparation.
-
-    Raises
-    ------
-    CaseError
-        If the time step of the case is too long.
-    """
+    """Return the number of time steps of a run, without its preparation."""
     return _step(resolve_softening(case)[0])[1].count
 
 
@@ -125,18 +97,7 @@ def _step(case: Case) -> tuple[tuple[ContactTable, ...], Step]:
 
 
 def pack_particles(prepared: Prepared) -> _core.DemProblem:
-    """Pack a prepared case for the core.
-
-    Parameters
-    ----------
-    prepared
-        The prepared case.
-
-    Returns
-    -------
-    DemProblem
-        Modes, loads, cavities with their particles, and the laws of pairs.
-    """
+    """Pack a prepared case for the core."""
     case, step = prepared.case, prepared.step
     modes = case.modes
     slowest = min((motion.main for motion in step.motions if motion.main), default=0.0)
@@ -166,25 +127,7 @@ def pack_particles(prepared: Prepared) -> _core.DemProblem:
 
 
 def settle_all(case: Case, proceed: Callable[[], bool]) -> bool:
-    """Compute the settled packings of a case in advance; `prepare` reads them from the cache of `settle`.
-
-    Parameters
-    ----------
-    case
-        The case.
-    proceed
-        Function that is called repeatedly; settling stops when it returns False.
-
-    Returns
-    -------
-    bool
-        Whether all packings have settled; False if `proceed` stopped it.
-
-    Raises
-    ------
-    CaseError
-        If particles cannot be inserted, or do not come to rest.
-    """
+    """Compute the settled packings of a case in advance; `prepare` reads them from the cache of `settle`."""
     return all(
         not isinstance(damper.packing, Bed) or settle(damper, proceed) is not None for damper in case.particle_dampers
     )

@@ -25,19 +25,8 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
 
     Parameters
     ----------
-    damper
-        The damper.
-    table
-        Contact laws of its pairs.
     speed
         Largest expected approach speed [m/s].
-    name
-        Name of the damper.
-
-    Raises
-    ------
-    Hint
-        If an overlap is too deep.
     """
     if not isinstance(damper.packing, Positions):
         return

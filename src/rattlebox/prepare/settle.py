@@ -62,22 +62,10 @@ def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -
 
     The last few beds are cached: cases that differ only in motion or contacts start from the same one.
 
-    Parameters
-    ----------
-    damper
-        The damper, with a `Settled` or `Compacted` packing.
-    proceed
-        Function that is called repeatedly; the computation stops when it returns False.
-
     Returns
     -------
     (n, 3) float or None
         Positions relative to the centre of the cavity [m]; None if `proceed` stopped it.
-
-    Raises
-    ------
-    Hint
-        If particles cannot be inserted, or do not come to rest.
     """
     packing = instance(damper.packing, Bed)
     key = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
@@ -111,22 +99,10 @@ class _Stopped(Exception):
 def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -> Array:
     """Compute positions of a dense random bed under a lid, which is as low as the density of the bed permits.
 
-    Parameters
-    ----------
-    damper
-        The damper, with a `Compacted` packing.
-    proceed
-        Function that is called repeatedly.
-
     Returns
     -------
     (n, 3) float
         Positions relative to the centre of the cavity [m].
-
-    Raises
-    ------
-    Hint
-        If the cavity is too small for the particles.
 
     Notes
     -----
@@ -179,26 +155,13 @@ def insert(
 
     Parameters
     ----------
-    cavity
-        Cavity around the spheres.
     radii
         Radii of the spheres, (n,) [m].
-    seed
-        Random seed of the positions.
-    proceed
-        Function that is called repeatedly.
-    walls
-        Walls of the cavity, with those that are added; default those of the cavity.
 
     Returns
     -------
     (n, 3) float
         Positions relative to the centre of the cavity [m].
-
-    Raises
-    ------
-    Hint
-        If the cavity is too small for all of them.
 
     Notes
     -----
@@ -250,28 +213,15 @@ def push_apart(
 
     Parameters
     ----------
-    cavity
-        Cavity around the spheres.
     places
         Positions, (n, 3) [m].
     radii
         Radii of the spheres, (n,) [m].
-    enlargement
-        Enlargement of the spheres during the computation, relative to the radius.
-    proceed
-        Function that is called repeatedly.
-    walls
-        Walls of the cavity, with those that are added; default those of the cavity.
 
     Returns
     -------
     (n, 3) float
         Positions without overlaps [m].
-
-    Raises
-    ------
-    Hint
-        If the cavity is too small for all of them.
 
     Notes
     -----

@@ -69,10 +69,6 @@ class CavityMotion:
         Frequency of the largest acceleration [Hz]; 0 without motion.
     highest
         Highest frequency with at least a tenth of that acceleration [Hz].
-    acceleration
-        Amplitude of the acceleration, from all frequencies [m/s^2].
-    is_prescribed
-        Whether the motion is independent of the particles, as on a shaker.
     """
 
     main: float
@@ -86,17 +82,10 @@ def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.floa
 
     Parameters
     ----------
-    case
-        The case.
     shape : (m, 3) float
         Mode shapes at the cavity.
     state : (T, m, 2) float
         Modal displacements and velocities of the structure without particles.
-
-    Returns
-    -------
-    CavityMotion
-        Frequencies and acceleration.
 
     Notes
     -----
@@ -119,13 +108,6 @@ def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.floa
 
 def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> float:
     """Return the lowest resonance of the bed of a damper, compressed under its own weight.
-
-    Parameters
-    ----------
-    damper
-        The damper.
-    softening
-        Softening; default that of the damper.
 
     Returns
     -------
@@ -165,22 +147,6 @@ def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> flo
 def loss_change(damper: ParticleDamper, motion: CavityMotion, level: float, softening: float) -> float:
     """Estimate the largest change of the loss in a cycle by softening, over m V^2.
 
-    Parameters
-    ----------
-    damper
-        The damper.
-    motion
-        Motion of its cavity.
-    level
-        Amplitude of the acceleration over gravity.
-    softening
-        The softening.
-
-    Returns
-    -------
-    float
-        Change; 0 without gravity.
-
     Notes
     -----
     K ((f / f_s)^2 - (f / f_1)^2), with the frequency f of the motion and the resonance f_s at softening s. K is 25 up to an
@@ -198,15 +164,7 @@ def _sensitivity(level: float) -> float:
 
 @dataclass(frozen=True)
 class Choice:
-    """The value of softening "auto".
-
-    Attributes
-    ----------
-    softening
-        The value.
-    note
-        The value, the reason, the possible change of the loss, and the cost of softening 1.
-    """
+    """The value of softening "auto"."""
 
     softening: float
     note: str
@@ -214,20 +172,6 @@ class Choice:
 
 def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: float) -> Choice:
     """Choose the largest softening that changes the loss by at most `AUTO_CHANGE`.
-
-    Parameters
-    ----------
-    damper
-        The damper.
-    motion
-        Motion of its cavity.
-    largest
-        Softening at which overlaps reach their limit.
-
-    Returns
-    -------
-    Choice
-        The softening and the reason for it.
 
     Notes
     -----
@@ -280,14 +224,8 @@ class Effect:
 
     Attributes
     ----------
-    softening
-        The softening.
     resonance
         Resonance of the bed under its own weight [Hz].
-    change
-        Possible change of the loss in a cycle, over m V^2.
-    share
-        Share of the loss in enduring contacts; 0 without any loss.
     frequency
         Highest frequency of the motion [Hz].
     """
@@ -331,10 +269,6 @@ def effects(
 
     Parameters
     ----------
-    case
-        The case.
-    motions
-        Motions of the cavities, expected before the run.
     velocity : (T, D, 3) float
         Velocity of the cavities in the run, with that of the base [m/s].
     lost, enduring : (D,) float
@@ -343,11 +277,6 @@ def effects(
         Loss by rolling resistance [J].
     relative_speed : (D,) float
         Root mean square speed of the particles relative to their cavity, times the square root of two [m/s].
-
-    Returns
-    -------
-    list of Effect
-        One for each damper.
 
     Notes
     -----

@@ -71,10 +71,6 @@ class Limit:
         Longest automatic step [s].
     bound
         Longest step that is accepted [s]; infinite for any.
-    what
-        Description for messages.
-    is_contact
-        Whether this is a contact.
     """
 
     duration: float
@@ -92,18 +88,8 @@ class Step:
     ----------
     dt
         Time step [s].
-    every
-        Steps between samples.
-    count
-        Total number of steps.
-    limit
-        The limit with the shortest automatic step.
-    shortest
-        The shortest expected contact.
     speeds
         Largest expected approach speed in each damper [m/s].
-    motions
-        Expected motion of each cavity.
     """
 
     dt: float
@@ -126,8 +112,6 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
 
     Parameters
     ----------
-    case
-        The case.
     cavity_velocities
         Velocity of each cavity without particles at the `evaluation_times`, (T, 3) [m/s].
 
@@ -168,19 +152,8 @@ def contact_limits(
 
     Parameters
     ----------
-    case, damper
-        The case, and one of its dampers.
-    table
-        Contact laws of its pairs.
     speed
         Approach speed [m/s].
-    fraction
-        Automatic step over the duration of the contact.
-
-    Yields
-    ------
-    Limit
-        The shortest contact of a kind of pair.
 
     Notes
     -----
@@ -285,17 +258,8 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
 
     Parameters
     ----------
-    case
-        The case.
-    tables
-        Contact laws of the pairs in each damper.
     speeds
         Largest expected approach speed in each damper [m/s].
-
-    Returns
-    -------
-    list of Limit
-        All limits.
 
     Notes
     -----
@@ -342,22 +306,8 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
 
     Parameters
     ----------
-    case
-        The case.
-    tables
-        Contact laws of the pairs in each damper.
     speeds
         Largest expected approach speed in each damper [m/s].
-
-    Returns
-    -------
-    Step
-        The step and its limits.
-
-    Raises
-    ------
-    Hint
-        If the step of the case is too long for stability or for a load, or the number of steps exceeds `MAX_STEPS`.
     """
     method = instance(case.method, Dem)
     all_limits = limits(case, tables, speeds)
@@ -403,21 +353,8 @@ def step_diagnostics(
 
     Parameters
     ----------
-    case, tables, step
-        The arguments of `choose_step`, and its result.
-    overlaps
-        Largest overlap over the smaller radius, in each damper.
     speeds
         Largest approach speed at a first touch, in each damper [m/s].
-    effects
-        Effect of softening on each damper.
-
-    Returns
-    -------
-    diagnostics : dict
-        Diagnostics by name, in SI units.
-    notes : list of str
-        Notes and warnings.
     """
     dampers = case.particle_dampers
     shortest = min(
@@ -482,18 +419,7 @@ def _averaging_warnings(case: Case, step: Step) -> Iterator[str]:
 
 
 def exceeded_limits(diagnostics: Mapping[str, float]) -> list[str]:
-    """Return the names of the validity limits that the run exceeded (see `WARNINGS`).
-
-    Parameters
-    ----------
-    diagnostics
-        Diagnostics from `step_diagnostics`.
-
-    Returns
-    -------
-    list of str
-        Keys of `WARNINGS`.
-    """
+    """Return the names of the validity limits that the run exceeded (see `WARNINGS`)."""
     steps = diagnostics["steps_per_contact"]
     exceeded = {
         "few_steps": math.isfinite(steps) and steps < MIN_STEPS_PER_CONTACT,
@@ -509,15 +435,8 @@ def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float
 
     Parameters
     ----------
-    case, damper
-        The case, and one of its dampers, without softening.
     speed
         Largest expected approach speed [m/s].
-
-    Returns
-    -------
-    float
-        Softening; infinite without contacts.
 
     Notes
     -----

@@ -80,29 +80,13 @@ class NotMergeable(Hint):
 
 
 class Merger:
-    """Merger of packed variants that differ in the value at one path.
-
-    Parameters
-    ----------
-    path
-        Path of the value.
-    groups
-        Indices along the axis of the grid, for each value.
-    axis, shape
-        Axis of the grid along which the value varies, and shape of the grid.
-    """
+    """Merger of packed variants that differ in the value at one path."""
 
     def __init__(self, path: str, groups: Sequence[NDArray[np.intp]], axis: int, shape: Sequence[int]) -> None:
         self._path, self._groups, self._axis, self._shape = path, groups, axis, shape
 
     def merge(self, parts: Sequence[Packed], *where: str) -> Packed:
-        """Return a part of a problem for the whole grid, from that of each group.
-
-        Raises
-        ------
-        NotMergeable
-            If the parts differ in more than numbers.
-        """
+        """Return a part of a problem for the whole grid, from that of each group."""
         first = parts[0]
         if any(type(part) is not type(first) for part in parts):
             raise self._obstacle(where)
@@ -202,13 +186,7 @@ def examples(columns: Columns, shape: Sequence[int]) -> list[Index]:
 
 
 def variant(case: Case, columns: Columns, index: Index) -> Case:
-    """Return the case of one variant.
-
-    Raises
-    ------
-    CaseError
-        If the values of the variant are invalid.
-    """
+    """Return the case of one variant."""
     values = {path: values[_broadcast_index(values.shape, index)] for path, values in columns.items()}
     plain = {path: value.item() if isinstance(value, np.generic) else value for path, value in values.items()}
     try:
@@ -223,20 +201,7 @@ def _broadcast_index(shape: Sequence[int], index: Index) -> Index:
 
 
 def compare(one: Any, batch: Any, index: Index, *where: str) -> None:
-    """Compare the numbers of one packed variant with those in a batch.
-
-    Parameters
-    ----------
-    one, batch
-        Packed problems, or parts, mappings, lists or single values of them.
-    index
-        Index of the variant in the grid of the batch.
-
-    Raises
-    ------
-    RuntimeError
-        If a number differs, because a formula of the model is not elementwise.
-    """
+    """Compare the numbers of one packed variant with those in a batch."""
     if isinstance(one, _core.Node):
         if type(one) is not type(batch):
             raise _mismatch(one, batch, index, where)

@@ -27,19 +27,7 @@ _HIDDEN = ("name", "kind", "title", "source")
 
 
 def input_tables(case: Case) -> list[Table]:
-    """Return the inputs of a case, one table for each part.
-
-    Parameters
-    ----------
-    case
-        The case.
-
-    Returns
-    -------
-    list of Table
-        Structure, dampers, tuned masses, loads, base, and the run itself. Lines of numbers that follow from the others are
-        first, in italics on the page (their names begin with "= ").
-    """
+    """Return the inputs of a case, one table for each part."""
     structure = case.structure
     tables = [Table(f"Structure: {_kind(structure)}", (), [*_structure_lines(case), *_lines(structure)])]
     for field, title in _PARTS.items():

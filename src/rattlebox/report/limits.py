@@ -30,13 +30,7 @@ ENERGY_BOUNDS = {
 
 
 def readable_case(run: Run) -> Case | None:
-    """Return the case of a run; None if a file that it names can no longer be read.
-
-    Parameters
-    ----------
-    run
-        The run.
-    """
+    """Return the case of a run; None if a file that it names can no longer be read."""
     try:
         return run.case
     except RattleboxError:
@@ -44,13 +38,7 @@ def readable_case(run: Run) -> Case | None:
 
 
 def run_limits(run: Run) -> Iterator[Limit]:
-    """Yield the limits of a run.
-
-    Parameters
-    ----------
-    run
-        The run.
-    """
+    """Yield the limits of a run."""
     case = readable_case(run)
     residual = run.energy_residual
     yield Limit(
@@ -79,13 +67,7 @@ def run_limits(run: Run) -> Iterator[Limit]:
 
 
 def mode_limits(case: Case) -> Iterator[Limit]:
-    """Yield the limit of the modes of the structure.
-
-    Parameters
-    ----------
-    case
-        The case.
-    """
+    """Yield the limit of the modes of the structure."""
     frequencies = case.structure.natural_frequencies
     if frequencies and case.structure.kind not in ("sdof", "shear_building"):
         yield Limit(

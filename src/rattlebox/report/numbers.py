@@ -8,17 +8,7 @@ from rattlebox._util.quantities import MISSING, PREFIXED_UNITS, amount, digits, 
 
 
 def with_interval(value: float, half: float, unit: str = "") -> str:
-    """Return a value with half of the width of its 95 % interval: "0.41 ± 0.02 mm".
-
-    Parameters
-    ----------
-    value
-        Number in SI units.
-    half
-        Half of the width; NaN for a value without interval.
-    unit
-        Its unit; "%" for a share.
-    """
+    """Return a value with half of the width of its 95 % interval: "0.41 ± 0.02 mm"."""
     if not (math.isfinite(value) and math.isfinite(half)):
         return amount(value, unit)
     divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
@@ -33,15 +23,7 @@ def with_interval(value: float, half: float, unit: str = "") -> str:
 
 
 def between(lower: float, upper: float, unit: str = "") -> str:
-    """Return the limits of an interval in one unit: "3.1 to 3.6 %".
-
-    Parameters
-    ----------
-    lower, upper
-        Limits in SI units.
-    unit
-        Their unit; "%" for shares.
-    """
+    """Return the limits of an interval in one unit: "3.1 to 3.6 %"."""
     if not (math.isfinite(lower) and math.isfinite(upper)):
         return MISSING
     divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)

@@ -56,27 +56,7 @@ class Described(NamedTuple):
 
 @dataclass(frozen=True)
 class Section:
-    """Content of the page about one result.
-
-    Attributes
-    ----------
-    title
-        Name of the result.
-    kind
-        Name of its kind.
-    question, answer
-        Sentences.
-    cases
-        Cases with drawing and inputs.
-    images
-        Figures.
-    tables
-        Tables of results.
-    warnings, limits, about
-        Warnings in full, limits of the method, and origin.
-    recipe
-        How to compute the result again.
-    """
+    """Content of the page about one result."""
 
     title: str
     kind: str
@@ -92,19 +72,7 @@ class Section:
 
 
 def section(result: Any, title: str, case: Case | None, question: str | None) -> Section:
-    """Return the section of the page about a result.
-
-    Parameters
-    ----------
-    result
-        See `write_report`.
-    title
-        Name of the result.
-    case
-        Case of a dataset that does not hold it.
-    question
-        Question in place of that of the kind.
-    """
+    """Return the section of the page about a result."""
     kind = kind_of(result)
     if case is not None and hasattr(result, "assign_attrs") and not isinstance(result.attrs.get("case"), str):
         result = result.assign_attrs(case=case.to_toml())
@@ -134,17 +102,7 @@ def section(result: Any, title: str, case: Case | None, question: str | None) ->
 
 
 def describe(name: str, case: Case, first: Described | None = None) -> Described:
-    """Return the drawing and the inputs of a case; of a further one the inputs that differ from those of the first.
-
-    Parameters
-    ----------
-    name
-        Name of the case in the report.
-    case
-        The case.
-    first
-        The first case, if this is a further one.
-    """
+    """Return the drawing and the inputs of a case; of a further one the inputs that differ from those of the first."""
     drawing = image(Picture(_drawing_caption(case), partial(plot_case, case))) if first is None else None
     tables = input_tables(case)
     if first is not None:
@@ -164,13 +122,7 @@ def _drawing_caption(case: Case) -> str:
 
 
 def image(picture: Picture) -> Image:
-    """Return a drawn figure with its caption: SVG, or PNG if that is smaller.
-
-    Parameters
-    ----------
-    picture
-        Figure to draw.
-    """
+    """Return a drawn figure with its caption: SVG, or PNG if that is smaller."""
     try:
         figure = picture.draw()
         return Image(data_url(figure), picture.caption, 25.4 * figure.get_figwidth())
@@ -180,13 +132,7 @@ def image(picture: Picture) -> Image:
 
 
 def data_url(figure: Figure) -> str:
-    """Return a figure as a data URL: a small drawing as SVG, a large one or a picture as PNG.
-
-    Parameters
-    ----------
-    figure
-        The figure.
-    """
+    """Return a figure as a data URL: a small drawing as SVG, a large one or a picture as PNG."""
     import matplotlib as mpl
 
     if not any(axes.images for axes in figure.axes):
@@ -202,15 +148,7 @@ def data_url(figure: Figure) -> str:
 
 
 def render(sections: list[Section], title: str) -> str:
-    """Return the page as self-contained HTML.
-
-    Parameters
-    ----------
-    sections
-        Results in the order of the page.
-    title
-        Title of the page.
-    """
+    """Return the page as self-contained HTML."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     from rattlebox import __version__
@@ -242,13 +180,7 @@ _TYPESET = (
 
 
 def typeset(text: str) -> Markup:
-    """Return a text as HTML, with powers of ten, exponents and minus signs.
-
-    Parameters
-    ----------
-    text
-        Plain text, also from files of the user.
-    """
+    """Return a text as HTML, with powers of ten, exponents and minus signs."""
     html = str(escape(printable(text)))
     for pattern, printed in _TYPESET:
         html = pattern.sub(printed, html)
@@ -261,13 +193,7 @@ def _download(text: str) -> str:
 
 
 def sections_of(result: Any, case: Case | None = None, question: str | None = None) -> Iterator[Section]:
-    """Yield a section for each result of a mapping, or for the only one.
-
-    Parameters
-    ----------
-    result, case, question
-        See `write_report`.
-    """
+    """Yield a section for each result of a mapping, or for the only one."""
     results: Mapping[str, Any] = {"": result}
     if isinstance(result, Mapping) and result and not hasattr(result, "data_vars"):
         try:

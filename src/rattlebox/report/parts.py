@@ -13,36 +13,14 @@ if TYPE_CHECKING:
 
 
 class Picture(NamedTuple):
-    """A figure of a report.
-
-    Attributes
-    ----------
-    caption
-        Content of the figure, in one or two sentences.
-    draw
-        Function that draws the figure.
-    """
+    """A figure of a report."""
 
     caption: str
     draw: Callable[[], Figure]
 
 
 class Table(NamedTuple):
-    """A table of a report.
-
-    Attributes
-    ----------
-    title
-        Title above the table; "" for none.
-    header
-        Titles of the columns; empty for none.
-    rows
-        Texts of each row. All columns but the first are aligned to the right if `numbers`.
-    note
-        Sentence below the table; "" for none.
-    numbers
-        Whether the columns after the first hold numbers.
-    """
+    """A table of a report."""
 
     title: str
     header: tuple[str, ...]
@@ -52,19 +30,7 @@ class Table(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """A limit of the method, with its value in this result.
-
-    Attributes
-    ----------
-    name
-        Approximation.
-    here
-        Value in this result, with its unit.
-    allowed
-        Largest allowed value; "" where no limit exists.
-    meaning
-        Meaning of the limit for the reader, and how to check it.
-    """
+    """A limit of the method, with its value in this result."""
 
     name: str
     here: str
@@ -73,21 +39,7 @@ class Limit(NamedTuple):
 
 
 class Call(NamedTuple):
-    """Call that computes a result again.
-
-    Attributes
-    ----------
-    function
-        Name of the function in `rattlebox`.
-    arguments
-        Its arguments after the case, by name, in types that TOML can write.
-    kind
-        Kind of the study file with these arguments; "" if no study file can start it.
-    remarks
-        Arguments that the call lacks, such as functions of the user.
-    first
-        Source of the first argument in place of the case, which follows as `case`, if there is one.
-    """
+    """Call that computes a result again."""
 
     function: str
     arguments: Mapping[str, Any] = {}
@@ -103,29 +55,7 @@ def nothing(result: Any) -> Iterable[Any]:
 
 @dataclass(frozen=True)
 class Kind:
-    """Content of the report about one kind of result; each function takes the result.
-
-    Attributes
-    ----------
-    name
-        Name of the kind, as a title.
-    cases
-        Cases that are drawn and listed, by name; "" if there is only one.
-    question
-        The question that the result answers, one sentence.
-    answer
-        Sentences with the main numbers and their 95 % intervals.
-    call
-        How to compute the result again; None if there is no such call.
-    pictures
-        Figures with captions.
-    tables
-        Tables of the main numbers.
-    warnings
-        Warnings of the runs in full.
-    limits
-        Limits of the method.
-    """
+    """Content of the report about one kind of result; each function takes the result."""
 
     name: str
     cases: Callable[[Any], Mapping[str, Case]]

@@ -18,17 +18,7 @@ _LIST = re.compile(r"\[\n((?: +[^\[\]{}\n]+,\n)+)\]")
 
 
 class File(NamedTuple):
-    """A text file that the page contains for download.
-
-    Attributes
-    ----------
-    name
-        File name.
-    content
-        Text.
-    shown
-        Text on the page, with long lists shortened.
-    """
+    """A text file that the page contains for download."""
 
     name: str
     content: str
@@ -36,17 +26,7 @@ class File(NamedTuple):
 
 
 class Recipe(NamedTuple):
-    """How to compute a result again.
-
-    Attributes
-    ----------
-    commands
-        Commands for a terminal.
-    files
-        Files that they use.
-    remarks
-        Sentences about arguments that are missing.
-    """
+    """How to compute a result again."""
 
     commands: tuple[str, ...]
     files: tuple[File, ...]
@@ -54,15 +34,7 @@ class Recipe(NamedTuple):
 
 
 def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
-    """Return commands and files that compute a result again.
-
-    Parameters
-    ----------
-    cases
-        Cases of the result by name; "" for the only one.
-    call
-        Call of a function of `rattlebox` with the case; None for runs that are compared, or if it is unknown.
-    """
+    """Return commands and files that compute a result again."""
     names = {name: _file_name(number, len(cases)) for number, name in enumerate(cases)}
     files = [File(names[name], case.to_toml(), case.short_toml()) for name, case in cases.items()]
     if call is None:

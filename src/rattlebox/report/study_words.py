@@ -32,31 +32,14 @@ _MAX_AXIS_WORDS = 4
 
 
 def cases_of(study: xr.Dataset) -> Mapping[str, Case]:
-    """Return the base case of a study.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-
-    Raises
-    ------
-    CaseError
-        If the dataset has no case, or a file that the case names is gone.
-    """
+    """Return the base case of a study."""
     if not isinstance(study.attrs.get("case"), str):
         raise Hint("the dataset does not hold its case", "the argument case")
     return {"": Case.from_toml(study.attrs["case"])}
 
 
 def axes_of(study: xr.Dataset) -> list[xr.DataArray]:
-    """Return the coordinates that vary, without those of repeated runs.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Return the coordinates that vary, without those of repeated runs."""
     repeated = replica_dims(study)
     return [
         coord
@@ -66,37 +49,17 @@ def axes_of(study: xr.Dataset) -> list[xr.DataArray]:
 
 
 def replica_dims(study: xr.Dataset | xr.DataArray) -> list[str]:
-    """Return the dimensions along which only the random start of the runs varies.
-
-    Parameters
-    ----------
-    study
-        Dataset or variable of a study.
-    """
+    """Return the dimensions along which only the random start of the runs varies."""
     return [str(dim) for dim in study.dims if str(dim) in (REPLICA, "packing") or str(dim).rpartition(".")[2] == "seed"]
 
 
 def axis_value(coord: xr.DataArray, value: Any) -> str:
-    """Return a value of an axis as text with its unit.
-
-    Parameters
-    ----------
-    coord
-        Coordinate of the study.
-    value
-        One of its values.
-    """
+    """Return a value of an axis as text with its unit."""
     return amount(float(value), unit_of(coord)) if coord.dtype.kind in "fiu" else str(value)
 
 
 def axis_words(coord: xr.DataArray) -> str:
-    """Return a phrase about an axis: "damper gap (5 values from 0.2 mm to 1 mm)".
-
-    Parameters
-    ----------
-    coord
-        Coordinate of the study.
-    """
+    """Return a phrase about an axis: "damper gap (5 values from 0.2 mm to 1 mm)"."""
     values = coord.values
     if values.dtype.kind not in "fiu":
         names = [str(each) for each in values]
@@ -106,13 +69,7 @@ def axis_words(coord: xr.DataArray) -> str:
 
 
 def axes_words(study: xr.Dataset) -> str:
-    """Return a phrase about all axes.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Return a phrase about all axes."""
     axes = axes_of(study)
     words = [axis_words(coord) for coord in axes[:_MAX_AXIS_WORDS]]
     if len(axes) > _MAX_AXIS_WORDS:
@@ -121,13 +78,7 @@ def axes_words(study: xr.Dataset) -> str:
 
 
 def measures_of(study: xr.Dataset) -> list[str]:
-    """Return the measures of a study: numbers over its axes, without intervals and statuses.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Return the measures of a study: numbers over its axes, without intervals and statuses."""
     over = set(study["status"].dims) if "status" in study else None
     return [
         str(name)
@@ -152,13 +103,6 @@ def estimate(study: xr.Dataset, name: str) -> Estimate:
 
     Repeated runs are averaged; the interval of their mean is that of Student. Otherwise it is the one of the time average in
     the run.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    name
-        Name of the measure.
     """
     values = study[name].astype(float)
     values = values.where(np.isfinite(values))
@@ -174,17 +118,7 @@ def estimate(study: xr.Dataset, name: str) -> Estimate:
 
 
 def place_words(study: xr.Dataset, values: xr.DataArray, index: int) -> str:
-    """Return the values of the axes at one place of a variable: "damper gap 0.4 mm, load amplitude 1 kN".
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    values
-        Variable over some of its axes.
-    index
-        Number of the place in C order.
-    """
+    """Return the values of the axes at one place of a variable: "damper gap 0.4 mm, load amplitude 1 kN"."""
     place = dict(zip(values.dims, np.unravel_index(index, values.shape), strict=True)) if values.ndim else {}
     words = []
     for coord in axes_of(study):
@@ -194,15 +128,7 @@ def place_words(study: xr.Dataset, values: xr.DataArray, index: int) -> str:
 
 
 def extremes(study: xr.Dataset, name: str) -> str:
-    """Return a sentence about the largest and the smallest value of a measure; empty if it has none.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    name
-        Name of the measure.
-    """
+    """Return a sentence about the largest and the smallest value of a measure; empty if it has none."""
     values, half = estimate(study, name)
     numbers, halves = values.values.ravel(), np.broadcast_to(half.values, values.shape).ravel()
     if not np.isfinite(numbers).any():
@@ -220,24 +146,12 @@ def extremes(study: xr.Dataset, name: str) -> str:
 
 
 def capitalised(text: str) -> str:
-    """Return a text with a capital letter at its beginning.
-
-    Parameters
-    ----------
-    text
-        Any text.
-    """
+    """Return a text with a capital letter at its beginning."""
     return text[:1].upper() + text[1:]
 
 
 def progress_sentence(study: xr.Dataset) -> str:
-    """Return a sentence about the variants that are not computed; empty if the study is complete.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Return a sentence about the variants that are not computed; empty if the study is complete."""
     if "status" not in study:
         return ""
     total = study["status"].size
@@ -252,13 +166,7 @@ def progress_sentence(study: xr.Dataset) -> str:
 
 
 def study_warnings(study: xr.Dataset) -> list[str]:
-    """Return the warnings of a study in full: statuses other than finished, refusals, exceeded limits.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Return the warnings of a study in full: statuses other than finished, refusals, exceeded limits."""
     counts = status_counts(study)
     lines = [line for line in status_lines(study) if line.startswith(("warning", "refused"))]
     failed = {name: count for name, count in counts.items() if name != "finished"}
@@ -271,13 +179,7 @@ def study_warnings(study: xr.Dataset) -> list[str]:
 
 
 def study_limits(study: xr.Dataset) -> Iterator[Limit]:
-    """Yield the limits that all studies share.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Yield the limits that all studies share."""
     try:
         case = next(iter(cases_of(study).values()))
     except RattleboxError:
@@ -331,15 +233,7 @@ def study_limits(study: xr.Dataset) -> Iterator[Limit]:
 
 
 def option_of(study: xr.Dataset, name: str) -> Any:
-    """Return an option of a study from the attributes of its dataset, None if it is not there.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    name
-        Name of the attribute: a value, or its JSON.
-    """
+    """Return an option of a study from the attributes of its dataset, None if it is not there."""
     value = study.attrs.get(name)
     if isinstance(value, str):
         with suppress(ValueError):  # a name, not JSON
@@ -348,15 +242,7 @@ def option_of(study: xr.Dataset, name: str) -> Any:
 
 
 def measure_table(study: xr.Dataset, names: Sequence[str]) -> Table:
-    """Return a table of the smallest and largest value of each measure.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    names
-        Names of the measures.
-    """
+    """Return a table of the smallest and largest value of each measure."""
     rows = []
     for name in names:
         values, _ = estimate(study, name)
@@ -368,13 +254,7 @@ def measure_table(study: xr.Dataset, names: Sequence[str]) -> Table:
 
 
 def axis_table(study: xr.Dataset) -> Table:
-    """Return a table of the axes of a study.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Return a table of the axes of a study."""
     rows = []
     repeated = replica_dims(study)
     for name, coord in study.coords.items():
@@ -391,13 +271,7 @@ def axis_table(study: xr.Dataset) -> Table:
 
 
 def study_about(study: xr.Dataset) -> Iterator[str]:
-    """Yield the version that computed a study, and when.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Yield the version that computed a study, and when."""
     attrs = study.attrs
     if "version" in attrs:
         created = f", started on {str(attrs['created'])[:16].replace('T', ' ')} UTC" if "created" in attrs else ""

@@ -34,13 +34,7 @@ _DTYPES: dict[Kind, Any] = {"float": np.float64, "int": np.int64, "bool": np.boo
 
 
 def same(a: Any, b: Any) -> bool:
-    """Return whether two values are equal to the last bit, where NaN equals NaN.
-
-    Parameters
-    ----------
-    a, b
-        Arrays, numbers, or mappings of them.
-    """
+    """Return whether two values are equal to the last bit, where NaN equals NaN."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
     if isinstance(a, (np.ndarray, float)) and isinstance(b, (np.ndarray, float)):
@@ -103,13 +97,7 @@ class _Frozen:
         return _rebuild, (type(self), dict(vars(self)))
 
     def replaced(self, **changes: Any) -> Self:
-        """Return a copy with some values replaced.
-
-        Parameters
-        ----------
-        **changes
-            New values, by name.
-        """
+        """Return a copy with some values replaced."""
         return type(self)(**{**vars(self), **changes})
 
 
@@ -124,19 +112,8 @@ class Table(_Frozen):
 
     Parameters
     ----------
-    group
-        Group of the columns, such as "impacts".
-    engine
-        Engine that wrote them.
     **columns : (N,) or (N, 3)
         All columns of the group; none for a table without rows.
-
-    Raises
-    ------
-    ValueError
-        If a column is missing, or columns differ in length.
-    TypeError
-        If an array has the wrong number type, or the group has no such column.
     """
 
     group: str
@@ -175,20 +152,6 @@ class RunArrays(_Frozen):
     ----------
     time : (T,) array_like
         Output times, strictly increasing [s].
-    engine
-        Engine that computed the run; it determines which variables and tables there are.
-    points, balls, dampers, loads
-        Labels. A ball is labelled "damper/number"; a point with three directions has three labels: "tip x", "tip y" and
-        "tip z".
-    **values
-        Variables by name; for the tables `impacts` and `particles` a `Table`, or its columns by name.
-
-    Raises
-    ------
-    ValueError
-        If a shape does not fit, times do not increase, or a label is empty or repeated.
-    TypeError
-        If an array has the wrong number type, or runs of this engine have no such variable.
     """
 
     engine: Engine
@@ -284,13 +247,7 @@ class RunArrays(_Frozen):
         return {dim: values for dim, values in known.items() if dim in dimensions(self.engine)}
 
     def contact_names(self, damper: int) -> tuple[str, ...]:
-        """Return the names of the contacts of a damper, in the order of the impact log's `contact`.
-
-        Parameters
-        ----------
-        damper
-            Damper, counted from 0.
-        """
+        """Return the names of the contacts of a damper, in the order of the impact log's `contact`."""
         balls = int(np.count_nonzero(self.ball_damper == damper))
         between = (f"ball {k} - ball {k + 1}" for k in range(1, balls))
         return ("trailing wall", *between, "leading wall") if balls else ()

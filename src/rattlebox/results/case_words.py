@@ -14,24 +14,12 @@ if TYPE_CHECKING:
 
 
 def each_damper(case: Case) -> tuple[ImpactDamper | ParticleDamper, ...]:
-    """Return all dampers of a case, each of several identical ones on its own.
-
-    Parameters
-    ----------
-    case
-        The case.
-    """
+    """Return all dampers of a case, each of several identical ones on its own."""
     return (*case.impact_dampers, *case.particle_dampers)
 
 
 def dampers_words(case: Case) -> str:
-    """Return a phrase about all dampers and tuned masses of a case; empty if there are none.
-
-    Parameters
-    ----------
-    case
-        The case.
-    """
+    """Return a phrase about all dampers and tuned masses of a case; empty if there are none."""
     phrases = [damper.words() for damper in each_damper(case)]
     phrases += [
         f"a tuned mass of {amount(part.mass, 'kg')} at {amount(part.frequency, 'Hz')}" for part in case.tuned_masses
@@ -41,13 +29,7 @@ def dampers_words(case: Case) -> str:
 
 
 def loads_words(case: Case) -> str:
-    """Return a phrase about the loads and the motion of the base; empty if there are none.
-
-    Parameters
-    ----------
-    case
-        The case.
-    """
+    """Return a phrase about the loads and the motion of the base; empty if there are none."""
     loads = [signal.words() for signal in case.loads]
     base = [f"{signal.words()} of the base" for signal in case.base]
     return joined([*loads, *base])

@@ -18,13 +18,6 @@ def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
 
     Samples of `cavity_force` miss most of the short contacts.
 
-    Parameters
-    ----------
-    arrays
-        Arrays of the run, of T output times.
-    case
-        Case of the run, which has the masses and the gravity.
-
     Returns
     -------
     (T - 1, D) or (T - 1, D, 3) float

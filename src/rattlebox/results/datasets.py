@@ -16,30 +16,14 @@ if TYPE_CHECKING:
 
 
 def columns(run: Record, group: str) -> dict[str, Any]:
-    """Return the values of all variables of a group, stored and derived, by name.
-
-    Parameters
-    ----------
-    run
-        Data of the run.
-    group
-        Group that the run has.
-    """
+    """Return the values of all variables of a group, stored and derived, by name."""
     engine = run.arrays.engine
     stored = run.arrays if groups(engine)[group].along == "time" else getattr(run.arrays, group)
     return {v.name: getattr(run.ledger if v.derived else stored, v.name) for v in variables(engine, group)}
 
 
 def dataset(run: Record, group: str) -> xarray.Dataset:
-    """Return the labelled dataset of a group; every variable has `units` and `long_name`.
-
-    Parameters
-    ----------
-    run
-        Data of the run; case and provenance are written to the attributes.
-    group
-        Group that the run has.
-    """
+    """Return the labelled dataset of a group; every variable has `units` and `long_name`."""
     import xarray
 
     engine = run.arrays.engine

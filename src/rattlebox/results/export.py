@@ -25,13 +25,7 @@ _DISK_HINT = "free disk space and write the file again"
 
 
 def as_cells(texts: Iterable[Any]) -> Any:
-    """Return texts as a column of cells of a MATLAB file.
-
-    Parameters
-    ----------
-    texts
-        Texts, or anything that is written as text.
-    """
+    """Return texts as a column of cells of a MATLAB file."""
     values = [str(text) for text in texts]
     cells = np.empty((len(values), 1), dtype=object)
     cells[:, 0] = values
@@ -39,13 +33,7 @@ def as_cells(texts: Iterable[Any]) -> Any:
 
 
 def as_column(values: Any) -> Any:
-    """Return a vector, also an empty one, as a column, and other arrays as they are.
-
-    Parameters
-    ----------
-    values
-        Array.
-    """
+    """Return a vector, also an empty one, as a column, and other arrays as they are."""
     return values[:, None] if values.ndim == 1 else values
 
 
@@ -55,25 +43,6 @@ def to_mat(run: Record, path: Path) -> Path:
     It holds a struct for each dataset of the run, such as `motion`, with a field for each variable and coordinate,
     `units` with the unit of each of those, and `info` with the case, the status and the provenance. Time runs
     along the first dimension; vectors are columns. Indices count from 0, as in all other files.
-
-    Parameters
-    ----------
-    run
-        Run to write.
-    path
-        File to write.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be written, or its suffix belongs to another kind of file.
-    ResourceError
-        If no space is left on the disk.
     """
     from scipy.io import savemat
 
@@ -142,25 +111,6 @@ def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:
 
     The first line holds the headers, "name label [unit]"; numbers are written with all digits. Variables without a value
     for each row (clearances, natural frequencies, final shares) are only in the other formats.
-
-    Parameters
-    ----------
-    run
-        Run to write.
-    folder
-        Folder to write to, created if missing.
-
-    Returns
-    -------
-    tuple of Path
-        The files.
-
-    Raises
-    ------
-    DataError
-        If a file cannot be written, the folder is a file, or a file was not written by Rattlebox or has changed since.
-    ResourceError
-        If no space is left on the disk.
     """
     check_suffix(folder, "")
     if folder.is_file():
@@ -177,24 +127,7 @@ def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:
 
 
 def write_table(run: Record, group: str, path: Path) -> None:
-    """Write a dataset of a run to a CSV file; see `to_csv`.
-
-    Parameters
-    ----------
-    run
-        Run to write.
-    group
-        Name of the dataset.
-    path
-        File to write.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be written, or must not be overwritten.
-    ResourceError
-        If no space is left on the disk.
-    """
+    """Write a dataset of a run to a CSV file; see `to_csv`."""
     import csv
 
     header, data = zip(*_columns(run, group), strict=True)

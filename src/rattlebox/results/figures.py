@@ -22,20 +22,7 @@ _REGISTRY: dict[str, _Entry] = {}
 
 
 def run_figure(name: str, needs: str = "motion") -> Callable[[Draw], Draw]:
-    """Register a function of a run as one of its figures.
-
-    Parameters
-    ----------
-    name
-        Name of the figure in `run.plot`.
-    needs
-        Group that a run must have for the figure.
-
-    Returns
-    -------
-    Callable
-        Decorator that registers the function and returns it.
-    """
+    """Register a function of a run as one of its figures."""
 
     def register(draw: Draw) -> Draw:
         _REGISTRY[name] = _Entry(draw, needs)
@@ -45,13 +32,7 @@ def run_figure(name: str, needs: str = "motion") -> Callable[[Draw], Draw]:
 
 
 class Plots:
-    """Figures of one run, as methods; `dir` lists those that the run has.
-
-    Parameters
-    ----------
-    run
-        Run to draw.
-    """
+    """Figures of one run, as methods; `dir` lists those that the run has."""
 
     def __init__(self, run: Record) -> None:
         self._run = run

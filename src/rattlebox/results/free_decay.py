@@ -30,17 +30,8 @@ def free_decay(arrays: RunArrays, amplitude: float | None = None, point: str | N
 
     Parameters
     ----------
-    arrays
-        Arrays of the run.
     amplitude
         Amplitude of the point [m]; default half of the largest one of the decay, or the middle of a shorter decay.
-    point
-        Point whose amplitude is meant; default the one that the mode moves most.
-
-    Returns
-    -------
-    Decay or None
-        None if there is no free decay, or it does not pass the amplitude, or passes it in less than a cycle.
 
     Notes
     -----

@@ -25,11 +25,6 @@ def _sum(values: FloatArray) -> FloatArray:
 class Ledger:
     """The energy ledger of a run: sums over its energies, each (T,) in J.
 
-    Parameters
-    ----------
-    arrays
-        Arrays of the run.
-
     Notes
     -----
     The energy balance is E(t) - E(0) = W(t) - L(t) with the total energy E (structure, particles, elastic contacts,
@@ -132,8 +127,6 @@ class Ledger:
 
         Parameters
         ----------
-        limit
-            Largest allowed `energy_residual`.
         floor
             Residual [J] that counts as rounding, added to 1e-10 of the largest energy of the run.
         """

@@ -166,29 +166,7 @@ def _write(run: Record, target: IO[bytes]) -> None:
 
 
 def save(run: Record, path: Path, *, replace: bool = True) -> Path:
-    """Write a run to a netCDF-4 file; the new file replaces an existing one when it is complete.
-
-    Parameters
-    ----------
-    run
-        Run to write.
-    path
-        File to write.
-    replace
-        Whether an existing file may be replaced.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be written, or its suffix belongs to another kind of file.
-    ResourceError
-        If no space is left on the disk.
-    """
+    """Write a run to a netCDF-4 file; the new file replaces an existing one when it is complete."""
     check_suffix(path, ".nc")
     require_folder(path)
     # HDF5 crashes the process if it cannot flush its buffers to a full disk, so it writes to memory.
@@ -207,44 +185,12 @@ def _text_attribute(value: Any) -> str:
 
 
 def read(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Read the data of a run from a file that `save` wrote.
-
-    Parameters
-    ----------
-    path
-        netCDF-4 file.
-
-    Returns
-    -------
-    dict
-        Arguments of `Run`.
-
-    Raises
-    ------
-    DataError
-        If the file does not exist, cannot be read, is not a run of Rattlebox, is damaged, or has another format.
-    """
+    """Read the data of a run from a file that `save` wrote."""
     return _read_file(Path(path), _read_run)
 
 
 def read_case(path: str | os.PathLike[str]) -> str:
-    """Read only the case from a file that `Run.save` wrote.
-
-    Parameters
-    ----------
-    path
-        netCDF-4 file.
-
-    Returns
-    -------
-    str
-        Text of the case file.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read; see `load`.
-    """
+    """Read only the case from a file that `Run.save` wrote."""
     return _read_file(Path(path), lambda file: _read_text(file, "case"), blocks=("/",))
 
 

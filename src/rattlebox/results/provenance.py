@@ -8,21 +8,7 @@ from functools import cache
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Origin of a run.
-
-    Attributes
-    ----------
-    version
-        Version of Rattlebox that computed the run.
-    method
-        Method of the engine, in one line.
-    seed
-        Seed of the case.
-    created
-        Date and time in UTC, ISO 8601.
-    platform
-        Operating system, machine and Python version.
-    """
+    """Origin of a run."""
 
     version: str = ""
     method: str = ""
@@ -32,15 +18,7 @@ class Provenance:
 
     @classmethod
     def now(cls, method: str = "", seed: int = 0) -> Provenance:
-        """Return the provenance of a run on this machine at the current time.
-
-        Parameters
-        ----------
-        method
-            Method of the engine, in one line.
-        seed
-            Seed of the case.
-        """
+        """Return the provenance of a run on this machine at the current time."""
         import platform
         from datetime import UTC, datetime
 

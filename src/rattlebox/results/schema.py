@@ -24,19 +24,7 @@ PARTNERS: tuple[str, ...] = ("particle", "wall")
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """One dimension of the variables.
-
-    Attributes
-    ----------
-    name
-        Name in datasets and files.
-    long_name
-        Meaning in a few words.
-    units
-        SI unit of the coordinate, "1" for pure numbers, "" for names.
-    engines
-        Engines whose runs have the dimension; variables of other runs lack it.
-    """
+    """One dimension of the variables."""
 
     name: str
     long_name: str
@@ -46,21 +34,7 @@ class Dimension:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """One dataset of a run.
-
-    Attributes
-    ----------
-    name
-        Name of the attribute of a run and of the group in files.
-    title
-        One line about the content.
-    along
-        Dimension of the rows; variables without it have one value per run.
-    engines
-        Engines whose runs have the group.
-    absent
-        Message for other runs: the reason, and an alternative.
-    """
+    """One dataset of a run."""
 
     name: str
     title: str
@@ -71,31 +45,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One variable of a run.
-
-    Attributes
-    ----------
-    name
-        Name of the array, and of the variable in datasets and files.
-    group
-        Dataset of the variable.
-    dims
-        Names of the dimensions, in order.
-    units
-        SI unit, "1" for pure numbers.
-    long_name
-        Meaning in a few words, fit for an axis label.
-    kind
-        Number type.
-    engines
-        Engines that write the variable.
-    derived
-        Whether the energy ledger computes the variable from others.
-    cumulative
-        Whether the variable is an integral from the start of the run.
-    coordinate
-        Whether the variable is a coordinate of its dataset.
-    """
+    """One variable of a run."""
 
     name: str
     group: str
@@ -277,15 +227,7 @@ def groups(engine: Engine) -> dict[str, Group]:
 
 @cache
 def variables(engine: Engine, group: str | None = None) -> tuple[Variable, ...]:
-    """Return the variables that an engine writes, without the dimensions that its runs lack.
-
-    Parameters
-    ----------
-    engine
-        Engine of the run.
-    group
-        Group of the variables; default all.
-    """
+    """Return the variables that an engine writes, without the dimensions that its runs lack."""
     known = dimensions(engine)
     return tuple(
         replace(v, dims=tuple(dim for dim in v.dims if dim in known))

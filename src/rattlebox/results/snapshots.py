@@ -104,13 +104,7 @@ class Frame:
 
 
 def is_snapshots(path: Path) -> bool:
-    """Return whether a file is a snapshot file of Rattlebox, intact or damaged.
-
-    Parameters
-    ----------
-    path
-        An existing file.
-    """
+    """Return whether a file is a snapshot file of Rattlebox, intact or damaged."""
     import h5py  # type: ignore[import-untyped]
 
     with path.open("rb") as file:
@@ -143,20 +137,12 @@ class SnapshotFile:
 
     Parameters
     ----------
-    path
-        File to write.
     times : (n,)
         Times of all snapshots [s].
     places : (D, 3)
         Position at which each cavity is drawn [m]. A case does not define positions of cavities.
     fixed
         Arrays "radius", "mass", "cavity" and "species" of the particles, (N,).
-    walls
-        Surface of each cavity.
-    case_toml
-        Text of the case file.
-    numbers
-        Fingerprint of the run.
     """
 
     def __init__(
@@ -181,15 +167,7 @@ class SnapshotFile:
         self._case, self._numbers = case_toml, numbers
 
     def create(self) -> None:
-        """Create the file without snapshots; it replaces an earlier one.
-
-        Raises
-        ------
-        DataError
-            If the path holds anything but snapshots, or the file cannot be written.
-        ResourceError
-            If no space is left on the disk.
-        """
+        """Create the file without snapshots; it replaces an earlier one."""
         import h5py
 
         if os.path.lexists(self.path) and not (self.path.is_file() and is_snapshots(self.path)):
@@ -270,28 +248,14 @@ class SnapshotFile:
         return polygons
 
     def sync(self) -> None:
-        """Flush the snapshots to the disk.
-
-        Raises
-        ------
-        DataError
-            If they cannot be written.
-        ResourceError
-            If no space is left on the disk.
-        """
+        """Flush the snapshots to the disk."""
         if self.path.exists():
             with disk_errors(self.path, _DISK_HINT):
                 sync(self.path)
 
     @property
     def written(self) -> int:
-        """Number of snapshots of this run in the file; 0 without a file.
-
-        Raises
-        ------
-        DataError
-            If the file holds anything else, or is damaged.
-        """
+        """Number of snapshots of this run in the file; 0 without a file."""
         if not self.path.exists():
             return 0
         stored = Snapshots(self.path)
@@ -299,22 +263,7 @@ class SnapshotFile:
         return len(stored) if same else 0
 
     def append(self, number: int, cavities: Sequence[_core.CavityState], contacts: Sequence[_core.ContactList]) -> None:
-        """Write the next snapshot.
-
-        Parameters
-        ----------
-        number
-            Index of the snapshot; those before it must exist.
-        cavities, contacts
-            State of the particles and their contacts, for each cavity.
-
-        Raises
-        ------
-        DataError
-            If the snapshot cannot be written.
-        ResourceError
-            If no space is left on the disk.
-        """
+        """Write the next snapshot."""
         import h5py
 
         displacement = np.array([each.displacement for each in cavities])

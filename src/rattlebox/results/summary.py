@@ -236,13 +236,7 @@ def _base_velocity(arrays: RunArrays) -> Any:
 
 
 def is_driven(arrays: RunArrays) -> bool:
-    """Return whether a load or the base motion acts in the last tenth of a run.
-
-    Parameters
-    ----------
-    arrays
-        Arrays of the run.
-    """
+    """Return whether a load or the base motion acts in the last tenth of a run."""
     late = arrays.time >= arrays.time[0] + 0.9 * (arrays.time[-1] - arrays.time[0])
     for values in (arrays.load, arrays.base_acceleration.reshape(arrays.time.size, -1)):
         if values.size and np.abs(values[late]).max() > 1e-3 * np.abs(values).max():
@@ -405,13 +399,6 @@ def largest_points(peaks: ArrayLike, count: int) -> list[int]:
     ----------
     peaks
         Largest displacement of each point, (P,) [m].
-    count
-        Largest number of points.
-
-    Returns
-    -------
-    list of int
-        Indices of the points in rising order; if all are at rest, the first ones.
     """
     highest = np.asarray(peaks, dtype=float)
     moves = ~(highest <= _ROUNDING * highest.max(initial=0.0, where=np.isfinite(highest)))
@@ -474,13 +461,7 @@ class _Report:
         return Group(table, *notes)
 
     def show(self, file: TextIO | None = None) -> None:
-        """Print a table in a terminal, plain text otherwise.
-
-        Parameters
-        ----------
-        file
-            Output stream; default standard output.
-        """
+        """Print a table in a terminal, plain text otherwise."""
         from rich.console import Console
 
         console = Console(file=file)
@@ -496,11 +477,6 @@ class Summary(_Report):
     `print(summary)` prints plain text, `rich.print(summary)` a table, `summary.show()` a table in a terminal. Peak and RMS
     displacement are evaluated at the output times, relative to the base. The text lists the four points with the largest
     motion; `values` has all.
-
-    Parameters
-    ----------
-    run
-        Run to summarise.
 
     Attributes
     ----------
@@ -533,27 +509,13 @@ class Summary(_Report):
 class Comparison(_Report):
     """Summaries of several runs in one table, one column per run.
 
-    Parameters
-    ----------
-    runs
-        Runs by column name.
-    title
-        Title of the table.
-
     Attributes
     ----------
-    runs : dict
-        The runs.
     values : dict
         For each name the `values` of that run's summary; for all but the first also `peak_reduction[point]` and
         `rms_reduction[point]`, one minus the ratio to the first. If no load or base motion acts at the end of any run,
         `settling_time[point]`, after which the displacement is at most 5 % of the peak of the first run; NaN if that is not
         reached.
-
-    Raises
-    ------
-    ValueError
-        If there is no run.
     """
 
     def __init__(self, runs: Mapping[str, Record], title: str = "") -> None:
@@ -576,23 +538,5 @@ class Comparison(_Report):
 
 
 def compare(runs: Mapping[str, Record], title: str = "") -> Comparison:
-    """Compare the summaries of several runs in one table.
-
-    Parameters
-    ----------
-    runs
-        Runs by column name.
-    title
-        Title of the table.
-
-    Returns
-    -------
-    Comparison
-        `str()` gives plain text, rich prints a table, `.show()` picks one, `.values` holds the numbers.
-
-    Raises
-    ------
-    ValueError
-        If there is no run.
-    """
+    """Compare the summaries of several runs in one table."""
     return Comparison(runs, title)

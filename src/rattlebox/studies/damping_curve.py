@@ -61,16 +61,8 @@ class CurveMode:
 
     Attributes
     ----------
-    number
-        Index of the mode, from 0.
     omega
         Natural angular frequency [rad/s].
-    ratio
-        Damping ratio of the structure alone.
-    point
-        Name of the point to which the amplitudes refer.
-    shape
-        Mode shape at the point in the direction of its motion [kg^-1/2].
     axis : (3,) float or None
         Direction of the motion of a point with three directions.
     """
@@ -220,18 +212,7 @@ def damping_curve_cases(
     packings: int = 4,
     cycles: tuple[int, int] | None = None,
 ) -> list[Case]:
-    """Return the cases that `damping_curve` runs; decays that begin too low are repeated with a larger amplitude.
-
-    Parameters
-    ----------
-    case, amplitudes, way, mode, point, packings, cycles
-        See `damping_curve`.
-
-    Raises
-    ------
-    CaseError
-        If an argument is not valid for the case.
-    """
+    """Return the cases that `damping_curve` runs; decays that begin too low are repeated with a larger amplitude."""
     levels, about, cases = _prepared(case, amplitudes, way, mode, point, packings)
     if way == "shaking":
         return _shaken_variants(cases, about, levels, cycles or CYCLES)[0]
@@ -269,15 +250,8 @@ def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = No
 
     Parameters
     ----------
-    amplitudes
-        See `damping_curve`.
     omega
         Angular frequency at which accelerations are converted [rad/s]; None if only displacements are allowed.
-
-    Raises
-    ------
-    CaseError
-        If there are fewer than two, or they do not rise.
     """
 
     def displacement(amplitude: Any) -> float:
@@ -306,20 +280,7 @@ def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = No
 
 
 def mode_of(case: Case, number: int, point: str | None) -> CurveMode:
-    """Return the mode of a damping curve.
-
-    Parameters
-    ----------
-    case
-        Case with the structure.
-    number, point
-        See `damping_curve`.
-
-    Raises
-    ------
-    CaseError
-        If the structure has no such mode or point, or the mode does not move the point.
-    """
+    """Return the mode of a damping curve."""
     modes = case.structure.modes()
     if not modes.stiffness.size:
         raise Hint(f"a {case.structure.kind} structure has no modes", "SDOF, Modal, Matrices or a built-in structure")
@@ -345,20 +306,7 @@ def mode_of(case: Case, number: int, point: str | None) -> CurveMode:
 
 
 def random_starts(case: Case, count: int) -> list[Case]:
-    """Return copies of the case without loads, with different random initial states.
-
-    Parameters
-    ----------
-    case
-        The case.
-    count
-        Number of copies.
-
-    Raises
-    ------
-    CaseError
-        If the initial state has no random part.
-    """
+    """Return copies of the case without loads, with different random initial states."""
     rng = np.random.default_rng(case.seed)
     cases, random = [], not case.dampers
     for number in range(count):
@@ -396,23 +344,8 @@ def ratios_of_decays(
 
     Parameters
     ----------
-    cases
-        Case with each start.
-    mode
-        The mode.
     levels : (A,) float
         Amplitudes [m].
-    way
-        "decay" or "energy".
-    evaluate
-        Function that simulates cases and applies another function to each run; see `evaluate_cases`.
-    remarks
-        Gets the warnings of the runs.
-
-    Raises
-    ------
-    CaseError
-        If a run fails.
     """
     highest = float(band_edges(levels)[1][-1])
     begin = _MARGIN * highest

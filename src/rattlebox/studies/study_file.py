@@ -52,43 +52,13 @@ def read_study(path: str | os.PathLike[str]) -> Study:
         tables as above; `parameters` of a design and `bounds` of a sensitivity are tables of
         `"damper.gap" = { from = "0.1 mm", to = "2 mm" }`, with `spacing = "log"` for a search in the logarithm, or of lists
         to choose from.
-
-    Returns
-    -------
-    Study
-        The study; `run()` runs it.
-
-    Raises
-    ------
-    CaseError
-        If the file cannot be read, or a field is not valid; the message names the field, its value and what is allowed.
     """
     file = Path(path)
     return study_from_toml(_text(file), source=str(file), folder=file.parent)
 
 
 def study_from_toml(content: str, *, source: str = "study", folder: Path | None = None) -> Study:
-    """Read a study from the text of a study file.
-
-    Parameters
-    ----------
-    content
-        TOML text; see `read_study`.
-    source
-        Name of the file, for messages.
-    folder
-        Folder to which paths in the text are relative; default the current folder.
-
-    Returns
-    -------
-    Study
-        The study.
-
-    Raises
-    ------
-    CaseError
-        If a field is not valid.
-    """
+    """Read a study from the text of a study file."""
     given = _read(content, source)
     try:
         if "structure" in given and "case" not in given:

@@ -22,13 +22,7 @@ _MOST_DENSE = 400  # degrees of freedom up to which a dense solver is used
 
 
 def _read_arrays(path: Path, kind: str) -> dict[str, Any]:
-    """Return the arrays of a file, see `ansys_arrays`.
-
-    Raises
-    ------
-    DataError
-        If the file is not of this kind, has swapped bytes, or is damaged.
-    """
+    """Return the arrays of a file, see `ansys_arrays`."""
     start = read_start(path, 8)
     words = struct.unpack("<ii", start) if len(start) == 8 else (0, 0)
     if words[0] != 100:
@@ -51,24 +45,7 @@ def _read_once(path: Path, kind: str, modified: int, size: int) -> dict[str, Any
 
 
 def read_result(path: Path) -> ModesInFile:
-    """Read the modes of an Ansys result file.
-
-    Parameters
-    ----------
-    path
-        An existing .rst file of a modal analysis.
-
-    Returns
-    -------
-    ModesInFile
-        The modes, assumed to be mass-normalised.
-
-    Raises
-    ------
-    DataError
-        If the file is damaged or not of a modal analysis, or if all shapes have a largest component of 1, so that the modal
-        masses are unknown.
-    """
+    """Read the modes of an Ansys result file."""
     with errors_of(path, "a result of Ansys"):
         result = _read_arrays(path, "rst")
         if result["analysis"] != 2:
@@ -102,24 +79,6 @@ def read_result(path: Path) -> ModesInFile:
 
 def read_full(path: Path, count: int) -> ModesInFile:
     """Read the matrices of an Ansys .full file and compute their lowest modes.
-
-    Parameters
-    ----------
-    path
-        An existing .full file.
-    count
-        Number of modes.
-
-    Returns
-    -------
-    ModesInFile
-        Mass-normalised modes, and their participation in motions of the base along x, y and z, without the mass at the
-        supports.
-
-    Raises
-    ------
-    DataError
-        If the file is damaged, or contains no mass matrix.
 
     Notes
     -----
@@ -167,8 +126,6 @@ def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, Flo
     ----------
     stiffness, mass : (n, n) sparse array
         K and M, symmetric.
-    count
-        Number of modes.
 
     Returns
     -------
@@ -176,11 +133,6 @@ def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, Flo
         Squared angular frequencies [rad^2/s^2], ascending; those of rigid-body modes are exactly zero.
     (n, m) float
         Mass-normalised mode shapes.
-
-    Raises
-    ------
-    DataError
-        If M is not positive definite, or K not positive semidefinite.
 
     Notes
     -----

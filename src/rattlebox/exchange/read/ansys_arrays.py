@@ -18,20 +18,7 @@ _FORMATS = {"rst": 12, "full": 4}
 
 
 def copy_arrays(kind: str, path: str, output: str) -> None:
-    """Write the arrays of a file to a NPZ file.
-
-    Parameters
-    ----------
-    kind
-        "rst" or "full".
-    path, output
-        The Ansys file, and the NPZ file to write.
-
-    Raises
-    ------
-    SystemExit
-        If the file is not of this kind, is cut short, or cannot be read; with the reason.
-    """
+    """Write the arrays of a file to a NPZ file."""
     reader: Any = import_module("ansys.mapdl.reader")
 
     try:

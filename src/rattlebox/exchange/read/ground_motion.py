@@ -33,10 +33,6 @@ class GroundMotion:
         Time between samples [s].
     values : (n,) float
         Samples, in `unit`.
-    unit
-        Unit as the file states it after "units of", such as "G"; "" if it does not.
-    lines
-        Numbers and texts of the lines of the header, which may state the unit otherwise.
     """
 
     step: float
@@ -47,21 +43,6 @@ class GroundMotion:
 
 def read_ground_motion(path: Path) -> GroundMotion:
     """Read an AT2 file.
-
-    Parameters
-    ----------
-    path
-        An existing file: up to twelve lines of text, the last with NPTS and DT, then the samples row by row.
-
-    Returns
-    -------
-    GroundMotion
-        Time step, samples and unit.
-
-    Raises
-    ------
-    DataError
-        If the file is not an AT2 file of an acceleration, or contains another number of samples than it states.
 
     Notes
     -----

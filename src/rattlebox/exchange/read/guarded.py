@@ -35,15 +35,7 @@ _SHOWN, _LONGEST = 200, 1000  # characters of a message of another library, and 
 
 @contextmanager
 def errors_of(path: str | os.PathLike[str], what: str) -> Iterator[None]:
-    """Raise a DataError with the name of the file for each error of a reader in the block that is none of Rattlebox.
-
-    Parameters
-    ----------
-    path
-        The file.
-    what
-        Kind of the file, such as "a universal file".
-    """
+    """Raise a DataError with the name of the file for each error of a reader in the block that is none of Rattlebox."""
     try:
         yield
     except DataError as error:
@@ -64,20 +56,7 @@ def errors_of(path: str | os.PathLike[str], what: str) -> Iterator[None]:
 
 
 def arrays_from_child(path: Path, kind: str) -> dict[str, Any]:
-    """Return the arrays that a script of `IN_CHILD` reads from a file, in a process with limits of memory and time.
-
-    Parameters
-    ----------
-    path
-        The file.
-    kind
-        Format, a key of `IN_CHILD`.
-
-    Raises
-    ------
-    DataError
-        If the reader refuses the file, crashes, or exceeds a limit.
-    """
+    """Return the arrays that a script of `IN_CHILD` reads from a file, in a process with limits of memory and time."""
     size = path.stat().st_size
     seconds = LEAST_TIME + size / BYTES_PER_SECOND
     memory = max(LEAST_MEMORY, MEMORY_PER_BYTE * size)

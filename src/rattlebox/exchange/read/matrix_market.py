@@ -28,20 +28,10 @@ _WHOLE = "the complete file"
 def read_matrix(path: Path) -> FloatArray:
     """Read a square real matrix.
 
-    Parameters
-    ----------
-    path
-        An existing file in Matrix Market format, with coordinates or as an array, general or symmetric.
-
     Returns
     -------
     (n, n) float
         The matrix, dense.
-
-    Raises
-    ------
-    DataError
-        If the file is damaged, or the matrix is complex, not square, not finite or too large.
 
     References
     ----------

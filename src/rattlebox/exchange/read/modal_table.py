@@ -28,26 +28,7 @@ _MASS = {"": None, "kg": 1.0, "g": 1e-3, "t": 1e3}
 
 
 def read_modal_table(path: Path) -> ModesInFile:
-    """Read a table of modes from a CSV file.
-
-    Parameters
-    ----------
-    path
-        An existing file. The first line names the columns: "frequency (Hz)", "damping (%)", "modal mass (kg)",
-        "participation" (or "participation x", "y", "z"); every other column is the mode shape at a point, "tip", or one of
-        its components, "tip x", "tip y", "tip z". A column that numbers the modes ("mode", "no.") is left out. Lines that
-        begin with # are comments.
-
-    Returns
-    -------
-    ModesInFile
-        The modes. Without a column of modal masses the shapes are assumed to be mass-normalised.
-
-    Raises
-    ------
-    DataError
-        If the file is not such a table; with the line and the column at fault.
-    """
+    """Read a table of modes from a CSV file."""
     with errors_of(path, "a table of modes"):
         read_start(path, 64)
         try:

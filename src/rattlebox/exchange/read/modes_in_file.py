@@ -35,8 +35,6 @@ class ModesInFile:
         Mass that a rigid motion of the base along x, y and z moves, in the file's unit of mass, if the file states it.
     mass_unit
         The file's unit of mass [kg]; None if the file does not state it.
-    notes
-        Assumptions, in whole sentences.
     """
 
     frequencies: FloatArray
@@ -56,13 +54,7 @@ def listed(labels: Sequence[str]) -> str:
 
 
 def read_start(path: Path, size: int) -> bytes:
-    """Return the first bytes of a file.
-
-    Raises
-    ------
-    DataError
-        If the file cannot be read, or is empty.
-    """
+    """Return the first bytes of a file."""
     try:
         with path.open("rb") as file:
             start = file.read(size)

@@ -40,19 +40,10 @@ class Function:
 
     Attributes
     ----------
-    name
-        Name in the file.
-    kind
-        Type of the function: 1 time response, 4 frequency response, 9 power spectral density.
     abscissa : (n,) float
         Times [s] or frequencies [Hz].
     values : (n,) float or complex
         Values, in `unit`, or `unit` over `source_unit`.
-    unit, source_unit
-        Units of response and source (excitation) in the file; "" if it states none.
-    quantities
-        Codes of the quantities of response and source: 8 displacement, 11 velocity, 12 acceleration, 9 and 13 force,
-        0 unknown.
     """
 
     name: str
@@ -65,13 +56,7 @@ class Function:
 
 
 def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()) -> list[dict[str, Any]]:
-    """Return the data sets of these kinds, of which one is needed, and of further kinds.
-
-    Raises
-    ------
-    DataError
-        If the file is not a universal file, is damaged, or has no such set.
-    """
+    """Return the data sets of these kinds, of which one is needed, and of further kinds."""
     read_start(path, 64)
     with path.open("rb") as stream:
         stream.seek(-min(path.stat().st_size, _TAIL), 2)
@@ -101,23 +86,6 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
 
 def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile:
     """Read the normal modes of a universal file.
-
-    Parameters
-    ----------
-    path
-        An existing file with sets 55 or 2414 of normal modes and, for the units, 164.
-    needs_units
-        Whether units that contradict each other are an error; else they are left out.
-
-    Returns
-    -------
-    ModesInFile
-        The modes, with modal masses.
-
-    Raises
-    ------
-    DataError
-        If there are no normal modes, modes are complex or cover different nodes, or the units contradict their code.
 
     Notes
     -----
@@ -188,13 +156,7 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
 
 
 def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str, ...]:
-    """Return a note if a node has displacements along the axes of a system that the file does not define.
-
-    Raises
-    ------
-    DataError
-        If a node has displacements along other axes than the global ones.
-    """
+    """Return a note if a node has displacements along the axes of a system that the file does not define."""
     turned: dict[int, str] = {}
     known = {0, 1}  # 1 is the global Cartesian system of most programs
     for each in sets:
@@ -309,21 +271,6 @@ def _mass_unit(path: Path, sets: list[dict[str, Any]], is_needed: bool) -> float
 
 def read_functions(path: Path) -> list[Function]:
     """Read the functions of the sets 58 and 58b of a universal file.
-
-    Parameters
-    ----------
-    path
-        An existing file.
-
-    Returns
-    -------
-    list of Function
-        The functions, in the order of the file.
-
-    Raises
-    ------
-    DataError
-        If there is none, or one has another number of points than it states, or values outside any measurement's range.
 
     See Also
     --------

@@ -32,18 +32,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
 
 
 def kind_of(result: Any) -> Kind:
-    """Return the kind of a result; datasets without one of their own are reported as sweeps.
-
-    Parameters
-    ----------
-    result
-        A run, a comparison, the dataset of a study, or datasets of `rb.damping_curve` by name.
-
-    Raises
-    ------
-    CaseError
-        If there is no report about it.
-    """
+    """Return the kind of a result; datasets without one of their own are reported as sweeps."""
     module, name = KINDS[_name(result)]
     kind: Kind = getattr(import_module(f"{__name__}.{module}"), name)
     return kind

@@ -50,13 +50,7 @@ def _question(run: Run) -> str:
 
 
 def case_question(case: Case) -> str:
-    """Return the question that a run of a case answers.
-
-    Parameters
-    ----------
-    case
-        The case.
-    """
+    """Return the question that a run of a case answers."""
     dampers, loads = dampers_words(case), loads_words(case)
     what = case.structure.words()
     if case.structure.kind in ("shaker", "fixed"):
@@ -73,13 +67,7 @@ def _answer(run: Run) -> Iterator[str]:
 
 
 def attached_points(run: Run) -> list[str]:
-    """Return the names of the points of tuned masses.
-
-    Parameters
-    ----------
-    run
-        The run.
-    """
+    """Return the names of the points of tuned masses."""
     case = readable_case(run)
     if case is None:
         return []
@@ -87,15 +75,7 @@ def attached_points(run: Run) -> list[str]:
 
 
 def result_sentences(values: Mapping[str, Value], leave_out: Sequence[str] = ()) -> Iterator[str]:
-    """Yield sentences about the values of the summary of a run.
-
-    Parameters
-    ----------
-    values
-        Values of `Run.summary`.
-    leave_out
-        Names of points that are not mentioned.
-    """
+    """Yield sentences about the values of the summary of a run."""
     numbers = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
     prefix, hidden = "peak_displacement[", {f"peak_displacement[{name}]" for name in leave_out}
     peaks = {name: value for name, value in numbers.items() if name.startswith(prefix) and name not in hidden}

@@ -24,13 +24,7 @@ _MAX_PICTURES = 6
 
 
 def system_words(study: xr.Dataset) -> str:
-    """Return a phrase about the case of a study; "the system" if it is unknown.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    """
+    """Return a phrase about the case of a study; "the system" if it is unknown."""
     try:
         case = next(iter(words.cases_of(study).values()))
     except ValueError:  # CaseError
@@ -94,13 +88,7 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
 
 
 def axes_argument(study: xr.Dataset) -> dict[str, Any] | None:
-    """Return the axes of a study as its function takes them; None if the dataset does not hold them.
-
-    Parameters
-    ----------
-    study
-        Dataset with the attribute `design`, the description of its grid.
-    """
+    """Return the axes of a study as its function takes them; None if the dataset does not hold them."""
     try:
         design = json.loads(study.attrs["design"])
     except (KeyError, TypeError, ValueError):
@@ -122,15 +110,7 @@ def axes_argument(study: xr.Dataset) -> dict[str, Any] | None:
 
 
 def options_of(study: xr.Dataset, *names: str) -> dict[str, Any]:
-    """Return the options of a study in its attributes that are not at their defaults.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    *names
-        Names of the options.
-    """
+    """Return the options of a study in its attributes that are not at their defaults."""
     options = {}
     for name in names:
         value = words.option_of(study, name)
@@ -140,15 +120,7 @@ def options_of(study: xr.Dataset, *names: str) -> dict[str, Any]:
 
 
 def measures_argument(study: xr.Dataset, usual: Sequence[str] = ()) -> tuple[list[str], tuple[str, ...]]:
-    """Return the measures of a study as its function takes them, and a remark for each function of the user.
-
-    Parameters
-    ----------
-    study
-        Dataset of a study.
-    usual
-        Names of measures that the study has without being asked.
-    """
+    """Return the measures of a study as its function takes them, and a remark for each function of the user."""
     given = [each for each in options_of(study, "measures").get("measures", []) if each not in usual]
     functions = [each.partition(" ")[0] for each in given if " " in each]
     remarks = tuple(f"{name} is a function of yours: add it to measure" for name in functions)

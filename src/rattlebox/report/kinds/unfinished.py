@@ -23,12 +23,8 @@ class UnfinishedRun:
 
     Attributes
     ----------
-    case_toml
-        Text of its case.
     time, seconds
         Simulated time and computing time so far [s].
-    snapshots
-        Snapshots so far, if there are any.
     """
 
     case_toml: str

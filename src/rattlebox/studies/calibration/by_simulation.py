@@ -48,21 +48,7 @@ _PROFILE, _MAP = 101, 61
 
 @dataclass(eq=False)
 class Calibration:
-    """A calibration by simulations.
-
-    Attributes
-    ----------
-    case, runs, checks, seed, store, progress
-        See `rattlebox.calibrate`.
-    space
-        Ranges of the parameters.
-    simulations
-        Simulation of each measurement.
-    where
-        Backend and workers.
-    warnings
-        Warnings so far.
-    """
+    """A calibration by simulations."""
 
     case: Case
     space: Space
@@ -101,13 +87,7 @@ class Calibration:
         return max(least_points(self.space.size), int(np.bincount(self.sets).max()) + _MORE_RUNS)
 
     def validate(self) -> None:
-        """Raise if the data or the runs do not suffice, or the case cannot be simulated.
-
-        Raises
-        ------
-        CaseError
-            If they do not.
-        """
+        """Raise if the data or the runs do not suffice, or the case cannot be simulated."""
         least = max(2, self.space.size)
         if self.measured.size < least:
             raise Hint(
@@ -138,11 +118,6 @@ class Calibration:
         ----------
         budget
             Longest wall time [s].
-
-        Raises
-        ------
-        CaseError
-            If more is predicted.
         """
         if budget is None and self.progress is not True:
             return

@@ -40,12 +40,8 @@ class Fit:
 
     Attributes
     ----------
-    space
-        Ranges of the parameters.
     low, high : (d,) float
         Corners of the region, as points of the space.
-    agreement
-        chi^2 over the region.
     """
 
     space: Space
@@ -68,16 +64,10 @@ class Fit:
 
         Parameters
         ----------
-        space
-            Ranges of the parameters.
-        corners
-            Corners of the region.
         points : (N, d) float
             Points of the space in the region.
         simulated : (N, M) float
             Values at these points.
-        measured, error, sets
-            See `Agreement`.
         """
         low, high = corners
         surfaces = Surfaces.fit((points - low) / (high - low), simulated)

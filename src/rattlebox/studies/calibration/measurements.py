@@ -39,19 +39,8 @@ def read_column(place: str | tuple[str | int, ...], values: Any, units: tuple[st
 
     Parameters
     ----------
-    place
-        Name of the argument, and numbers in it.
     values
         A list of numbers in SI units, texts with units, or quantities; a pair (numbers, unit); or a single value.
-    units
-        SI units that are allowed; () for values without unit.
-    least
-        Number that all values must exceed.
-
-    Raises
-    ------
-    CaseError
-        If there is no value, or one is not a finite number above `least` with an allowed unit.
     """
     place = (place,) if isinstance(place, str) else place
     shared = None
@@ -102,17 +91,8 @@ def read_error(value: Any, measured: FloatArray, units: tuple[str, ...]) -> Floa
 
     Parameters
     ----------
-    value
-        Text in per cent for a share of each value, or one or several uncertainties in the unit of the values.
     measured : (M,) float
         The values.
-    units
-        Their unit; () for pure numbers.
-
-    Raises
-    ------
-    CaseError
-        If it is not valid, not one or M numbers, or not smaller than a value.
     """
     items = [value] if isinstance(value, str) else value
     if isinstance(items, (list, tuple)) and all(isinstance(each, str) and "%" in each for each in items):
@@ -447,18 +427,7 @@ Losses = RingDown | ShakerLoss
 
 
 def read_data(data: Any) -> tuple[list[Contacts], list[Losses]]:
-    """Return the measurements of single impacts, and those of losses.
-
-    Parameters
-    ----------
-    data
-        One measurement or several.
-
-    Raises
-    ------
-    CaseError
-        If there is none, or they are of both kinds.
-    """
+    """Return the measurements of single impacts, and those of losses."""
     items = list(data) if isinstance(data, Sequence) and not isinstance(data, str) else [data]
     example = 'rb.Drops(height="300 mm", rebound=["192 mm", "189 mm", "194 mm"])'
     if not items:
@@ -478,13 +447,7 @@ def read_data(data: Any) -> tuple[list[Contacts], list[Losses]]:
 
 
 def source_of(data: Contacts | Losses) -> str:
-    """Return the Python source of a measurement, with numbers in SI units.
-
-    Parameters
-    ----------
-    data
-        The measurement.
-    """
+    """Return the Python source of a measurement, with numbers in SI units."""
     if isinstance(data, Drops):
         parts = {"height": (data.height, "m"), "rebound": (data.rebound, "m"), "ball": data.ball, "error": data.error}
     elif isinstance(data, BounceTimes):

@@ -43,8 +43,6 @@ class Surfaces:
         Coefficients; those of terms above the degree of a polynomial are zero.
     errors : (N, M) float
         Differences of the results from the polynomials through all other points.
-    freedom
-        Number of points minus that of the terms, the smallest of all.
     """
 
     powers: NDArray[np.int64]
@@ -123,14 +121,10 @@ class Agreement:
 
     Attributes
     ----------
-    surfaces
-        The surfaces.
     measured, error : (M,) float
         Measured values, and their standard uncertainties.
     sets : (M,) int
         Number of the measurement to which each value belongs. Simulated values of a measurement scatter together.
-    known
-        Parameters that are known from elsewhere.
     """
 
     surfaces: Surfaces
@@ -272,15 +266,7 @@ class Region:
         return np.asarray(covariance / np.outer(deviation, deviation))
 
     def combination(self, i: int, j: int) -> tuple[float, float, float]:
-        """Return the best-known sum of two parameters, u_i + k u_j.
-
-        Returns
-        -------
-        k : float
-            Factor of the second one.
-        mean, deviation : float
-            Weighted mean and standard deviation of the sum.
-        """
+        """Return the best-known sum of two parameters, u_i + k u_j."""
         mean, covariance = self.moments
         pair = covariance[np.ix_((i, j), (i, j))]
         first, second = np.linalg.eigh(pair)[1][:, 0]

@@ -47,8 +47,6 @@ class Impacts(NamedTuple):
         Approach speed [m/s].
     restitution : (N,) float
         Restitution.
-    error
-        Standard uncertainty of the sum of the logarithms of all, from that of the readings; NaN if it is not given.
     """
 
     speed: FloatArray
@@ -102,10 +100,6 @@ def speed_after_fall(height: FloatArray, ball: Sphere, *, rising: bool = False) 
     ----------
     height : (N,) float
         Heights [m].
-    ball
-        The sphere.
-    rising
-        Whether the sphere rises, so that drag and weight have the same direction.
 
     Notes
     -----
@@ -135,16 +129,6 @@ def speed_after_fall(height: FloatArray, ball: Sphere, *, rising: bool = False) 
 
 def restitution_of(data: Sequence[Contacts]) -> xarray.Dataset:
     """Return the restitution of all measurements with its 95 % interval.
-
-    Parameters
-    ----------
-    data
-        The measurements.
-
-    Raises
-    ------
-    CaseError
-        If a single impact without the uncertainty of its readings is given.
 
     Notes
     -----
@@ -191,14 +175,8 @@ class Trend(NamedTuple):
 
     Attributes
     ----------
-    exponent
-        q.
-    half
-        Half of the width of its 95 % interval; NaN if it is unknown.
     slowest, fastest
         Range of the approach speeds [m/s].
-    is_significant
-        Whether the restitution depends on the speed.
     """
 
     exponent: float

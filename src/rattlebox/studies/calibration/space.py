@@ -33,14 +33,10 @@ class Space:
 
     Attributes
     ----------
-    paths, units
-        Paths of the parameters and their SI units.
     low, high : (d,) float
         Smallest and largest values.
     is_log : (d,) bool
         Whether a range is logarithmic.
-    known
-        Value of a parameter that is known from elsewhere, and half of the width of its 95 % interval, by path.
     """
 
     paths: list[str]
@@ -52,20 +48,7 @@ class Space:
 
     @classmethod
     def of(cls, case: Case, parameters: Any, log: Any, known: Any) -> Space:
-        """Return the ranges of a call.
-
-        Parameters
-        ----------
-        case
-            Case with the parameters.
-        parameters, log, known
-            See `rattlebox.calibrate`.
-
-        Raises
-        ------
-        CaseError
-            If they are not valid for the case.
-        """
+        """Return the ranges of a call."""
         if not isinstance(parameters, Mapping) or not parameters:
             example = '{"damper.contact.restitution": (0.5, 0.95)}'
             raise Hint("a mapping of paths to pairs (smallest, largest) is required", example, ["parameters"])

@@ -58,8 +58,6 @@ class Decay:
 
     Attributes
     ----------
-    data
-        The measurement.
     levels : (M,) float
         Amplitudes as displacements [m].
     """
@@ -107,17 +105,7 @@ class Decay:
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
-    """Simulation of losses on a shaker.
-
-    Attributes
-    ----------
-    data
-        The measurement.
-    grid
-        Points of the measurement, for a case on the shaker.
-    direction
-        Direction of the shaker, for dampers in 3-D.
-    """
+    """Simulation of losses on a shaker."""
 
     data: ShakerLoss
     grid: Grid
@@ -208,20 +196,7 @@ Simulation = Decay | Shaken
 
 
 def simulation_of(data: Losses, case: Case) -> Simulation:
-    """Return the simulation of a measurement.
-
-    Parameters
-    ----------
-    data
-        The measurement.
-    case
-        Case with the damper.
-
-    Raises
-    ------
-    CaseError
-        If the case cannot show what was measured.
-    """
+    """Return the simulation of a measurement."""
     if isinstance(data, RingDown):
         return Decay.of(data, case)
     return Shaken.of(data, case)
@@ -229,17 +204,7 @@ def simulation_of(data: Losses, case: Case) -> Simulation:
 
 @dataclass(eq=False)
 class CalibrationWork:
-    """Simulations of all measurements over samples of the parameters.
-
-    Attributes
-    ----------
-    case, grid
-        Base case, and the samples of its parameters.
-    simulations
-        Simulation of each measurement.
-    first
-        Number of the random start of the first sample.
-    """
+    """Simulations of all measurements over samples of the parameters."""
 
     case: Case
     grid: Grid
@@ -288,13 +253,7 @@ class CalibrationWork:
         return random_starts(self.case, self.first + self.size)[self.first :]
 
     def variant(self, index: int) -> Case:
-        """Return the case of a sample.
-
-        Raises
-        ------
-        CaseError
-            If its values are not valid together.
-        """
+        """Return the case of a sample."""
         return self.grid.case_at(self._starts[index], index)
 
     def run(

@@ -84,12 +84,6 @@ class Evaluation:
         Objectives that need runs, and half of the widths of their 95 % intervals.
     packings : (objectives, P) float
         Their values for each packing.
-    missing
-        Share of runs without a value.
-    warnings
-        Exceeded limits, as bits in the order of `FLAGS`.
-    reason
-        Why the trial is not feasible, or "".
     """
 
     values: Vector
@@ -106,26 +100,8 @@ class DesignSearch:
 
     Attributes
     ----------
-    case
-        Base case.
-    variables, objectives
-        Parameters and objectives.
-    levels
-        Axes of load levels, directions and start positions; None for one level.
-    packings
-        Axis of the random packings, with the dimension `PACKING`; None for a single one.
-    count
-        Number of packings.
-    robust
-        Reduction over levels, start positions and amplitudes.
     limit
         Largest mass of the dampers [kg].
-    curve
-        Settings of damping curves, if an objective needs them.
-    options
-        Window of the measures, as for `rb.sweep`.
-    where
-        Backend, workers and progress of the runs, as arguments of `run_work`.
     """
 
     case: Case
@@ -269,13 +245,7 @@ class DesignSearch:
         return [{each.name: each.sample(generator) for each in self.variables} for _ in range(count)]
 
     def case_of(self, values: Values) -> Case:
-        """Return the case of a design.
-
-        Raises
-        ------
-        CaseError
-            If the values are not valid together, or with the levels.
-        """
+        """Return the case of a design."""
         changes = [each.in_case(values[each.name]) for each in self.variables]
         case = replaced(self.case, {path: value for change in changes for path, value in change.items()})
         self.grid_of(case)  # raises if a level is not valid for the case
@@ -292,13 +262,7 @@ class DesignSearch:
     # ---- cost
 
     def predict(self, trials: int) -> Budget:
-        """Return the predicted cost of a number of trials.
-
-        Parameters
-        ----------
-        trials
-            Number of trials.
-        """
+        """Return the predicted cost of a number of trials."""
         designs = self.sample(_SAMPLED)
         runs = 0
         groups: list[RunGroup] = []
@@ -421,8 +385,6 @@ class DesignSearch:
 
         Parameters
         ----------
-        objective
-            The objective.
         values : (levels, P) float
             Its values.
         half : (levels, P) float or None
@@ -448,13 +410,7 @@ class DesignSearch:
     # ---- result
 
     def result(self, trials: Sequence[Any]) -> xr.Dataset:
-        """Return the dataset of all trials and of the Pareto front.
-
-        Parameters
-        ----------
-        trials
-            Finished trials of Optuna with the user attributes that `rattlebox.studies.kinds.design` sets.
-        """
+        """Return the dataset of all trials and of the Pareto front."""
         import xarray as xr
 
         about = {

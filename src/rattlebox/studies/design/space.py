@@ -32,23 +32,6 @@ class DesignVariable:
 
     Values are those that Optuna handles: numbers, and labels of choices. A choice sets one parameter, or several that vary
     together.
-
-    Attributes
-    ----------
-    name
-        Path of the parameter, or name of the parameters that vary together.
-    bounds
-        Smallest and largest value in SI units; None for choices.
-    choices
-        Values by path, by label; empty for bounds.
-    shown
-        Values of the coordinates of the result by path, by label; empty for bounds.
-    log
-        Whether the search is uniform in the logarithm.
-    whole
-        Whether values between the bounds are whole numbers.
-    attrs
-        Attributes of the coordinates in the result, by path.
     """
 
     name: str
@@ -66,24 +49,7 @@ class DesignVariable:
 
     @classmethod
     def read(cls, case: Case, key: Any, values: Any, log: Sequence[str]) -> DesignVariable:
-        """Read a pair of bounds, a list of choices, or lists of parameters that vary together.
-
-        Parameters
-        ----------
-        case
-            Case with the parameters.
-        key
-            Path of the parameter, or several paths or a name of parameters that vary together (see `rb.sweep`).
-        values
-            A tuple of two values, a list to choose from, or several lists.
-        log
-            Paths of parameters whose search is uniform in the logarithm.
-
-        Raises
-        ------
-        CaseError
-            If a value is not valid for its parameter.
-        """
+        """Read a pair of bounds, a list of choices, or lists of parameters that vary together."""
         if isinstance(key, tuple) or isinstance(values, Mapping):
             lists = values.values() if isinstance(values, Mapping) else values
             if any(isinstance(each, tuple) for each in lists):
@@ -193,15 +159,7 @@ def _check_start(column: Column) -> None:
 
 @dataclass(frozen=True)
 class Objective:
-    """One objective of a design search.
-
-    Attributes
-    ----------
-    measure
-        Name of a measure, or function of a Run.
-    maximise
-        Whether the measure is maximised.
-    """
+    """One objective of a design search."""
 
     measure: str | Callable[[Run], float]
     maximise: bool
@@ -218,19 +176,7 @@ class Objective:
 
 
 def read_objectives(objective: Any) -> list[Objective]:
-    """Return the objectives of a search with their directions.
-
-    Parameters
-    ----------
-    objective
-        A measure, a list of measures, or a mapping of measures to "min" or "max". Without a direction all are minimised but
-        the damping ratio.
-
-    Raises
-    ------
-    CaseError
-        If there is no objective, or a direction is not valid.
-    """
+    """Return the objectives of a search with their directions."""
     if isinstance(objective, str) or not hasattr(objective, "__iter__"):
         objective = [objective]
     if not isinstance(objective, Mapping):

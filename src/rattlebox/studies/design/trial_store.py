@@ -52,25 +52,7 @@ class _NoLock:
 
 @contextmanager
 def trial_storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]:
-    """Open the journal of a store, to which each trial appends lines.
-
-    Parameters
-    ----------
-    optuna
-        The module.
-    store
-        Folder of the study; None for a study in memory.
-
-    Yields
-    ------
-    optuna.storages.JournalStorage or None
-        The storage; None in memory.
-
-    Raises
-    ------
-    StoreError
-        If the folder holds another study.
-    """
+    """Open the journal of a store, to which each trial appends lines."""
     if store is None:
         yield None
         return
@@ -86,13 +68,7 @@ def trial_storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator
 
 
 def count_trials(path: str | os.PathLike[str]) -> int | None:
-    """Return the number of finished trials in the store of a design; None if it holds no design.
-
-    Parameters
-    ----------
-    path
-        Folder of the design.
-    """
+    """Return the number of finished trials in the store of a design; None if it holds no design."""
     journal = Path(path) / "progress" / JOURNAL
     if not journal.exists():
         return None
@@ -100,18 +76,7 @@ def count_trials(path: str | os.PathLike[str]) -> int | None:
 
 
 def open_trials(path: str | os.PathLike[str]) -> xr.Dataset | None:
-    """Return the finished trials of a design that is not finished; None without Optuna.
-
-    Parameters
-    ----------
-    path
-        Folder of the design.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `trial`: the parameters, the objectives, and the `reason` why a trial is not feasible.
-    """
+    """Return the finished trials of a design that is not finished; None without Optuna."""
     import xarray as xr
 
     try:
@@ -138,26 +103,7 @@ def open_trials(path: str | os.PathLike[str]) -> xr.Dataset | None:
 
 
 def load_study(optuna: Any, storage: Any, directions: Sequence[str], description: Mapping[str, Any], store: Any) -> Any:
-    """Return an Optuna study with the earlier trials of its storage.
-
-    Parameters
-    ----------
-    optuna
-        The module.
-    storage
-        Storage of the study; None in memory.
-    directions
-        "minimize" or "maximize" for each objective.
-    description
-        Description of the search in JSON types.
-    store
-        Folder of the study, for messages.
-
-    Raises
-    ------
-    StoreError
-        If the storage holds the trials of another search.
-    """
+    """Return an Optuna study with the earlier trials of its storage."""
     about = json.loads(json.dumps(description))
     study = optuna.create_study(
         storage=storage,

@@ -14,21 +14,7 @@ from rattlebox.studies.run.budget import Budget
 
 
 class Trials:
-    """Trials of a design search: those that are finished, and the next one.
-
-    Parameters
-    ----------
-    optuna
-        The module.
-    study
-        Study of Optuna.
-    search
-        The search.
-    seed
-        Random seed.
-    wanted
-        Number of trials; None for all combinations, or the default.
-    """
+    """Trials of a design search: those that are finished, and the next one."""
 
     def __init__(self, optuna: Any, study: Any, search: DesignSearch, seed: int, wanted: int | None) -> None:
         self._optuna, self._study, self._search, self._seed = optuna, study, search, seed
@@ -58,13 +44,7 @@ class Trials:
         return {**predicted, "wall_time": wall, **({"cpu_time": cpu} if own else {})}
 
     def store_prediction(self, left: Budget) -> None:
-        """Store the predicted times of all trials, if this is their first prediction.
-
-        Parameters
-        ----------
-        left
-            Prediction for the trials that are left.
-        """
+        """Store the predicted times of all trials, if this is their first prediction."""
         if self._study.user_attrs.get("predicted", {}).get("trials") != self.total:
             scale = self.total / left.trials
             times = {"predicted_cpu_time": scale * left.cpu_time, "predicted_wall_time": scale * left.wall_time}

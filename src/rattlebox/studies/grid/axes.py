@@ -34,18 +34,7 @@ _EXAMPLE = '{"damper.gap": rb.linspace("0.1 mm", "2 mm", 20)}'
 
 
 def read_axes(case: Case, axes: Axes, *, source: str = "axes") -> Grid:
-    """Return the grid of variants that axes describe, and check its extreme variants.
-
-    Parameters
-    ----------
-    case, axes, source
-        See `parse_axes`.
-
-    Raises
-    ------
-    CaseError
-        If a path, a value or a variant is not valid.
-    """
+    """Return the grid of variants that axes describe, and check its extreme variants."""
     return parse_axes(case, axes, source=source).grid(case)
 
 
@@ -54,20 +43,11 @@ def parse_axes(case: Case, axes: Axes, *, source: str = "axes") -> ParsedAxes:
 
     Parameters
     ----------
-    case
-        Base case.
     axes
         A mapping, a random design, replicas, parsed axes, or a list of these, whose dimensions form the grid. A mapping
         has one dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
         together; or `name: {path: values, ...}` for the same with a name of the dimension. Values are a list or an
         array of numbers in SI units, text with units, names or parts; or `linspace`, `geomspace`.
-    source
-        Name of the axes in messages.
-
-    Raises
-    ------
-    CaseError
-        If a path or a value is not valid.
     """
     try:
         return ParsedAxes(source, _Reader(case, source).directions(axes))
@@ -101,15 +81,7 @@ class _Direction:
 
 @dataclass(frozen=True, eq=False)
 class ParsedAxes:
-    """Axes with parsed values, for cases with the same parameters.
-
-    Attributes
-    ----------
-    source
-        Name of the axes in messages.
-    directions
-        Dimensions with their values.
-    """
+    """Axes with parsed values, for cases with the same parameters."""
 
     source: str
     directions: list[_Direction]
@@ -121,19 +93,7 @@ class ParsedAxes:
                 raise Hint(f"two dimensions are called {name!r}", '{"a name": {path: values, path: values}}')
 
     def grid(self, case: Case) -> Grid:
-        """Return the grid of variants of a case, and check its extreme variants.
-
-        Parameters
-        ----------
-        case
-            Base case.
-
-        Raises
-        ------
-        CaseError
-            If the case lacks a parameter, a parameter has another unit than in the case for which the axes were parsed, or
-            a variant is not valid.
-        """
+        """Return the grid of variants of a case, and check its extreme variants."""
         try:
             number_of_variants(math.prod(direction.size for direction in self.directions), "number of variants")
             directions = [direction.of(case) for direction in self.directions]

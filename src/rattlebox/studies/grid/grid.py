@@ -26,18 +26,7 @@ _LISTED = 16
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """The variants of a case: a grid, along each dimension of which one or several parameters vary.
-
-    Attributes
-    ----------
-    dims : tuple of str
-        Names of the dimensions; the last one varies fastest.
-    shape : tuple of int
-        Lengths of the dimensions.
-    columns : dict of str to array
-        Values by path, broadcastable to `shape`: float64 in SI units, or objects as in a Case. Start positions are
-        fractions of the gap.
-    """
+    """The variants of a case: a grid, along each dimension of which one or several parameters vary."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -54,13 +43,7 @@ class Grid:
         return dict(self._coords)
 
     def values_at(self, index: int) -> dict[str, Any]:
-        """Return the values of one variant by path.
-
-        Parameters
-        ----------
-        index
-            Number of the variant in C order of the grid.
-        """
+        """Return the values of one variant by path."""
         if not 0 <= index < self.size:
             raise Hint(f"{index} is not the number of a variant", f"0 to {self.size - 1}")
         place = np.unravel_index(index, self.shape)
@@ -71,20 +54,7 @@ class Grid:
         return {path: float(value) if isinstance(value, float) else value for path, value in members.items()}
 
     def case_at(self, case: Case, index: int) -> Case:
-        """Return the case of one variant.
-
-        Parameters
-        ----------
-        case
-            Base case.
-        index
-            Number of the variant in C order of the grid.
-
-        Raises
-        ------
-        CaseError
-            If there is no such variant, or its parts are not valid together.
-        """
+        """Return the case of one variant."""
         return replaced(case, self.values_at(index))
 
     def describe_variant(self, case: Case, index: int) -> str:
@@ -136,13 +106,7 @@ def _plain(value: Any) -> Any:
 
 
 def labels(items: Column) -> Column:
-    """Return different labels for different objects.
-
-    Parameters
-    ----------
-    items
-        Objects of a column.
-    """
+    """Return different labels for different objects."""
     different = {id(item): item for item in items}
     texts = {key: _label(item) for key, item in different.items()}
     first: dict[str, Any] = {}

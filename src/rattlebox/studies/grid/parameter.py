@@ -36,24 +36,7 @@ class Values:
 
 
 class Parameter:
-    """A parameter of a case, addressed by its path.
-
-    Parameters
-    ----------
-    case
-        The case.
-    path
-        Path such as "damper.gap": names of fields, and numbers in lists.
-    source
-        Origin of the values, for messages.
-    materials
-        Materials by name, in addition to the library.
-
-    Raises
-    ------
-    CaseError
-        If the case has no such parameter.
-    """
+    """A parameter of a case, addressed by its path."""
 
     def __init__(self, case: Case, path: Any, source: str, materials: dict[str, Material]) -> None:
         if not isinstance(path, str):
@@ -75,18 +58,7 @@ class Parameter:
         return not self.inner and _numbers(type(self.part).model_fields[self.name].annotation) == {int}
 
     def check_independent(self, others: Iterable[Parameter]) -> None:
-        """Raise if other parameters are the same as this one, or exclude it.
-
-        Parameters
-        ----------
-        others
-            Parameters that vary with this one.
-
-        Raises
-        ------
-        CaseError
-            If one of them is the same parameter, or an alternative to it.
-        """
+        """Raise if other parameters are the same as this one, or exclude it."""
         for other in others:
             if other.place == self.place:
                 raise Hint(f"{self.path} varies twice" + (f", also as {other.path}" if other.path != self.path else ""))
@@ -95,20 +67,7 @@ class Parameter:
                 raise Hint(f"{other.path} and {self.path} exclude each other", "one of them")
 
     def read(self, value: Any, which: int | str | None = None) -> Any:
-        """Return a value as the case stores it.
-
-        Parameters
-        ----------
-        value
-            The value.
-        which
-            Index or name of the value, for messages.
-
-        Raises
-        ------
-        CaseError
-            If the value is not valid.
-        """
+        """Return a value as the case stores it."""
         content = {self.name: _put(get_field(self.part, self.name), self.inner, value)}
         try:
             result = getattr(
@@ -124,20 +83,7 @@ class Parameter:
         return result
 
     def number(self, value: Any, which: int | str | None = None) -> tuple[float, str] | None:
-        """Return a value in SI units with its unit; None if it is not a number.
-
-        Parameters
-        ----------
-        value
-            The value.
-        which
-            Index or name of the value, for messages.
-
-        Raises
-        ------
-        CaseError
-            If the value is not valid.
-        """
+        """Return a value in SI units with its unit; None if it is not a number."""
         if isinstance(self.part, Signal) and self.name == "amplitude":
             # The field itself would accept the units of other signals.
             try:
@@ -159,37 +105,13 @@ class Parameter:
         return float(result), self.unit or "1"
 
     def ends(self, low: Any, high: Any, names: Sequence[str | int] = (0, 1)) -> tuple[float, float, str]:
-        """Return the ends of a range in SI units with their unit.
-
-        Parameters
-        ----------
-        low, high
-            The ends.
-        names
-            Indices or names of the ends, for messages.
-
-        Raises
-        ------
-        CaseError
-            If an end is not a valid number, or the units differ.
-        """
+        """Return the ends of a range in SI units with their unit."""
         if self.unit is None:
             raise self.wrong("its values are not numbers", "a list of values")
         return self.ends_of(self.number(low, names[0]), self.number(high, names[1]))
 
     def ends_of(self, start: tuple[float, str] | None, stop: tuple[float, str] | None) -> tuple[float, float, str]:
-        """Return the ends of a range with their unit from two results of `number`.
-
-        Parameters
-        ----------
-        start, stop
-            The ends.
-
-        Raises
-        ------
-        CaseError
-            If an end is not a number, or the units differ.
-        """
+        """Return the ends of a range with their unit from two results of `number`."""
         if self.unit is None or start is None or stop is None:
             raise self.wrong("its values are not numbers", "a list of values")
         if start[1] != stop[1]:
@@ -197,19 +119,7 @@ class Parameter:
         return start[0], stop[0], start[1]
 
     def values(self, given: Any) -> Values:
-        """Validate a list of values.
-
-        Parameters
-        ----------
-        given
-            Spaced values, or a list or an array of values of the parameter. Of plain numbers only the smallest and the
-            largest are validated.
-
-        Raises
-        ------
-        CaseError
-            If the list is empty, or a value is not valid.
-        """
+        """Validate a list of values."""
         if isinstance(given, Spaced):
             start, stop, unit = self.ends(given.start, given.stop, given.names)
             try:

@@ -17,27 +17,7 @@ if TYPE_CHECKING:
 
 
 def robust_axes(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
-    """Return the axes of load levels and start positions; an empty list for one run.
-
-    Parameters
-    ----------
-    case
-        Base case.
-    levels
-        Axes as for `rb.sweep`.
-    starts
-        Start positions of the single ball, or the number of evenly spaced ones from wall to wall.
-
-    Returns
-    -------
-    list
-        Axes for `read_axes`.
-
-    Raises
-    ------
-    CaseError
-        If the case has not exactly one ball, or `starts` is a number below 2.
-    """
+    """Return the axes of load levels and start positions; an empty list for one run."""
     axes = list(levels) if isinstance(levels, (list, tuple)) else [] if levels is None else [levels]
     if starts is not None:
         if [len(damper.balls) for damper in case.impact_dampers] != [1]:
@@ -48,20 +28,7 @@ def robust_axes(case: Case, levels: Any = None, starts: int | Sequence[Any] | No
 
 
 def packing_axis(case: Case, count: int) -> dict[str, Any]:
-    """Return an axis "packing" along which the random packings of all particle dampers vary together.
-
-    Parameters
-    ----------
-    case
-        Base case; its seeds are the first ones.
-    count
-        Number of packings.
-
-    Raises
-    ------
-    CaseError
-        If no packing has a random seed.
-    """
+    """Return an axis "packing" along which the random packings of all particle dampers vary together."""
     seeds: dict[str, list[int]] = {}
     for index, damper in enumerate(case.dampers):
         packing = damper.packing if isinstance(damper, ParticleDamper) else None

@@ -22,13 +22,7 @@ MOST_VARIANTS = 10**8
 
 
 def number_of_variants(value: Any, name: str = "count") -> int:
-    """Return a number of values or variants.
-
-    Raises
-    ------
-    CaseError
-        If it is not a whole number from 1 to `MOST_VARIANTS`.
-    """
+    """Return a number of values or variants."""
     count = whole_number(value, name, 1)
     if count > MOST_VARIANTS:
         raise Hint(
@@ -49,13 +43,7 @@ class Spaced:
     names: tuple[str, str] = ("start", "stop")  # names of the ends in messages
 
     def values(self, start: float, stop: float) -> Vector:
-        """Return the values between two ends in SI units, (count,).
-
-        Raises
-        ------
-        CaseError
-            If `log` is set and an end is zero or the signs differ.
-        """
+        """Return the values between two ends in SI units, (count,)."""
         count = number_of_variants(self.count)  # also of study files
         if not self.log:
             return np.linspace(start, stop, count)

@@ -25,23 +25,7 @@ def compared(
     tolerance: float,
     options: Mapping[str, Any],
 ) -> xarray.Dataset:
-    """Return the measures of variants, and their changes from the last one.
-
-    Parameters
-    ----------
-    variants
-        Cases, of which the last is the reference.
-    measures
-        Names of measures.
-    seeds
-        Axis of the random packings.
-    coordinate
-        Name, values and unit of what differs between the variants.
-    tolerance
-        Accepted relative change.
-    options
-        Arguments of `sweep`.
-    """
+    """Return the measures of variants, and their changes from the last one."""
     import xarray
 
     along, values, unit = coordinate

@@ -257,13 +257,7 @@ class Design(Study):
         )
 
     def _check_budget(self, search: DesignSearch, trials: Trials) -> None:
-        """Predict the time of the trials that are left, and print it.
-
-        Raises
-        ------
-        CaseError
-            If it exceeds the budget.
-        """
+        """Predict the time of the trials that are left, and print it."""
         left = trials.total - trials.done
         if not left:
             return
@@ -284,13 +278,7 @@ class Design(Study):
         trials.store_prediction(predicted)
 
     def _out_of_time(self, trials: Trials) -> dict[str, str]:
-        """Return the attribute of a search that the budget ended.
-
-        Raises
-        ------
-        CaseError
-            If no trial is finished.
-        """
+        """Return the attribute of a search that the budget ended."""
         given = duration(float(self.budget or 0))
         if not trials.done:
             raise Hint(f"the budget of {given} ended before the first trial", "a longer budget, or fewer levels")

@@ -181,13 +181,7 @@ class LyapunovWork:
         return {name: value for name, value in self.__dict__.items() if name != "sweep"}
 
     def validate(self) -> None:
-        """Raise if the arguments are not valid for the case.
-
-        Raises
-        ------
-        CaseError
-            If they are not.
-        """
+        """Raise if the arguments are not valid for the case."""
         packed = self.sweep.packed
         if self.count < 2:
             raise CaseError("one evaluated cycle is one step; at least two steps are required", "steps = 100")

@@ -41,17 +41,6 @@ class Pairs:
     """Pairs of neighbouring motions for a range of variants.
 
     Arrays have the axes (variant, pair, member of the pair, component of the state).
-
-    Parameters
-    ----------
-    task
-        Work to which the variants belong.
-    start, stop
-        First variant and the one after the last.
-    threads
-        Number of threads.
-    cancelled
-        Function that returns True when the work must stop.
     """
 
     def __init__(self, task: LyapunovWork, start: int, stop: int, threads: int, cancelled: Cancelled) -> None:

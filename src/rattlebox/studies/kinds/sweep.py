@@ -140,14 +140,6 @@ sweep = study_function(Sweep)
 
 
 def result_notes(work: ImpactWork | ParticleWork, result: xarray.Dataset) -> dict[str, str]:
-    """Return the attributes `too_short`, measures without an interval, and `refused`, the first refused variant, if needed.
-
-    Parameters
-    ----------
-    work
-        Work of the study.
-    result
-        Its result.
-    """
+    """Return the attributes `too_short` (measures without an interval) and `refused` (the first one), if needed."""
     refused = first_refused(work, result)
     return interval_warning(result, work.case) | ({"refused": refused} if refused else {})

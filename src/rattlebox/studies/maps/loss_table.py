@@ -36,8 +36,6 @@ class LossTable:
 
     Attributes
     ----------
-    masses
-        Apparent mass.
     mass
         Mass of the particles [kg]; NaN if it is unknown.
     interval : (K, J, 2) float or None
@@ -54,10 +52,6 @@ class LossTable:
         Direction of the motion; None if it has none, as for impact dampers.
     clearance
         Smallest clearance of impact dampers without gravity, whose balls may stay at rest [m]; else 0.
-    case
-        Case of the map as TOML; "" if it is unknown.
-    limits
-        Names of the validity limits that runs exceeded.
     """
 
     masses: MassTable
@@ -75,20 +69,7 @@ class LossTable:
 
     @classmethod
     def read(cls, source: Any) -> LossTable:
-        """Read a map.
-
-        Parameters
-        ----------
-        source
-            Dataset of `rb.loss_map`, netCDF file, or store.
-
-        Raises
-        ------
-        CaseError
-            If the dataset is not a loss map.
-        DataError
-            If the file cannot be read.
-        """
+        """Read a map."""
         import xarray
 
         data = source

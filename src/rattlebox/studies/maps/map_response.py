@@ -43,8 +43,6 @@ class Transfer:
 
     Attributes
     ----------
-    model
-        Modes of the structure.
     frequency : (F,) float
         Frequencies [Hz].
     shapes : (P, m) float
@@ -117,8 +115,6 @@ class MapResponse:
         Displacement of the observed point [m].
     cavity_amplitude : (L, F, S) float
         Largest amplitude of a damper in the unit of the map.
-    mass_ratio
-        Mass of the particles at a point over the effective mass for an impact there, the largest of all points.
     share : (L, F, S) float
         Share of the mean square velocity of the dampers in the first harmonic.
     is_unstable : (L, F, S) bool
@@ -162,12 +158,6 @@ class MapResponse:
 
         Parameters
         ----------
-        transfer
-            Responses of the structure.
-        table
-            Loss map of one damper.
-        number
-            Number of dampers at each point.
         levels : (L,) float
             Levels.
         """
@@ -277,8 +267,6 @@ def _with_rest(solutions: Solutions, at_rest: ComplexArray) -> tuple[Solutions, 
 
     Parameters
     ----------
-    solutions
-        Solutions from the map, which may contain these motions.
     at_rest : (L, F, P) complex
         Acceleration of the cavities with balls at rest [m/s^2]; NaN where balls cannot be at rest.
     """

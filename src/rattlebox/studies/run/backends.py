@@ -35,32 +35,11 @@ class Backend(Protocol):
     """Interface of the backends."""
 
     def run(self, work: Work, chains: Sequence[Chain]) -> Results:
-        """Run the blocks of several chains: chains in parallel, the blocks of each chain in order.
-
-        Parameters
-        ----------
-        work
-            The work to which the blocks belong.
-        chains
-            The chains.
-        """
+        """Run the blocks of several chains: chains in parallel, the blocks of each chain in order."""
 
 
 def make_backend(backend: Any = "threads", workers: int | None = None) -> Backend:
-    """Return the backend for the arguments of a study.
-
-    Parameters
-    ----------
-    backend
-        "threads", "processes", or a `dask.distributed.Client`.
-    workers
-        Number of threads or processes; default the number of cores. A cluster has its own.
-
-    Raises
-    ------
-    CaseError
-        If there is no such backend, or `workers` is given for a cluster.
-    """
+    """Return the backend for the arguments of a study."""
     if backend == "threads":
         return Threads(workers or cores())
     if backend == "processes":
@@ -98,13 +77,7 @@ def wait_for(future: Future[Any]) -> Any:
 
 @dataclass(frozen=True)
 class Threads:
-    """Threads of this process, which run in parallel because the core releases the interpreter lock.
-
-    Attributes
-    ----------
-    count
-        Number of threads. With fewer chains than threads, several threads share each block.
-    """
+    """Threads of this process, which run in parallel because the core releases the interpreter lock."""
 
     count: int
 
@@ -124,24 +97,12 @@ class Threads:
 
 @dataclass(frozen=True)
 class Processes:
-    """Processes of this machine, for measures in Python, which do not run in parallel threads.
-
-    Attributes
-    ----------
-    count
-        Number of processes.
-    """
+    """Processes of this machine, for measures in Python, which do not run in parallel threads."""
 
     count: int
 
     def run(self, work: Work, chains: Sequence[Chain]) -> Results:
-        """Run blocks; see `Backend.run`.
-
-        Raises
-        ------
-        ResourceError
-            If a process ends before its block is computed.
-        """
+        """Run blocks; see `Backend.run`."""
         parallel = max(1, min(self.count, len(chains)))
         # A fork of a process with threads may deadlock.
         context = get_context("spawn")
@@ -249,24 +210,12 @@ def _complete(values: Values | None) -> Values:
 
 @dataclass(frozen=True)
 class DaskCluster:
-    """Workers of a Dask cluster, one thread per block. If a worker ends, its blocks run again on others.
-
-    Attributes
-    ----------
-    client
-        A `dask.distributed.Client`.
-    """
+    """Workers of a Dask cluster, one thread per block. If a worker ends, its blocks run again on others."""
 
     client: Any
 
     def run(self, work: Work, chains: Sequence[Chain]) -> Results:
-        """Run blocks; see `Backend.run`.
-
-        Raises
-        ------
-        ResourceError
-            If the cluster is lost, a block ends several workers in turn, or a worker has another core or version.
-        """
+        """Run blocks; see `Backend.run`."""
         client, dask, cloudpickle = self.client, import_module("distributed"), import_module("cloudpickle")
         disconnected = import_module("distributed.comm").CommClosedError
         with warnings.catch_warnings():

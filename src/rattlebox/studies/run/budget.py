@@ -32,14 +32,10 @@ class Budget:
 
     Attributes
     ----------
-    trials, runs
-        Numbers of trials and of all their runs.
     cpu_time
         Processor time [s].
     wall_time
         Wall time on the workers of the study [s].
-    workers
-        Number of workers.
     """
 
     trials: int
@@ -56,19 +52,7 @@ class Budget:
 
 
 class RunGroup(NamedTuple):
-    """Runs that cost about as much as each other.
-
-    Attributes
-    ----------
-    case
-        Typical case.
-    runs
-        Number of runs.
-    settlings
-        Number of them whose beds have to settle; others have the bed of another run.
-    particles, steps
-        Numbers of particles and of steps of each.
-    """
+    """Runs that cost about as much as each other."""
 
     case: Case
     runs: float
@@ -91,16 +75,12 @@ class _Timed(NamedTuple):
 
     Attributes
     ----------
-    particles, steps
-        Numbers of particles and of steps.
     settling
         Processor time in which the beds settle [s].
     setup
         Other processor time before the first step and after the last [s].
     stepping
         Processor time of all steps [s].
-    share
-        Processor time over wall time while it was measured; below 1 on a busy machine.
     """
 
     particles: int
@@ -126,17 +106,10 @@ def _two_digits(value: float) -> str:
 def time_of_particle_runs(groups: Sequence[RunGroup]) -> tuple[list[float], float]:
     """Predict the processor time of groups of particle runs.
 
-    Parameters
-    ----------
-    groups
-        The groups.
-
     Returns
     -------
     times : list of float
         Processor time of all runs of each group [s].
-    share : float
-        Processor time over wall time of the timed runs, below 1 on a busy machine.
 
     Notes
     -----

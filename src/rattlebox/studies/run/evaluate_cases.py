@@ -28,28 +28,7 @@ def evaluate_cases(
     workers: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> list[Any]:
-    """Simulate cases and return the value of a function of each run, in the order of the cases.
-
-    Parameters
-    ----------
-    cases
-        The cases.
-    evaluate
-        Function of a Run; processes and clusters receive it, and send back its value.
-    simulate
-        Function of a case, `threads` and `progress` that returns its run; default `simulate_many`.
-    backend, workers
-        Backend that runs the cases, see `make_backend`.
-    progress
-        See `rb.sweep`.
-
-    Raises
-    ------
-    CaseError
-        If there is no such backend, or `evaluate` raises it.
-    ResourceError
-        If workers fail.
-    """
+    """Simulate cases and return the value of a function of each run, in the order of the cases."""
     work = _Cases(cases, evaluate, simulate or _simulate)
     chains = [Chain([Block(number, number, number + 1)]) for number in range(len(cases))]
     found: dict[int, Any] = {}

@@ -16,18 +16,7 @@ _CHUNK_BYTES = 2**26
 
 
 def status_lines(study: xr.Dataset) -> list[str]:
-    """Return lines with the statuses of the runs of a study, the reason of a refusal, and the warnings.
-
-    Parameters
-    ----------
-    study
-        Dataset from `open_study` or `sweep`.
-
-    Returns
-    -------
-    list of str
-        Empty for a study without statuses and warnings.
-    """
+    """Return lines with the statuses of the runs of a study, the reason of a refusal, and the warnings."""
     lines = []
     if counts := status_counts(study):
         statuses = ", ".join(f"{count:,} {name}" for name, count in counts.items())
@@ -98,18 +87,7 @@ def _joined(found: xr.DataArray, codes: xr.DataArray, words: Callable[[int], lis
 
 
 def status_counts(study: xr.Dataset) -> dict[str, int]:
-    """Count the runs of a study by their status.
-
-    Parameters
-    ----------
-    study
-        Dataset from `open_study` or `sweep`.
-
-    Returns
-    -------
-    dict of str to int
-        Number of runs by the name of the status, in the order of the status codes.
-    """
+    """Count the runs of a study by their status."""
     if "status" not in study:
         return {}
     names = study.status.attrs.get("flag_meanings", "").split()
@@ -121,18 +99,7 @@ def status_counts(study: xr.Dataset) -> dict[str, int]:
 
 
 def warning_lines(study: xr.Dataset) -> list[str]:
-    """Return the warnings of a study: a stop by the budget, measures without an interval, exceeded validity limits.
-
-    Parameters
-    ----------
-    study
-        Dataset from `open_study` or `sweep`.
-
-    Returns
-    -------
-    list of str
-        One line for each validity limit that at least one run exceeded, after a line about short runs.
-    """
+    """Return the warnings of a study: a stop by the budget, measures without an interval, exceeded validity limits."""
     lines = [f"warning: {study.attrs['stopped']}"] if "stopped" in study.attrs else []
     lines += [f"warning: {study.attrs[name]}" for name in ("too_short", "unsettled") if name in study.attrs]
     if "flagged" in study.attrs:
@@ -147,13 +114,7 @@ def warning_lines(study: xr.Dataset) -> list[str]:
 
 
 def chunks(values: xr.DataArray) -> Iterator[np.ndarray[Any, Any]]:
-    """Read a variable in chunks that fit in memory.
-
-    Parameters
-    ----------
-    values
-        The variable.
-    """
+    """Read a variable in chunks that fit in memory."""
     if not values.ndim:
         yield values.values.reshape(1)
         return
@@ -163,13 +124,7 @@ def chunks(values: xr.DataArray) -> Iterator[np.ndarray[Any, Any]]:
 
 
 def computed(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Return the values that are computed and finite, (n,).
-
-    Parameters
-    ----------
-    values
-        Values of a study, in which missing variants are NaN, or the smallest number of an integer variable.
-    """
+    """Return the values that are computed and finite, (n,)."""
     if values.dtype.kind == "f":
         valid = np.isfinite(values)
     else:

@@ -41,19 +41,7 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """Outputs of a study over its grid.
-
-    Attributes
-    ----------
-    dims, shape
-        Dimensions of the grid and their lengths.
-    outputs
-        Outputs by name, with their dimensions beyond those of the grid.
-    coords
-        Coordinates of the result.
-    about
-        Description of the study in JSON types; texts may be TOML. A store refuses a study that differs in it.
-    """
+    """Outputs of a study over its grid."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -100,15 +88,7 @@ def with_texts(data: xr.Dataset) -> xr.Dataset:
 
 
 class MemoryResult:
-    """A result in memory, with the interface of a Store.
-
-    Parameters
-    ----------
-    plan
-        Layout of the result.
-    blocks
-        Blocks in which it is computed.
-    """
+    """A result in memory, with the interface of a Store."""
 
     def __init__(self, plan: Plan, blocks: Blocks) -> None:
         self.blocks = blocks

@@ -44,38 +44,6 @@ def run_work(
 ) -> xr.Dataset:
     """Run all variants of a work.
 
-    Parameters
-    ----------
-    work
-        The work.
-    backend, workers
-        Backend for the blocks; see `make_backend`.
-    store
-        Folder for the result, which need not exist. It holds the finished blocks at all times, and the same call resumes
-        from it.
-    progress
-        True for a progress bar after 2 s, False for none, or a function of the numbers of variants done and of all; the
-        study stops if it returns False.
-    block
-        Largest number of variants in a block; default that of the work.
-
-    Returns
-    -------
-    xarray.Dataset
-        Outputs over the grid and their own dimensions, in memory or, with `store`, opened on disk. The result is bitwise
-        independent of blocks, backend, workers and stops.
-
-    Raises
-    ------
-    CaseError
-        If there is no such backend.
-    StoreError
-        If the store holds other work, another process writes to it, or it cannot be written.
-    ResourceError
-        If the disk is full or workers fail.
-    Stopped
-        After Ctrl-C.
-
     Notes
     -----
     The size of a block depends only on the work, so that the layout of a store is the same on all machines.

@@ -66,23 +66,6 @@ class Store:
     The chunks of each variable are the blocks of the study, so that a block is one file per variable. Every chunk ends with
     a checksum. A block is finished if all its chunks exist with correct checksums; other blocks are computed again.
 
-    Parameters
-    ----------
-    path
-        Folder of the study.
-    plan
-        Layout of the result.
-    blocks
-        Blocks of a new study; an existing study retains its own.
-
-    Raises
-    ------
-    StoreError
-        If the folder holds another study (the message lists the differences) or anything else, if another process writes
-        to it, or if it cannot be written.
-    ResourceError
-        If the disk is full.
-
     Notes
     -----
     Blocks are written by zarr rather than by `xarray.Dataset.to_zarr(region=...)`, which opens the store and reads all its
@@ -120,24 +103,7 @@ class Store:
         return self.path / _PROGRESS / f"state-{block}.npz"
 
     def write(self, block: int, values: Mapping[str, NDArray[Any]], stale: Sequence[int] = ()) -> None:
-        """Write the outputs of a block to the disk, and before them its further arrays, the state at its end.
-
-        Parameters
-        ----------
-        block
-            Number of the block.
-        values
-            Its outputs and further arrays.
-        stale
-            Blocks whose states are then removed.
-
-        Raises
-        ------
-        ResourceError
-            If the disk is full.
-        StoreError
-            If the folder cannot be written any more.
-        """
+        """Write the outputs of a block to the disk, and before them its further arrays, the state at its end."""
         region, sides = self.blocks.region(block), self.blocks.sides(block)
         with _explain_disk_errors(self.path):
             if not (self.path / MARKER).is_file():
@@ -262,20 +228,7 @@ class _MemoryFiles:
 
 @contextmanager
 def exclusive_writer(path: Path) -> Iterator[Path]:
-    """Lock a study for writing until the process ends, and yield the folder of its progress.
-
-    Parameters
-    ----------
-    path
-        Folder of the study, which need not exist.
-
-    Raises
-    ------
-    StoreError
-        If the folder holds something else, another process writes to it, or it cannot be written.
-    ResourceError
-        If the disk is full.
-    """
+    """Lock a study for writing until the process ends, and yield the folder of its progress."""
     from filelock import FileLock, Timeout
 
     from rattlebox import __version__
@@ -330,29 +283,7 @@ def _explain_disk_errors(path: Path) -> Iterator[None]:
 
 
 def save_result(result: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) -> xr.Dataset:
-    """Add the kind of the study to its result, and write the result to the store next to the runs.
-
-    Parameters
-    ----------
-    result
-        Dataset computed from the runs.
-    kind
-        Kind of the study.
-    path
-        Folder of the study; None for a study in memory. `open_study` returns the dataset from the folder.
-
-    Returns
-    -------
-    xarray.Dataset
-        The dataset, with the attribute `study`.
-
-    Raises
-    ------
-    StoreError
-        If the folder cannot be written.
-    ResourceError
-        If the disk is full.
-    """
+    """Add the kind of the study to its result, and write the result to the store next to the runs."""
     from rattlebox import __version__
 
     result = result.assign_attrs(study=kind)
@@ -369,22 +300,7 @@ def save_result(result: xr.Dataset, kind: str, path: str | os.PathLike[str] | No
 
 
 def add_attributes(path: str | os.PathLike[str], attributes: Mapping[str, str]) -> None:
-    """Add attributes to a study on disk; `open_study` returns them with those of its plan.
-
-    Parameters
-    ----------
-    path
-        Folder of the study.
-    attributes
-        Attributes that are known after the study has run.
-
-    Raises
-    ------
-    StoreError
-        If the folder cannot be written.
-    ResourceError
-        If the disk is full.
-    """
+    """Add attributes to a study on disk; `open_study` returns them with those of its plan."""
     if attributes:
         with exclusive_writer(Path(path)), _explain_disk_errors(Path(path)):
             marker = study_marker(path)

@@ -61,18 +61,7 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
 
 
 def has_map(path: str | os.PathLike[str]) -> bool:
-    """Return whether a store holds a result of its study in addition to the runs.
-
-    Parameters
-    ----------
-    path
-        Folder of the study.
-
-    Raises
-    ------
-    StoreError
-        If the list of files of the result is damaged.
-    """
+    """Return whether a store holds a result of its study in addition to the runs."""
     folder = Path(path) / MAP
     try:
         marker = read_marker(folder)
@@ -83,17 +72,7 @@ def has_map(path: str | os.PathLike[str]) -> bool:
 
 @dataclass(frozen=True)
 class Progress:
-    """State of a study on disk.
-
-    Attributes
-    ----------
-    blocks
-        Blocks of the study.
-    finished : (len(blocks),) bool
-        Whether each block is finished.
-    last
-        Time of the last write of a block [s since 1970].
-    """
+    """State of a study on disk."""
 
     blocks: Blocks
     finished: NDArray[np.bool_]
@@ -111,18 +90,7 @@ class Progress:
 
 
 def progress_of(path: str | os.PathLike[str]) -> Progress:
-    """Return the state of a study on disk, also while it runs.
-
-    Parameters
-    ----------
-    path
-        Folder of the study.
-
-    Raises
-    ------
-    StoreError
-        If there is no study.
-    """
+    """Return the state of a study on disk, also while it runs."""
     with report_damage(path):
         marker = study_marker(path)
         chunks = Chunks(Path(path), marker)
@@ -137,13 +105,7 @@ def progress_of(path: str | os.PathLike[str]) -> Progress:
 
 
 def check_marker(path: str | os.PathLike[str]) -> Marker | None:
-    """Return the marker of a study, complete or not; None if there is none.
-
-    Raises
-    ------
-    StoreError
-        If the folder belongs to something else, or to a later version.
-    """
+    """Return the marker of a study, complete or not; None if there is none."""
     marker = read_marker(Path(path))
     if marker and marker.name not in (KIND, ""):
         raise StoreError(f"{path} is not a study, but a {marker.name}", "another folder")
@@ -153,13 +115,7 @@ def check_marker(path: str | os.PathLike[str]) -> Marker | None:
 
 
 def study_marker(path: str | os.PathLike[str]) -> Marker:
-    """Return the complete marker of a study.
-
-    Raises
-    ------
-    StoreError
-        If there is no study.
-    """
+    """Return the complete marker of a study."""
     marker = check_marker(path)
     if marker and marker.complete:
         return marker
@@ -169,18 +125,7 @@ def study_marker(path: str | os.PathLike[str]) -> Marker:
 
 @contextmanager
 def report_damage(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Convert errors of reading a store to errors about damage.
-
-    Parameters
-    ----------
-    path
-        Folder of the study.
-
-    Raises
-    ------
-    StoreError
-        If it is damaged.
-    """
+    """Convert errors of reading a store to errors about damage."""
     try:
         yield
     except RattleboxError as error:
@@ -198,15 +143,7 @@ def report_damage(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 class Chunks:
-    """Files of the blocks of a study: one file per block and variable, which ends with its CRC-32C.
-
-    Parameters
-    ----------
-    path
-        Folder of the study.
-    marker
-        Its marker.
-    """
+    """Files of the blocks of a study: one file per block and variable, which ends with its CRC-32C."""
 
     def __init__(self, path: Path, marker: Marker) -> None:
         self.blocks = Blocks(tuple(marker.about["shape"]), tuple(marker.about["box"]))
@@ -250,20 +187,7 @@ def _has_checksum(chunk: Path) -> bool:
 
 
 def open_runs(path: Path, marker: Marker) -> xr.Dataset:
-    """Open the outputs of all variants; missing or damaged blocks are returned as missing values.
-
-    Parameters
-    ----------
-    path
-        Folder of the study.
-    marker
-        Its marker.
-
-    Raises
-    ------
-    StoreError
-        If a file other than a block is damaged.
-    """
+    """Open the outputs of all variants; missing or damaged blocks are returned as missing values."""
     import xarray as xr
     from zarr.storage import LocalStore
 

@@ -180,24 +180,7 @@ _SIMPLE = {
 
 
 def make_study(cls: type[Study], values: Mapping[str, Any], source: str = "", vocabulary: Any = None) -> Study:
-    """Return a study with the given fields.
-
-    Parameters
-    ----------
-    cls
-        Kind of the study.
-    values
-        Values by the name of the field, from a call or a study file.
-    source
-        Name of the file in messages.
-    vocabulary
-        Names of the fields of tables, with examples, for messages.
-
-    Raises
-    ------
-    CaseError
-        If a value is not allowed.
-    """
+    """Return a study with the given fields."""
     names = [field.name for field in dataclasses.fields(cls)]
     for name in values:
         if name not in names:
@@ -305,15 +288,7 @@ def _check_bounds(bounds: Any) -> Any:
 
 
 def split_bounds(bounds: Mapping[str, Any], log: Any) -> tuple[dict[str, Any], list[str]]:
-    """Return pairs and choices by path, and the paths with a logarithmic distribution.
-
-    Parameters
-    ----------
-    bounds
-        Pairs, choices, or tables of a study file, by path.
-    log
-        Paths in addition to those of tables with `spacing = "log"`.
-    """
+    """Return pairs and choices by path, and the paths with a logarithmic distribution."""
     logarithmic = [path for path, given in bounds.items() if isinstance(given, Range) and given.spacing == "log"]
     pairs = {path: (given.start, given.to) if isinstance(given, Range) else given for path, given in bounds.items()}
     return pairs, [*logarithmic, *([log] if isinstance(log, str) else log)]

@@ -18,15 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class AlongLast(CaseWork):
-    """Work whose variants run one after the other along the last dimension of the grid.
-
-    Attributes
-    ----------
-    directions
-        Directions of the first dimension: "up" runs the variants in their order, "down" in reverse.
-    turn_back
-        Whether the second direction starts from the final state of the first one.
-    """
+    """Work whose variants run one after the other along the last dimension of the grid."""
 
     directions: tuple[str, ...] = ("up",)
     turn_back: bool = False
@@ -35,19 +27,7 @@ class AlongLast(CaseWork):
     def along(
         cls, case: Case, grid: Grid, *, directions: Sequence[str], turn_back: bool = False, **options: Any
     ) -> Self:
-        """Return the work along the last dimension of a grid.
-
-        Parameters
-        ----------
-        case
-            Base case.
-        grid
-            Grid of the variants, to which the dimension "direction" is added.
-        directions, turn_back
-            See `AlongLast`.
-        **options
-            Further attributes of the work.
-        """
+        """Return the work along the last dimension of a grid."""
         coordinate = "direction", np.array(directions), {"long_name": "direction"}
         full_grid = Grid(
             ("direction", *grid.dims),

@@ -16,13 +16,6 @@ class Blocks:
     """Blocks of a grid, each of which is a rectangular region and a contiguous range of variants in C order.
 
     A block is a range for the core, a region of the result, and one file per variable in a store.
-
-    Parameters
-    ----------
-    shape
-        Shape of the grid.
-    box
-        Shape of a block: ones, then any number, then full lengths. Blocks at an end are smaller.
     """
 
     shape: tuple[int, ...]
@@ -30,15 +23,7 @@ class Blocks:
 
     @classmethod
     def of(cls, shape: Sequence[int], size: int) -> Blocks:
-        """Partition a grid into blocks of nearly equal size.
-
-        Parameters
-        ----------
-        shape
-            Shape of the grid.
-        size
-            Largest number of variants in a block, 1 or more.
-        """
+        """Partition a grid into blocks of nearly equal size."""
         box: list[int] = []
         for length in reversed(shape):
             parts = math.ceil(length / max(1, size))
@@ -73,13 +58,7 @@ class Blocks:
         return start, start + math.prod(self.sides(block))
 
     def variants(self, mask: NDArray[np.bool_]) -> int:
-        """Return the number of variants in some blocks.
-
-        Parameters
-        ----------
-        mask : (len(self),) bool
-            Whether to count each block.
-        """
+        """Return the number of variants in some blocks."""
         return int(self._sizes[mask].sum())
 
     @cached_property

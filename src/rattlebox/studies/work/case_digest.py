@@ -20,15 +20,7 @@ _LENGTH = 12
 
 
 def describe_case(case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a case in JSON types, with digests of the files that it or its variants name.
-
-    Parameters
-    ----------
-    case
-        The case.
-    columns
-        Values that vary, by path.
-    """
+    """Return a case in JSON types, with digests of the files that it or its variants name."""
     files = {path: _digest_of_numbers(part) for path, part in _parts_from_files(case)}
     for path, values in columns.items():
         holder, _, name = path.rpartition(".")

@@ -37,21 +37,8 @@ class CaseWork:
 
     Attributes
     ----------
-    case, grid
-        Base case and the grid of its variants.
-    measures
-        Names of measures, and functions of a Run.
     skip
         Time from which measures are evaluated [s].
-    cycles
-        Numbers of cycles of the harmonic load to skip and to evaluate, in place of `skip` and the duration of the case.
-    samples
-        Number of samples of the evaluated window; None for as many as the measures need.
-    point
-        Observed motion: name of a point of the structure, "upper - lower" for that of a point relative to another one, or
-        "mode 2"; default the point of the first damper.
-    intervals
-        Whether to compute the 95 % intervals of measures of steady motion.
     """
 
     case: Case
@@ -120,13 +107,7 @@ class CaseWork:
         return self.units_of(MEASURES[name].units) if MEASURES[name].samples else MEASURES[name].units
 
     def require_interface_force(self) -> None:
-        """Raise if the force on the base is requested and the participation of the modes is unknown.
-
-        Raises
-        ------
-        CaseError
-            If it is.
-        """
+        """Raise if the force on the base is requested and the participation of the modes is unknown."""
         asked = [name for name in self.measure_names if name.endswith("interface_force")]
         modes = self.case.modes
         if not asked:
@@ -147,20 +128,7 @@ class CaseWork:
         }
 
     def call_functions(self, run: Run, index: int) -> dict[str, float]:
-        """Return the values of the functions of a Run.
-
-        Parameters
-        ----------
-        run
-            Run of the variant.
-        index
-            Number of the variant, for messages.
-
-        Raises
-        ------
-        CaseError
-            If a function does not return a number.
-        """
+        """Return the values of the functions of a Run."""
         values = {}
         for name, function in self.functions.items():
             with _function_lock:

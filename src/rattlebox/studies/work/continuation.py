@@ -40,13 +40,7 @@ _CLOSED = -1e-12
 
 
 def without_states(runs: xarray.Dataset) -> xarray.Dataset:
-    """Return the results of a continuation without the states for resuming.
-
-    Parameters
-    ----------
-    runs
-        Results of a `ContinuationWork`.
-    """
+    """Return the results of a continuation without the states for resuming."""
     return runs.drop_dims("component").drop_vars("lead")
 
 
@@ -81,13 +75,7 @@ class ContinuationWork(AlongLast, ImpactWork):
         return {"study": "continuation", **super().describe()}
 
     def validate(self) -> None:
-        """Raise if the loads are not periodic with the first one, or an argument is not valid.
-
-        Raises
-        ------
-        CaseError
-            If they are not.
-        """
+        """Raise if the loads are not periodic with the first one, or an argument is not valid."""
         for name in self.measures:
             if name not in MEASURES:
                 raise Hint(f"there is no measure {name_of(name)!r} in a continuation", nearest(name_of(name), MEASURES))
@@ -111,22 +99,7 @@ class ContinuationWork(AlongLast, ImpactWork):
                 )
 
     def step(self, before: _States | None, members: Members, cancelled: Cancelled) -> Values | None:
-        """Run one variant of each chain.
-
-        Parameters
-        ----------
-        before
-            States from which the runs start; None for the initial states of the case.
-        members
-            Numbers of the variants.
-        cancelled
-            Function called about fifty times a second; the work stops if it returns True.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Outputs, in which `state` and `lead` are those from which the next variants start; None if cancelled.
-        """
+        """Run one variant of each chain."""
         step = _Step(self, before, members, cancelled)
         values = step.run()
         if values is None:
@@ -257,8 +230,6 @@ class _Step:
 
         Parameters
         ----------
-        end
-            Final states.
         closed
             Chains with a closed contact in the final state, (chains,).
         """

@@ -16,13 +16,7 @@ from rattlebox.model.base import full_text
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
-    """Return a digest of the source of a function and of the values that it refers to.
-
-    Parameters
-    ----------
-    function
-        Any callable: function, method, partial or object. Objects of other packages enter only with their names.
-    """
+    """Return a digest of the source of a function and of the values that it refers to."""
     return _Digest(function).hexdigest()
 
 

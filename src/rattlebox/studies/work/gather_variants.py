@@ -14,24 +14,7 @@ Packed = TypeVar("Packed", bound=_core.Node)
 
 
 def gather_variants(node: Packed, shape: Sequence[int], members: NDArray[np.intp], further: int = 0) -> Packed:
-    """Return a batch, or a part of it, for some of its variants.
-
-    Parameters
-    ----------
-    node
-        Batch from `rattlebox.prepare.pack.pack_batch`, or a part of it.
-    shape
-        Shape of the grid.
-    members
-        Numbers of the variants in C order of the grid.
-    further
-        Number of axes of length one to append after that of the variants.
-
-    Returns
-    -------
-    Node
-        Node with one axis for the variants, and the further ones, in place of the axes of the grid.
-    """
+    """Return a batch, or a part of it, for some of its variants."""
     changes: dict[str, object] = {}
     for name, varies in node.fields().items():
         value = getattr(node, name)
@@ -48,13 +31,6 @@ def gather_values(
     values: ArrayLike, shape: Sequence[int], members: NDArray[np.intp], further: int = 0
 ) -> NDArray[np.float64]:
     """Return a number, or a vector with the axes of the grid after its own, for some variants.
-
-    Parameters
-    ----------
-    values
-        A number, or an array over the grid.
-    shape, members, further
-        See `gather_variants`.
 
     Returns
     -------

@@ -25,19 +25,7 @@ from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
 @dataclass
 class ImpactWork(CaseWork):
-    """Variants of a case with impact dampers, run in the core without storing trajectories.
-
-    Attributes
-    ----------
-    case, grid, measures, skip, cycles, samples, point, intervals
-        See `CaseWork`.
-    motion
-        Whether to return the samples of the motion.
-    last
-        Number of impacts to return, counted from the end of the run.
-    state
-        Whether to return the state at the end.
-    """
+    """Variants of a case with impact dampers, run in the core without storing trajectories."""
 
     motion: bool = False
     last: int = 0
@@ -144,36 +132,18 @@ class ImpactWork(CaseWork):
         return values
 
     def validate(self) -> None:
-        """Raise if a variant is not valid, before anything runs.
-
-        Raises
-        ------
-        CaseError
-            If a variant is not valid.
-        """
+        """Raise if a variant is not valid, before anything runs."""
         _ = self._parts
 
     def require_alike(self) -> None:
-        """Raise if the variants differ in more than numbers, before anything runs.
-
-        Raises
-        ------
-        CaseError
-            If they do, or if a variant is not valid.
-        """
+        """Raise if the variants differ in more than numbers, before anything runs."""
         _ = self.packed
 
     # ---- input of the core
 
     @property
     def packed(self) -> _core.Problem:
-        """All variants as one batch.
-
-        Raises
-        ------
-        CaseError
-            If they differ in more than numbers.
-        """
+        """All variants as one batch."""
         part = self._parts[0][0]
         if part.obstacle:
             raise part.obstacle
@@ -263,15 +233,7 @@ class ImpactWork(CaseWork):
 
 
 def with_intervals(values: Values, output: BlockOutput) -> dict[str, NDArray[Any]]:
-    """Return outputs in which the intervals of measures replace the batches.
-
-    Parameters
-    ----------
-    values
-        Outputs of `run_block`.
-    output
-        Requested quantities.
-    """
+    """Return outputs in which the intervals of measures replace the batches."""
     found = dict(values)
     if output.batched:
         batches, lengths = found.pop("batches"), found.pop("batch_length")

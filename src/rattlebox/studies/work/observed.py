@@ -20,17 +20,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Observed:
-    """A point of the structure, the difference of two points, or a mode.
-
-    Attributes
-    ----------
-    name
-        Name of a point along a line.
-    lower
-        Name of the point whose motion is subtracted; "" for none.
-    mode
-        Index of the mode, from 0, in place of a point; None for a point.
-    """
+    """A point of the structure, the difference of two points, or a mode."""
 
     name: str
     lower: str = ""
@@ -38,20 +28,7 @@ class Observed:
 
     @classmethod
     def of(cls, modes: ModalModel, text: str) -> Observed:
-        """Return the quantity that a text names.
-
-        Parameters
-        ----------
-        modes
-            Modes of the structure.
-        text
-            Name of a point, "upper - lower" for the motion of a point relative to another one, or "mode 2".
-
-        Raises
-        ------
-        CaseError
-            If there is no such point or mode.
-        """
+        """Return the quantity that a text names."""
         lines = modes.lines()
         if text in lines:
             return cls(text)

@@ -41,19 +41,7 @@ class Motion(IntEnum):
 
 
 class Orbits(NamedTuple):
-    """Classification of motions.
-
-    Attributes
-    ----------
-    period : (...) int
-        Period in cycles; 0 for motions that are not periodic.
-    motion : (...) int
-        Kind, see `Motion`.
-    multiplier : (...) float
-        Factor by which the distance to the periodic motion changes in a cycle, of a motion that contracts; otherwise NaN.
-    residual : (...) float
-        Largest difference between states one period apart, or the smallest such difference of all numbers of cycles.
-    """
+    """Classification of motions."""
 
     period: Whole
     motion: Whole
@@ -72,17 +60,8 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
     maps
         Strobes over a grid: `displacement`, `velocity` (..., sample), `relative_position`, `relative_velocity`
         (..., sample, ball), `impacts` and `largest_approach_speed`.
-    packed
-        The variants of the grid.
     period
         Length of a cycle [s], broadcastable to the grid.
-
-    Returns
-    -------
-    tuple of array
-        States, (..., sample, 2 + 2 balls), and ranges of motion, (..., 2 + 2 balls). That of the structure is its amplitude
-        at the strobes. That of the velocity of balls is the largest approach speed; of their position the length that
-        belongs to this speed, at most the gap.
     """
     shape = maps.status.shape
     gaps = [np.broadcast_to(0.5 * np.asarray(d.clearance), shape) for d in packed.dampers for _ in d.mass]
@@ -108,15 +87,6 @@ def classify(strobes: Vector, tolerance: float, apart: float) -> Orbits:
     ----------
     strobes : (..., sample, component) float
         States over the range of the motion.
-    tolerance
-        Largest difference between states one period apart, and largest distance to the periodic motion at the end.
-    apart
-        Difference between states of a motion above which they count as different.
-
-    Returns
-    -------
-    Orbits
-        Periods up to half of the number of samples. `rb.basins` states the rule.
     """
     shape = strobes.shape[:-2]
     flat = strobes.reshape(-1, *strobes.shape[-2:])
@@ -165,14 +135,8 @@ def _settled(steps: Vector, strobes: Vector, n: int, tolerance: float) -> tuple[
 
     Parameters
     ----------
-    steps : (k, sample - n, component) float
-        Differences of states n cycles apart.
     strobes : (k, sample, component) float
         The states.
-    n
-        Number of cycles.
-    tolerance
-        See `classify`.
     """
     size = np.abs(steps).max(axis=2)
     close = size.max(axis=1) <= tolerance
@@ -199,14 +163,7 @@ def _settled(steps: Vector, strobes: Vector, n: int, tolerance: float) -> tuple[
 
 
 def _linear_map(steps: Vector, n: int) -> tuple[Mask, Vector, Vector, Vector]:
-    """Fit differences of states by a linear map of n cycles with one or two multipliers, by least squares.
-
-    Returns
-    -------
-    tuple of array
-        Whether a map describes the differences; modulus of its largest multiplier, with its standard error; and the
-        smallest modulus of (multiplier - 1).
-    """
+    """Fit differences of states by a linear map of n cycles with one or two multipliers, by least squares."""
     now, before = steps[:, n:], steps[:, :-n]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         power = (now * now).sum(axis=(1, 2))
@@ -249,15 +206,7 @@ def _falls(strobes: Vector) -> tuple[Mask, Vector]:
 
 
 def labels(over: tuple[Any, ...], orbits: Orbits) -> dict[str, Any]:
-    """Return the variables `period`, `motion` and `multiplier` of a study.
-
-    Parameters
-    ----------
-    over
-        Dimensions of the study.
-    orbits
-        The classification.
-    """
+    """Return the variables `period`, `motion` and `multiplier` of a study."""
     kinds = {
         "flag_values": [int(kind) for kind in Motion],
         "flag_meanings": " ".join(kind.name.lower() for kind in Motion),
@@ -271,15 +220,7 @@ def labels(over: tuple[Any, ...], orbits: Orbits) -> dict[str, Any]:
 
 
 def without_speed(runs: xarray.Dataset, measures: Any) -> xarray.Dataset:
-    """Return runs without the largest approach speed, which `reduced_strobes` needs, unless it was requested.
-
-    Parameters
-    ----------
-    runs
-        Result of the runs.
-    measures
-        Requested measures.
-    """
+    """Return runs without the largest approach speed, which `reduced_strobes` needs, unless it was requested."""
     name = "largest_approach_speed"
     if name in list(measures):
         return runs
@@ -290,17 +231,7 @@ def without_speed(runs: xarray.Dataset, measures: Any) -> xarray.Dataset:
 
 
 def unsettled(orbits: Orbits, cycles: tuple[int, int], tolerance: float) -> dict[str, str]:
-    """Return the attribute `unsettled`, a sentence about motions that are not periodic; empty if all are.
-
-    Parameters
-    ----------
-    orbits
-        The classification.
-    cycles
-        Numbers of cycles that were skipped and evaluated.
-    tolerance
-        See `classify`.
-    """
+    """Return the attribute `unsettled`, a sentence about motions that are not periodic; empty if all are."""
     total = np.count_nonzero(orbits.motion != Motion.NOT_FINISHED)
     transient, irregular = orbits.motion == Motion.TRANSIENT, orbits.motion == Motion.IRREGULAR
     parts = []
@@ -334,8 +265,6 @@ def attractors(strobes: Vector, ranges: Vector, period: Whole, residual: Vector,
         Ranges of motion of the components.
     period, residual : (n,)
         Results of `classify`.
-    apart
-        Largest difference between states of one attractor, over the range of motion.
 
     Returns
     -------

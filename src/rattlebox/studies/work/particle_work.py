@@ -46,10 +46,6 @@ class Window:
 
     Attributes
     ----------
-    run
-        Part of the run in the window; work and losses count from its start.
-    full_run
-        The complete run.
     start
         Start of the window [s].
     displacement, velocity, base_velocity : (T,) float
@@ -203,11 +199,6 @@ class ParticleWork(CaseWork):
 
     Functions of a Run get the run from which the measures are evaluated. Its samples are those of the output of the case,
     unless `samples` or `cycles` is given.
-
-    Attributes
-    ----------
-    extensions
-        How often the evaluated cycles are repeated from the end of the run, at most, until the motion is steady.
     """
 
     extensions: int = 0
@@ -229,13 +220,7 @@ class ParticleWork(CaseWork):
         return super().describe() | ({"extensions": self.extensions} if self.extensions else {})
 
     def validate(self) -> None:
-        """Raise if the arguments do not fit the case or each other.
-
-        Raises
-        ------
-        CaseError
-            If they do not.
-        """
+        """Raise if the arguments do not fit the case or each other."""
         for name in self.measure_names:
             if name not in _FORMULAS:
                 raise Hint(f"{name} refers to single impacts, which particle runs do not store", ", ".join(_FORMULAS))
@@ -347,13 +332,7 @@ class ParticleWork(CaseWork):
             return str(error)
 
     def variant(self, index: int) -> Case:
-        """Return the case of a variant, with the duration and samples of its run.
-
-        Raises
-        ------
-        CaseError
-            If the variant is not valid.
-        """
+        """Return the case of a variant, with the duration and samples of its run."""
         case = self.grid.case_at(self.case, index)
         if not case.particle_dampers:
             raise Hint("a variant has no particle damper", "one sweep for each kind of damper")
@@ -441,8 +420,6 @@ def cut_before(run: Run, start: float) -> Run:
 
     Parameters
     ----------
-    run
-        The run.
     start
         First time of the result [s]; interpolated linearly between samples.
     """
@@ -469,8 +446,6 @@ def cut_after(run: Run, end: float) -> Run:
 
     Parameters
     ----------
-    run
-        The run.
     end
         The time [s].
     """

@@ -59,16 +59,6 @@ def steady_motion(
         Further displacements that must repeat in a periodic motion [m].
     phase
         Phase of the load [rad].
-    samples
-        Number of samples per cycle.
-    tolerance
-        Largest difference between positions one period apart, over their range.
-
-    Returns
-    -------
-    dict of str to (...) array
-        `QUANTITIES`. Intervals are those of the means of the complex amplitudes of the cycles, in the direction of
-        their mean and across it.
     """
     cycles = (displacement.shape[-1] - 1) // samples
     turns = np.exp(-2j * np.pi * np.arange(samples) / samples)
@@ -105,8 +95,6 @@ class ParticleResponse(ParticleWork):
     ----------
     phase
         Phase of the load [rad].
-    tolerance
-        See `steady_motion`.
     """
 
     phase: float = 0.0
@@ -149,13 +137,7 @@ class ParticleContinuation(AlongLast, ParticleResponse):
         return True
 
     def validate(self) -> None:
-        """Raise if the arguments do not fit the case, or its loads do not continue.
-
-        Raises
-        ------
-        CaseError
-            If they do not.
-        """
+        """Raise if the arguments do not fit the case, or its loads do not continue."""
         super().validate()
         for signal in (*self.case.loads, *self.case.base):
             if not isinstance(signal, Harmonic) or signal.start > 0 or signal.stop is not None:

@@ -30,21 +30,8 @@ def steady_run(
 
     Parameters
     ----------
-    case
-        Case with one damper on a shaker, whose duration is a whole number of cycles.
     frequency
         Frequency of the motion [Hz].
-    kept
-        Number of cycles that are evaluated.
-    extensions
-        How often this number of cycles is added, at most.
-    threads, progress
-        See `rattlebox.engines.simulate.simulate_many`.
-
-    Returns
-    -------
-    Run
-        The run; with particles that have been continued, its last part.
     """
     more = case.model_copy(update={"duration": kept / frequency})
     end = None

@@ -22,13 +22,7 @@ Cancelled = Callable[[], bool] | None
 
 
 def proceed_unless(cancelled: Cancelled) -> Callable[..., bool]:
-    """Return a progress function that stops a run when the work is cancelled.
-
-    Parameters
-    ----------
-    cancelled
-        Function that returns True when the work must stop.
-    """
+    """Return a progress function that stops a run when the work is cancelled."""
     return lambda *_: not (cancelled and cancelled())
 
 
@@ -76,22 +70,7 @@ class Work(Protocol):
         """Return a description of the results of each variant, in JSON types; a store refuses work with another one."""
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
-        """Run a range of variants.
-
-        Parameters
-        ----------
-        start, stop
-            First variant and the one after the last, in C order of the grid.
-        threads
-            Number of threads.
-        cancelled
-            Function that returns True when the work must stop.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Each output, (stop - start, ...); None if the work was cancelled.
-        """
+        """Run a range of variants."""
 
 
 @runtime_checkable
@@ -115,32 +94,11 @@ class ChainedWork(Work, Protocol):
     def run(
         self, start: int, stop: int, *, threads: int, cancelled: Cancelled, before: Values | None = None
     ) -> Values | None:
-        """Run a range of variants of one chain; see `Work.run`.
-
-        Parameters
-        ----------
-        start, stop, threads, cancelled
-            See `Work.run`.
-        before
-            Outputs and state of the preceding variant; None at the beginning of the chain.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Outputs and states, (stop - start, ...); None if the work was cancelled.
-        """
+        """Run a range of variants of one chain; see `Work.run`."""
 
 
 class Block(NamedTuple):
-    """A range of variants.
-
-    Attributes
-    ----------
-    number
-        Number of the block.
-    start, stop
-        First variant, and the one after the last.
-    """
+    """A range of variants."""
 
     number: int
     start: int
@@ -148,15 +106,7 @@ class Block(NamedTuple):
 
 
 class Chain(NamedTuple):
-    """Blocks that must run one after the other.
-
-    Attributes
-    ----------
-    blocks
-        The blocks in their order; a single one where blocks are independent.
-    before
-        Outputs of the variant that precedes the first block; None at the beginning of a chain.
-    """
+    """Blocks that must run one after the other."""
 
     blocks: list[Block]
     before: Values | None = None
@@ -180,26 +130,7 @@ def last_values(work: Work, block: Block, values: Values) -> Values | None:
 def make_chains(
     work: Work, blocks: Blocks, finished: NDArray[np.bool_], has_state: Callable[[int], bool]
 ) -> list[tuple[list[Block], Block | None]]:
-    """Return the blocks that remain to be computed, by chain.
-
-    Parameters
-    ----------
-    work
-        The work.
-    blocks
-        Its blocks.
-    finished
-        Whether each block is finished, (len(blocks),).
-    has_state
-        Function that returns whether the state at the end of a block is known, by the number of the block. Chains that
-        need an unknown state run again from their beginning, or from the last known one.
-
-    Returns
-    -------
-    list of tuple
-        Blocks of each chain that has some left, in order, and the block that precedes the first of them, or None at the
-        begin of the chain.
-    """
+    """Return the blocks that remain to be computed, by chain."""
     numbers = work.chains(blocks) if isinstance(work, ChainedWork) else [[number] for number in range(len(blocks))]
     chains: list[tuple[list[Block], Block | None]] = []
     for chain in numbers:

@@ -18,28 +18,12 @@ if TYPE_CHECKING:
 
 
 def work_of_case(case: Case, grid: Grid, **options: Any) -> ImpactWork | ParticleWork:
-    """Return the work for the variants of a case.
-
-    Parameters
-    ----------
-    case, grid
-        Base case and the grid of its variants.
-    **options
-        Further attributes of the work; see `rattlebox.studies.work.case_work.CaseWork`.
-    """
+    """Return the work for the variants of a case."""
     return ParticleWork(case, grid, **options) if case.particle_dampers else ImpactWork(case, grid, **options)
 
 
 def first_refused(work: ImpactWork | ParticleWork, result: xarray.Dataset) -> str:
-    """Return the values of the first refused variant and the reason; "" if none is refused.
-
-    Parameters
-    ----------
-    work
-        The work.
-    result
-        Its result.
-    """
+    """Return the values of the first refused variant and the reason; "" if none is refused."""
     refused = np.flatnonzero(result.status.values == Status.refused)
     if isinstance(work, ImpactWork) or not refused.size or not (why := work.refusal_reason(int(refused[0]))):
         return ""
