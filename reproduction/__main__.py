@@ -9,13 +9,7 @@ from pathlib import Path
 
 
 def main() -> int:
-    """Write the report that the command line requests.
-
-    Returns
-    -------
-    int
-        Exit code: 0, or 2 for bad input, which is reported without a traceback.
-    """
+    """Write the report that the command line requests."""
     parser = argparse.ArgumentParser(
         prog="python -m reproduction",
         description="Reproduce and judge the reference paper: all figures and claims on one page.",

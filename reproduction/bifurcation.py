@@ -23,17 +23,13 @@ from .reference import ALPHA, DAMPING, GAP, MASS, STIFFNESS
 from .runs import simulate_many
 from .two_impacts import TwoImpacts, two_impacts
 
-AMPLITUDE, FREQUENCY = 20.0, 18.0
-"""Of the load, while the other one varies [N], [Hz]."""
+AMPLITUDE, FREQUENCY = 20.0, 18.0  # Of the load, while the other one varies [N], [Hz]
 FREQUENCIES = np.arange(120, 241) / 10
 AMPLITUDES = np.arange(8, 161) / 2
-DURATION = 30.0
-"""Of each run [s]; the last impacts count."""
-HITS = 60
-"""Impacts kept of each run."""
+DURATION = 30.0  # Of each run [s]; the last impacts count
+HITS = 60  # Impacts kept of each run
 MEMBERS = 6
-SHOWN = CONSTANT_E, RIGID
-"""Models of the rows."""
+SHOWN = CONSTANT_E, RIGID  # Models of the rows
 
 
 def _case(model: str, amplitude: float, frequency: float, offset: float = 0.0) -> Case:
@@ -185,15 +181,7 @@ def _draw_exact(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 
 def is_settled(data: xr.Dataset, name: str) -> xr.DataArray:
-    """Return for which runs all speeds agree within 1 %.
-
-    Parameters
-    ----------
-    data
-        Dataset of this figure.
-    name
-        "frequency" or "amplitude".
-    """
+    """Return for which runs all speeds agree within 1 %."""
     speeds = data[f"speed_over_{name}"].transpose(..., "hit")
     return speeds.isel(hit=0).copy(data=_agree(speeds.values))
 

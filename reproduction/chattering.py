@@ -26,16 +26,13 @@ from .reference import GAP
 from .runs import simulate_many
 
 SHOWN = CONSTANT_E, RIGID
-LOAD = 500.0
-"""Of the runs shown in time [N]."""
-LOADS = np.array([50.0, 100.0, 200.0, 300.0, 375.0, 400.0, 500.0, 600.0])
-"""Of the runs that are counted [N]."""
+LOAD = 500.0  # Of the runs shown in time [N]
+LOADS = np.array([50.0, 100.0, 200.0, 300.0, 375.0, 400.0, 500.0, 600.0])  # Of the runs that are counted [N]
 CYCLES, COUNTED, DRAWN = 16, 8, 1.25
 """Length of each run, of its part that is counted and of its part that is drawn [cycles]."""
 SAMPLES = 2500
 MEMBERS = 6
-_LASTING = 5.0
-"""A contact lasts when it takes that many times as long as the collision of its speed."""
+_LASTING = 5.0  # A contact lasts when it takes that many times as long as the collision of its speed
 
 
 def _case(model: str, amplitude: float, offset: float = 0.0) -> Case:
@@ -222,8 +219,7 @@ def draw(data: xr.Dataset) -> Figure:
     return figure
 
 
-_BESIDE: Mapping[str, Any] = {"color": "#8a8f98"}
-"""Look of the ensemble in time."""
+_BESIDE: Mapping[str, Any] = {"color": "#8a8f98"}  # Look of the ensemble in time
 
 
 def _draw_in_time(panels: Sequence[Axes], one: xr.Dataset, colour: str) -> None:

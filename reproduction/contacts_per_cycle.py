@@ -23,14 +23,10 @@ from .models import COLOURS, MODELS, SHORT, described
 from .reference import DAMPING, GAP, MASS, STIFFNESS
 from .runs import simulate_many
 
-AMPLITUDE = 20.0
-"""Of the load [N]."""
-FREQUENCIES = np.arange(30, 231, 2) / 10
-"""Of the load [Hz]."""
-APART = 0.5
-"""Difference of mean counts above which two motions differ."""
-SETTLING, COUNTED = 30.0, 15.0
-"""Time left to settle, and least time counted afterwards [s]."""
+AMPLITUDE = 20.0  # Of the load [N]
+FREQUENCIES = np.arange(30, 231, 2) / 10  # Of the load [Hz]
+APART = 0.5  # Difference of mean counts above which two motions differ
+SETTLING, COUNTED = 30.0, 15.0  # Time left to settle, and least time counted afterwards [s]
 MEMBERS = 6
 
 

@@ -24,34 +24,7 @@ class Band(NamedTuple):
 
 
 def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float = 1e-6) -> list[Run]:
-    """Simulate a case from many nearby start positions.
-
-    Parameters
-    ----------
-    make_case
-        Returns the case whose ball starts displaced by an offset [m], most easily with `near`:
-        `lambda offset: paper_case(start=near(START[2], offset))`.
-    members
-        Number of runs.
-    reach
-        Largest offset in either direction [m].
-
-    Returns
-    -------
-    list of Run
-        By rising offset; the offsets are evenly spaced and the same in every call.
-
-    Raises
-    ------
-    ValueError
-        When there is no member.
-
-    Examples
-    --------
-    >>> from reproduction.reference import paper_case
-    >>> runs = ensemble(lambda offset: paper_case(start=near(0.0, offset), duration=2.0), members=8)
-    >>> low, median, high = band([run.ledger.channels["normal"] for run in runs])
-    """
+    """Simulate a case from many nearby start positions."""
     if members < 1:
         raise ValueError(f"members is {members}, but an ensemble needs at least 1")
     # A quarter step off centre: no two starts coincide when offsets are mirrored at a wall.
@@ -60,33 +33,12 @@ def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float
 
 
 def near(start: float, offset: float) -> float:
-    """Return the reduced start position displaced by an offset, mirrored at the walls.
-
-    Parameters
-    ----------
-    start
-        Reduced start position, -1 to 1.
-    offset
-        Displacement [m].
-    """
+    """Return the reduced start position displaced by an offset, mirrored at the walls."""
     place = start + offset / GAP
     return place if abs(place) <= 1 else float(np.copysign(2.0, place)) - place
 
 
 def band(values: ArrayLike, axis: int = 0) -> Band:
-    """Return the median of an ensemble and the band of its middle 80 %.
-
-    Parameters
-    ----------
-    values
-        Results of the members along `axis`, any shape.
-    axis
-        Axis of the members.
-
-    Returns
-    -------
-    Band
-        10 %, 50 % and 90 % quantiles; NaN wherever a member is NaN.
-    """
+    """Return the median of an ensemble and the band of its middle 80 %."""
     low, median, high = np.quantile(np.asarray(values, dtype=float), (0.1, 0.5, 0.9), axis=axis)
     return Band(low, median, high)

@@ -23,20 +23,14 @@ from .models import ALL_MODELS, COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, STEEL
 from .reference import CONSTANT, START, paper_case
 from .runs import simulate
 
-STRONG, WEAK = 5000.0, 100.0
-"""Amplitudes of the pulses of the paper [N]."""
-MEMBERS, FEWER = 64, 8
-"""Runs of an ensemble, and of one with Thornton's contact, which takes twenty times as long."""
-DURATION, RATE = 10.0, 500.0
-"""Of the runs [s], and their samples a second [Hz]."""
-WINDOW = 50
-"""Samples of a mean over 0.1 s, one period of the structure."""
+STRONG, WEAK = 5000.0, 100.0  # Amplitudes of the pulses of the paper [N]
+MEMBERS, FEWER = 64, 8  # Runs of an ensemble, and of one with Thornton's contact, which takes twenty times as long
+DURATION, RATE = 10.0, 500.0  # Of the runs [s], and their samples a second [Hz]
+WINDOW = 50  # Samples of a mean over 0.1 s, one period of the structure
 LATE, FEW = 2.0, 10
 """The time after which the paper compares the smoothness [s], and the number of contacts that are still a few."""
-TIMES = np.round(np.arange(1, 101) * 0.1, 1)
-"""Ends of the intervals after the pulse in which impacts are counted [s]."""
-_LASTING = 5.0
-"""A contact lasts if it takes this many times as long as an elastic collision at its speed."""
+TIMES = np.round(np.arange(1, 101) * 0.1, 1)  # Ends of the intervals after the pulse in which impacts are counted [s]
+_LASTING = 5.0  # A contact lasts if it takes this many times as long as an elastic collision at its speed
 _THORNTON = {STEEL: None, RIGID: "rigid"}
 
 

@@ -19,30 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """One reproduced figure.
-
-    Parameters
-    ----------
-    number
-        Number in the paper ("4", "7c"), "R1", ... for figures that judge the paper, "A1", ... for its extensions.
-    title
-        Title of one line.
-    data
-        Function that computes the data: an xarray.Dataset in SI units, in which each variable and coordinate has the
-        attributes `units` ("" for a pure number) and `long_name`.
-    draw
-        Function that draws the dataset in the style of `rattlebox.plots`.
-    caption
-        Function that states the message of the figure first, then its symbols, in at most three lines of the page.
-    cases
-        Function that returns the cases of the figure by name; all runs of `data` differ from them in numbers only.
-    claims
-        Function that returns the claims of the paper that the dataset tests.
-    lessons
-        Function that returns sentences for the summary of the page.
-    film
-        Function that returns an animation as an SVG element.
-    """
+    """One reproduced figure."""
 
     number: str
     title: str

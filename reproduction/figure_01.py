@@ -19,8 +19,7 @@ from .models import described
 from .reference import GAP, START, paper_case
 
 _CASES = {1: "Case 1: centred", 2: "Case 2: at the trailing wall", 3: "Case 3: at the leading wall"}
-_BALL, _ROOM = 1.0, 0.55
-"""Radius of the drawn ball and clearance on each side, far larger than to scale."""
+_BALL, _ROOM = 1.0, 0.55  # Radius of the drawn ball and clearance on each side, far larger than to scale
 
 
 def cases() -> Mapping[str, Case]:

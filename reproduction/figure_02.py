@@ -20,8 +20,7 @@ from .reference import ALPHA, GAP, RADIUS
 from .runs import simulate_many
 
 _DEGREE = 9
-_FIT_FROM = (0.1, 0.01, 0.001)
-"""Least restitution of the fits; the paper does not print it."""
+_FIT_FROM = (0.1, 0.01, 0.001)  # Least restitution of the fits; the paper does not print it
 _STYLES = ("-", (0, (5, 1.5)), (0, (1, 1.2)))
 _TRIED = (1e-4, 1e-3, ALPHA, 0.03, 0.1 * sqrt(5), 0.3 * sqrt(5), 0.5 * sqrt(5), 0.9 * sqrt(5))
 """Coefficients of the simulated impacts."""

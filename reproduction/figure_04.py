@@ -32,19 +32,15 @@ SCHEMES: Mapping[str, EventDriven | TwoStep] = {
 """Ours, the paper's with its printed steps, and ours with other rounding errors."""
 _OURS, _THEIRS, _TWIN = SCHEMES
 
-CAVITY = 2 * GAP
-"""How far apart two balls in the same cavity can be [m]."""
-PARTED = 0.1 * CAVITY
-"""Two motions that differ by more have parted [m]."""
+CAVITY = 2 * GAP  # How far apart two balls in the same cavity can be [m]
+PARTED = 0.1 * CAVITY  # Two motions that differ by more have parted [m]
 _SPAN, _APART, _BEGIN = 10.0, 4.0, 0.3
 _SLOW, _RATE, _FAST = (
     np.arange(int(span * rate) + 1) / rate for span, rate in ((_SPAN, 40), (_APART, 400), (_BEGIN, 2000))
 )
 """Output times of shares, distances and motion [s]."""
-_LATER = 0.9 + np.arange(801) / 2000
-"""Times around the parting [s]."""
-_WINDOW = 20
-"""Samples of a window of 0.05 s, half the structure's period."""
+_LATER = 0.9 + np.arange(801) / 2000  # Times around the parting [s]
+_WINDOW = 20  # Samples of a window of 0.05 s, half the structure's period
 _NEIGHBOUR, _MEMBERS = 1e-12, 32
 
 

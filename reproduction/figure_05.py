@@ -20,8 +20,7 @@ from .reference import ALPHA, paper_case
 _WALLS = {STEEL: "steel", RIGID: "rigid"}
 _LAWS = {"Jackson-Green": JacksonGreen(), "Thornton": ThorntonRestitution()}
 _MEMBERS = 16
-EDGES = np.geomspace(1e-3, 0.3, 61)
-"""Edges of the classes of approach speed [m/s]."""
+EDGES = np.geomspace(1e-3, 0.3, 61)  # Edges of the classes of approach speed [m/s]
 
 
 def cases() -> Mapping[str, Case]:

@@ -23,14 +23,11 @@ from .reference import GAP, PLASTIC, RADIUS
 from .runs import simulate_many
 
 _BALL = Sphere(radius=RADIUS, material="steel")
-PAIR = Pair(Body(_BALL.material, RADIUS, _BALL.weight), Body(_BALL.material))
-"""The ball and a wall that cannot move."""
+PAIR = Pair(Body(_BALL.material, RADIUS, _BALL.weight), Body(_BALL.material))  # The ball and a wall that cannot move
 _LAW = JacksonGreen()
-_STARTS = {"plastic": 10.0, "elastic": 0.8}
-"""Speeds at the start over the elastic limit."""
+_STARTS = {"plastic": 10.0, "elastic": 0.8}  # Speeds at the start over the elastic limit
 _HITS = 2000
-_TIMES = 0.2 * np.linspace(0, 1, 6001) ** 2
-"""Of the portrait [s]: closer at the beginning, when the ball is fast."""
+_TIMES = 0.2 * np.linspace(0, 1, 6001) ** 2  # Of the portrait [s]: closer at the beginning, when the ball is fast
 _MEMBERS = 8
 _YIELD = (1e6, 1e7, 1e8, 1.03e9)
 

@@ -24,8 +24,7 @@ PARTS: Mapping[str, str] = {"structure": "structure", "particles": "ball"}
 _LOOKS: Mapping[str, tuple[str, float]] = {"structure": ("-", 1.0), "ball": (":", 0.5)}
 """Line of the median and opacity of the single run."""
 _SPAN, _RATE, _BEGIN, _MEMBERS = 10.0, 1000.0, 0.6, 64
-_WINDOW = 100
-"""Samples of a mean over 0.1 s, one period of the structure."""
+_WINDOW = 100  # Samples of a mean over 0.1 s, one period of the structure
 
 
 def cases() -> Mapping[str, Case]:

@@ -30,8 +30,7 @@ from .models import (
 )
 from .runs import simulate
 
-CLAIMED = 100.0
-"""Times that the elasto-plastic model dissipates faster, as the paper says."""
+CLAIMED = 100.0  # Times that the elasto-plastic model dissipates faster, as the paper says
 _TIMES = np.unique(np.round(np.concatenate([np.geomspace(4e-3, 10, 240), [10.0]]), 6)).tolist()
 _MEMBERS = 64
 

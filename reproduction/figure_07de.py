@@ -25,8 +25,7 @@ from .runs import simulate_many
 
 AMPLITUDES = (100.0, 200.0, 500.0, 700.0, 1e3, 1.5e3, 2e3, 3e3, 5e3, 1e4, 2e4)
 """Of the pulse [N]; the paper prints only 100 and 5000 N."""
-PRINTED = 5e3
-"""Largest amplitude of the paper [N]."""
+PRINTED = 5e3  # Largest amplitude of the paper [N]
 NAMES: Mapping[int, str] = {1: "centred", 2: "trailing wall", 3: "leading wall"}
 MEMBERS = 24
 _SPAN = 10.0

@@ -26,8 +26,7 @@ from .models import ALL_MODELS, CONSTANT_E, RIGID, described, model_case, model_
 from .reference import DAMPING, GAP, MASS, PULSE, START, STIFFNESS
 from .runs import simulate_many
 
-AMPLITUDE = 100.0
-"""Of the pulse [N]."""
+AMPLITUDE = 100.0  # Of the pulse [N]
 DURATION, RATE, MEMBERS = 4.0, 1000.0, 24
 SHOWN: Mapping[str, str] = {CONSTANT_E: "constant e", RIGID: "elasto-plastic, no loss"}
 """Models of the rows; at these speeds steel and rigid wall are the same."""

@@ -21,17 +21,12 @@ from .models import ALL_MODELS, COLOURS, CONSTANT_E, MODELS, SHORT, STEEL, descr
 from .reference import MASS, STIFFNESS, paper_case
 from .runs import simulate
 
-DURATION, RATE = 10.0, 2000.0
-"""Of the record [s], and its samples a second [Hz]."""
-WINDOW = "boxcar"
-"""A transient that begins and ends near rest needs no taper, and a taper would hide how it begins."""
-SHOWN = slice(1.0, 300.0)
-"""Frequencies [Hz]."""
-NEAR, PADDING = slice(9.0, 11.0), 8
-"""Frequencies about the resonance [Hz], and how much finer their spectrum is drawn."""
+DURATION, RATE = 10.0, 2000.0  # Of the record [s], and its samples a second [Hz]
+WINDOW = "boxcar"  # A transient that begins and ends near rest needs no taper, and a taper would hide how it begins
+SHOWN = slice(1.0, 300.0)  # Frequencies [Hz]
+NEAR, PADDING = slice(9.0, 11.0), 8  # Frequencies about the resonance [Hz], and how much finer their spectrum is drawn
 MEMBERS = 20
-PRINTED = 61.3
-"""Resonance that the paper reads [rad/s]."""
+PRINTED = 61.3  # Resonance that the paper reads [rad/s]
 _PARTS = ("ball", "structure", "near")
 
 

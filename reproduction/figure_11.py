@@ -20,17 +20,14 @@ from .models import COLOURS, CONSTANT_E, RIGID, SHORT, STYLES, described, model_
 from .reference import START, paper_case
 from .runs import simulate
 
-AMPLITUDE = 100.0
-"""Of the pulse [N]."""
+AMPLITUDE = 100.0  # Of the pulse [N]
 DURATION, RATE, MEMBERS = 30.0, 500.0, 48
-SHOWN, EVERY = 2.0, 2
-"""Time that is drawn [s], and of how many samples one."""
+SHOWN, EVERY = 2.0, 2  # Time that is drawn [s], and of how many samples one
 LEVELS = np.append(np.geomspace(0.9, 0.04, 25), (0.5, 0.05))
 """Shares of the bare structure's peak below which the response is to stay."""
 WALLS: Mapping[str, int] = {"leading": 3, "trailing": 2}
 """Wall that the ball of the paper's case 3 touches, as read and with cases 2 and 3 swapped, and our number of that start."""
-MODELS = CONSTANT_E, RIGID
-"""Models shown; at these speeds a steel wall is the same as a rigid one."""
+MODELS = CONSTANT_E, RIGID  # Models shown; at these speeds a steel wall is the same as a rigid one
 
 
 def _case(model: str, wall: str) -> Case:

@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-SLOWER = 10
-"""Times that the animation is slower than the motion."""
+SLOWER = 10  # Times that the animation is slower than the motion
 _SCALE, _BALL = 18.0, 22.0
 """Pixels per millimetre of motion, and radius of the ball [px]: the motion is magnified against the ball."""
 _ROW, _CENTRE, _HALF, _SUPPORT = 96, 300, 90, 20
@@ -21,26 +20,14 @@ class Row(NamedTuple):
     """One run of the animation."""
 
     name: str
-    structure: NDArray[np.float64]
-    """Displacement at evenly spaced times [m]."""
-    ball: NDArray[np.float64]
-    """Position of the ball in its cavity [m]."""
-    energy: NDArray[np.float64]
-    """Share of the work that is left."""
-    gap: float
-    """Clearance on each side of the centred ball [m]; 0 for no ball."""
+    structure: NDArray[np.float64]  # Displacement at evenly spaced times [m]
+    ball: NDArray[np.float64]  # Position of the ball in its cavity [m]
+    energy: NDArray[np.float64]  # Share of the work that is left
+    gap: float  # Clearance on each side of the centred ball [m]; 0 for no ball
 
 
 def film(rows: Sequence[Row], span: float) -> str:
-    """Return the animation.
-
-    Parameters
-    ----------
-    rows
-        Runs, drawn below each other.
-    span
-        Time that is shown [s].
-    """
+    """Return the animation."""
     names = escape("; ".join(row.name for row in rows))
     parts = "".join(_row(row, k * _ROW, SLOWER * span) for k, row in enumerate(rows))
     size = f"0 0 760 {_ROW * len(rows) + 10}"

@@ -30,15 +30,11 @@ GAPS = np.array([0.1, 0.2, 0.4, 0.8, 1.2, 1.6, 2.0, 2.2, 2.3, 2.4, 2.6, 3.0]) * 
 BEST = 2.3e-3
 """Gap of the best damping that does not depend on chance [m]: from 2.4 mm on some starts settle much later."""
 RESTITUTIONS = np.array([0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.97, 0.98, 0.99])
-COMPARED = np.array([GAP, BEST])
-"""Gaps for which the restitution is varied [m]."""
-SETTLED = 0.05
-"""Share of the peak without damper at which the motion has settled."""
-UNTIL = 5.0
-"""Time in which RMS and losses are compared [s]."""
+COMPARED = np.array([GAP, BEST])  # Gaps for which the restitution is varied [m]
+SETTLED = 0.05  # Share of the peak without damper at which the motion has settled
+UNTIL = 5.0  # Time in which RMS and losses are compared [s]
 DURATION, RATE, MEMBERS = 10.0, 500.0, 24
-FILMED, FRAMES = 3.0, 600
-"""Time that the animation shows [s], and its number of positions."""
+FILMED, FRAMES = 3.0, 600  # Time that the animation shows [s], and its number of positions
 MEASURES: Mapping[str, tuple[str, str]] = {
     "loss": ("", "share of the work lost in impacts in 10 s"),
     "settled": ("s", "time after which the displacement stays below 5 % of the peak without damper (10 s if later)"),

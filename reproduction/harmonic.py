@@ -10,21 +10,16 @@ from rattlebox import SDOF, Case, EventDriven, Harmonic, ImpactDamper, Newton, O
 
 from .reference import CONSTANT, DAMPING, GAP, MASS, RADIUS, STIFFNESS, Contact
 
-BALL = Sphere(radius=RADIUS, material="steel").weight
-"""Mass of the ball [kg]."""
+BALL = Sphere(radius=RADIUS, material="steel").weight  # Mass of the ball [kg]
 
 
 class State(NamedTuple):
     """State of structure and ball when the sine begins."""
 
-    displacement: float = 0.0
-    """Of the structure [m]."""
-    velocity: float = 0.0
-    """Of the structure [m/s]."""
-    ball_position: float = 0.0
-    """Of the ball in its cavity, from the centre [m]."""
-    ball_velocity: float = 0.0
-    """Of the ball over ground [m/s]."""
+    displacement: float = 0.0  # Of the structure [m]
+    velocity: float = 0.0  # Of the structure [m/s]
+    ball_position: float = 0.0  # Of the ball in its cavity, from the centre [m]
+    ball_velocity: float = 0.0  # Of the ball over ground [m/s]
 
 
 def harmonic_case(
@@ -40,27 +35,7 @@ def harmonic_case(
     ball: bool = True,
     name: str = "",
 ) -> Case:
-    """Return the paper's system under a sinusoidal force that starts at zero.
-
-    Parameters
-    ----------
-    contact
-        Contact law: CONSTANT, PLASTIC, PLASTIC_RIGID, or any other.
-    amplitude, frequency
-        Amplitude [N] and frequency [Hz] of the load.
-    state
-        Initial state; default at rest, with the ball centred.
-    duration
-        Duration of the run [s].
-    times, rate
-        Output times [s], or sampling rate [Hz]; default those for figures of the motion.
-    method
-        Method; default event-driven.
-    ball
-        Whether the case has the damper.
-    name
-        Name of the case.
-    """
+    """Return the paper's system under a sinusoidal force that starts at zero."""
     z, v, y, w = state or State()
     damper = ImpactDamper(
         balls=(Sphere(radius=RADIUS, material="steel"),),
@@ -81,15 +56,7 @@ def harmonic_case(
 
 
 def riding(amplitude: float, frequency: float, place: float = 0.0) -> State:
-    """Return the initial state of the steady motion in which the ball moves with the structure.
-
-    Parameters
-    ----------
-    amplitude, frequency
-        Amplitude [N] and frequency [Hz] of the load.
-    place
-        Position of the ball relative to the centre of its cavity [m].
-    """
+    """Return the initial state of the steady motion in which the ball moves with the structure."""
     omega = 2 * pi * frequency
     response = amplitude / (STIFFNESS - (MASS + BALL) * omega**2 + 1j * DAMPING * omega)
     speed = omega * response.real

@@ -20,8 +20,7 @@ from .figure import Reproduction, letters
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, STEEL, described, two
 from .reference import ALPHA, CONSTANT, START, paper_case
 
-PRINTED = 1030e6
-"""Yield stress of the paper [Pa]."""
+PRINTED = 1030e6  # Yield stress of the paper [Pa]
 YIELD_STRESSES = (80e6, 100e6, 120e6, 150e6, 200e6, 300e6, 400e6, 500e6, 700e6, 850e6, PRINTED, 1.2e9, 1.5e9)
 """Range from the validity limit of the restitution law to almost elastic impacts [Pa]."""
 CLAIMED = 100.0

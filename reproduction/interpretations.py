@@ -41,16 +41,14 @@ from .reference import (
 )
 from .runs import simulate
 
-_CAVITY, _SIZE = 67.14e-3, 33.17e-3
-"""Printed length of the cavity and size of the ball [m]."""
+_CAVITY, _SIZE = 67.14e-3, 33.17e-3  # Printed length of the cavity and size of the ball [m]
 _RADII = {"radius": _SIZE, "diameter": _SIZE / 2}
 _MASS_SHARE = 0.06
 _STEEL = materials()["steel"]
 _EACH = ("reading", "start", "level")
 _MEMBERS = 16
 
-PAIR = contact_pairs(paper_case(), 0)[0]
-"""The ball and the wall of the structure that moves."""
+PAIR = contact_pairs(paper_case(), 0)[0]  # The ball and the wall of the structure that moves
 _WALLS = {"steel": PAIR, "rigid": PAIR.against("rigid")}
 _REDUCED, _BALL = float(PAIR.mass), float(PAIR.above.mass)
 

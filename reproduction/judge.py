@@ -30,28 +30,22 @@ AS_READ, SWAPPED = "as read", "swapped"
 STATED = RIGID
 """Interpretation that the paper states: contact with a rigid body (section 3.2), and equation (6) for the stiffness."""
 WALLS = tuple(model for model in ALL_MODELS if model != CONSTANT_E)
-HEDGED = 0.1
-"""Relative tolerance of a number that the paper prints with "about", "nearly" or "~"."""
-SIZE = 2.0
-"""Factor within which the size of an effect is right qualitatively."""
+HEDGED = 0.1  # Relative tolerance of a number that the paper prints with "about", "nearly" or "~"
+SIZE = 2.0  # Factor within which the size of an effect is right qualitatively
 
-RESAMPLES = 400
-"""Number of bootstrap samples behind an interval."""
+RESAMPLES = 400  # Number of bootstrap samples behind an interval
 
 Range = tuple[float, float]
-Place = tuple[str, str]
-"""Model, and order of the cases or ""."""
+Place = tuple[str, str]  # Model, and order of the cases or ""
 
 
 class Estimate(NamedTuple):
     """Median of an ensemble of starts within a micrometre, or an exact value."""
 
     value: float
-    low: float
-    """Lower end of the 95 % interval of the median."""
+    low: float  # Lower end of the 95 % interval of the median
     high: float
-    least: float
-    """Lower end of the band that contains the middle 80 % of the starts."""
+    least: float  # Lower end of the band that contains the middle 80 % of the starts
     most: float
 
 
@@ -61,15 +55,7 @@ def exact(value: Any) -> Estimate:
 
 
 def estimate(function: Callable[..., NDArray[np.float64]], *samples: Any) -> Estimate:
-    """Estimate a function of medians with its 95 % interval from bootstrap samples.
-
-    Parameters
-    ----------
-    function
-        Function of one median per sample, which must accept arrays.
-    *samples
-        Results of the members of independent ensembles, (n,) each.
-    """
+    """Estimate a function of medians with its 95 % interval from bootstrap samples."""
     random = np.random.default_rng(1)
     arrays = [np.asarray(sample, dtype=float) for sample in samples]
     drawn = [np.median(random.choice(array, (RESAMPLES, array.size)), axis=1) for array in arrays]
@@ -93,34 +79,7 @@ def size_of(number: float) -> Range:
 
 @dataclass(frozen=True)
 class Claim:
-    """Statement of the paper, the quantity that tests it, and its value under each interpretation.
-
-    Parameters
-    ----------
-    statement, where
-        Paraphrase of the statement with its hedges, and section, figure or equation.
-    quantity
-        Quantity that is computed, with its unit in parentheses at the end if it has one.
-    cells
-        Value by model and order of the cases.
-    accept
-        Values with which the claim holds, both ends included; one end may be infinite.
-    partly
-        Values with which it holds qualitatively: for a part of the time or range, or within `SIZE` of a printed number.
-    printed
-        Number that the paper prints; "" if there is none.
-    scope
-        "elasto-plastic": the claim is about that model, and a value of the constant model is for comparison; "constant":
-        about that model; "both": the claim must hold with constant and with elasto-plastic restitution; "system": it
-        does not depend on the model, and its value is stored under the constant model.
-    kind
-        "test"; "construction" for what follows from equation (11); "misprint" for a printed value in `cells` that
-        contradicts the corrected one; "unchecked" for claims without a number or about curves that we do not have.
-    note
-        Further results that explain the verdict.
-    see
-        Number of the figure that shows it; default the figure whose claim it is.
-    """
+    """Statement of the paper, the quantity that tests it, and its value under each interpretation."""
 
     statement: str
     where: str
@@ -140,22 +99,12 @@ def by_wall(values: Mapping[str, Estimate]) -> dict[Place, Estimate]:
     return {(model, ""): value for model, value in values.items()}
 
 
-PRINTED, CORRECTED = ("printed", ""), ("corrected", "")
-"""Places of the two values of a misprint."""
-SYSTEM = (CONSTANT_E, "")
-"""Place of the value of a claim about the system."""
+PRINTED, CORRECTED = ("printed", ""), ("corrected", "")  # Places of the two values of a misprint
+SYSTEM = (CONSTANT_E, "")  # Place of the value of a claim about the system
 
 
 def grade(value: Estimate, accept: Range, partly: Range | None = None) -> Grade:
-    """Return whether a value is in the range in which a claim holds.
-
-    Parameters
-    ----------
-    value
-        Computed value with the 95 % interval of its median.
-    accept, partly
-        Ranges of the claim.
-    """
+    """Return whether a value is in the range in which a claim holds."""
     if isnan(value.value):
         return ""
     for wanted, result in ((accept, "holds"), (partly, "partly")):
@@ -183,15 +132,11 @@ def graded(claim: Claim) -> dict[Place, Grade]:
     }
 
 
-ORDER: Sequence[Grade] = ("holds", "", "partly", "undecided", "fails")
-"""Grades from the best to the worst."""
+ORDER: Sequence[Grade] = ("holds", "", "partly", "undecided", "fails")  # Grades from the best to the worst
 
 
 def interpreted(claim: Claim) -> dict[Place, Grade]:
-    """Return the grade of a claim under each interpretation: a wall and an order of the cases.
-
-    A claim about both models has the lower of the grades of its wall and of constant restitution.
-    """
+    """Return the grade of a claim under each interpretation: a wall and an order of the cases."""
     grades = graded(claim)
     orders = list(dict.fromkeys(order for _, order in grades))
     if claim.scope in ("system", "constant") or claim.kind == "misprint":
@@ -254,13 +199,7 @@ RULE = (
 
 
 def fit(claims: Sequence[Claim]) -> dict[Place, dict[Grade, int]]:
-    """Count the grades of each interpretation over the claims about elasto-plastic impacts.
-
-    Parameters
-    ----------
-    claims
-        Claims of all kinds; those that do not depend on the wall are left out, and those without a value for each wall.
-    """
+    """Count the grades of each interpretation over the claims about elasto-plastic impacts."""
     kinds = [c for c in claims if c.kind == "test" and c.scope in ("elasto-plastic", "both")]
     tested = [c for c in kinds if {wall for wall, _ in c.cells} >= set(WALLS)]
     counts: dict[Place, dict[Grade, int]] = {}

@@ -28,23 +28,16 @@ from .two_impacts import two_impacts
 
 Array = NDArray[np.float64]
 
-DISTANCE = 1e-12
-"""Between the starts of neighbours [m]."""
-SATURATION = GAP / 100
-"""Separation at which growth ends [m]."""
+DISTANCE = 1e-12  # Between the starts of neighbours [m]
+SATURATION = GAP / 100  # Separation at which growth ends [m]
 PAIRS = 16
-REACH = 1e-6
-"""Starts of the pairs differ by up to this much to either side [m]."""
-PULSES = {5000.0: 6.0, 100.0: 9.0}
-"""Amplitude [N] and length of the run [s]."""
-WINDOWS, SAMPLES = 300, 5
-"""Windows of time of a run after a pulse, and samples in each."""
-AMPLITUDE = 20.0
-"""Of the harmonic load [N]."""
+REACH = 1e-6  # Starts of the pairs differ by up to this much to either side [m]
+PULSES = {5000.0: 6.0, 100.0: 9.0}  # Amplitude [N] and length of the run [s]
+WINDOWS, SAMPLES = 300, 5  # Windows of time of a run after a pulse, and samples in each
+AMPLITUDE = 20.0  # Of the harmonic load [N]
 IRREGULAR, REGULAR = 18.5, 22.0
 """Frequencies of it at which the motion is irregular, and has two contacts in each cycle [Hz]."""
-SETTLED, STROBES = 600, 80
-"""Cycles to settle, and cycles watched."""
+SETTLED, STROBES = 600, 80  # Cycles to settle, and cycles watched
 KINDS = f"irregular, {IRREGULAR:g} Hz", f"two contacts a cycle, {REGULAR:g} Hz", f"without the ball, {REGULAR:g} Hz"
 
 
@@ -54,18 +47,13 @@ _FIT: Mapping[str, Any] = {"color": INK, "lw": 2.0, "alpha": 0.4}
 class Separation(NamedTuple):
     """Separation of the pairs of an ensemble."""
 
-    separation: Array
-    """Geometric mean [m]."""
-    spread: Array
-    """Tenth percentile, median and ninetieth percentile of the pairs [m]."""
-    fit: Array
-    """Exponential fitted to it [m], NaN outside."""
+    separation: Array  # Geometric mean [m]
+    spread: Array  # Tenth percentile, median and ninetieth percentile of the pairs [m]
+    fit: Array  # Exponential fitted to it [m], NaN outside
     exponent: float
     standard_error: float
-    onset: float
-    """Time at which growth begins [s]."""
-    determination: float
-    """Share of the variance of the logarithm that the fit explains."""
+    onset: float  # Time at which growth begins [s]
+    determination: float  # Share of the variance of the logarithm that the fit explains
 
 
 def _pulse(model: str, case: int, amplitude: float, offset: float) -> Case:

@@ -38,12 +38,10 @@ MARKS: dict[Grade, str] = {"holds": "✓", "partly": "≈", "fails": "✗", "und
 class Entry(NamedTuple):
     """One value of a cell."""
 
-    label: str
-    """Order of the cases, or "printed" and "corrected"; "" if there is only one value."""
+    label: str  # Order of the cases, or "printed" and "corrected"; "" if there is only one value
     grade: Grade
     text: str
-    scatter: str
-    """Interval of the median and band of the starts; "" for exact values."""
+    scatter: str  # Interval of the median and band of the starts; "" for exact values
     dagger: bool
 
 
@@ -139,13 +137,7 @@ def best_fit(claims: Sequence[Claim]) -> str:
 
 
 def documentation(claims: Sequence[Claim]) -> str:
-    """Return the matrix, the fit of each interpretation, the interpretations and the misprints as a Markdown page.
-
-    Parameters
-    ----------
-    claims
-        All claims, in any order.
-    """
+    """Return the matrix, the fit of each interpretation, the interpretations and the misprints as a Markdown page."""
     claims = sorted(claims, key=lambda claim: place(claim.where))
     lines = [
         "<!-- `python -m reproduction` writes this file as figures/figure_claims.md. -->",
@@ -197,13 +189,7 @@ _SECTION_OF = {
 
 
 def place(where: str) -> tuple[float, ...]:
-    """Return a key that sorts the locations of claims by section, then by figure.
-
-    Parameters
-    ----------
-    where
-        Text of `Claim.where`, such as "section 5.1, figure 7c", "equation (5)", "table 1" or "conclusion 3".
-    """
+    """Return a key that sorts the locations of claims by section, then by figure."""
     where = where.lower()
     section = re.search(r"sections? (\d+(?:\.\d+)?)", where)
     things = re.search(r"(fig|equation|table|conclusion)(?:ure)?s?\.? \(?(\d+)([a-z]?)", where)

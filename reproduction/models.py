@@ -50,30 +50,12 @@ def model_case(model: str, *, start: float = 0.0, **options: Any) -> Case:
 
 
 def model_runs(model: str, case: int, members: int, **options: Any) -> list[Run]:
-    """Simulate an ensemble of starts within a micrometre of a case of the paper.
-
-    Parameters
-    ----------
-    model
-        Name of the model.
-    case
-        Case of the paper, 1 to 3.
-    members
-        Number of runs.
-    **options
-        Options of `paper_case`.
-    """
+    """Simulate an ensemble of starts within a micrometre of a case of the paper."""
     return ensemble(lambda offset: model_case(model, start=near(START[case], offset), **options), members)
 
 
 def by_model(of: Callable[[str], str]) -> str:
-    """Return a text with the results of the models of the figures.
-
-    Parameters
-    ----------
-    of
-        Function of the model that returns its result, such as "5 %".
-    """
+    """Return a text with the results of the models of the figures."""
     return ", ".join(f"{of(model)} ({SHORT[model]})" for model in MODELS)
 
 
@@ -83,15 +65,5 @@ def two(value: Any) -> str:
 
 
 def described(dims: Any, values: Any, units: str, long_name: str) -> tuple[Any, ...]:
-    """Return a variable of a dataset with its unit and meaning.
-
-    Parameters
-    ----------
-    dims
-        Name or names of the dimensions; () for a single number.
-    values
-        Values of the variable.
-    units, long_name
-        Attributes of the variable.
-    """
+    """Return a variable of a dataset with its unit and meaning."""
     return dims, np.asarray(values), {"units": units, "long_name": long_name}

@@ -20,13 +20,11 @@ from .models import COLOURS, SHORT
 from .reading import EQUATIONS, INTERPRETATIONS, MISPRINTS, PROVENANCE
 from .runs import Files
 
-GENERATOR = '<meta name="generator" content="Rattlebox">'
-"""Mark by which pages of this program are recognised."""
+GENERATOR = '<meta name="generator" content="Rattlebox">'  # Mark by which pages of this program are recognised
 PAPER = "Energy Dissipation in Particle-based Impact Damper Systems: Investigation based on Elasto-plastic impact model"
 
 
-FIRST = "figure_01"
-"""Figure that opens the page, with the system."""
+FIRST = "figure_01"  # Figure that opens the page, with the system
 
 
 class Column(NamedTuple):
@@ -48,21 +46,7 @@ class Table:
 
 @dataclass(frozen=True)
 class FigureFiles:
-    """Figure that was computed, drawn and written; paths are relative to the page.
-
-    Attributes
-    ----------
-    number, title, name, caption, claims, lessons, film
-        Fields of `Reproduction`, evaluated for the data.
-    picture
-        Data URL of the drawing, escaped for an attribute in double quotes.
-    svg, png, tables
-        Paths of the files.
-    cases
-        Case files by name, and study files of the runs that differ from them.
-    computing, drawing
-        Wall-clock time [s].
-    """
+    """Figure that was computed, drawn and written; paths are relative to the page."""
 
     number: str
     title: str
@@ -99,21 +83,7 @@ def render(
     workers: int,
     seconds: float,
 ) -> str:
-    """Return the page as self-contained HTML.
-
-    Parameters
-    ----------
-    figures
-        Figures in the order of the page.
-    table
-        Path of the matrix as a Markdown file.
-    missing
-        Numbers of the figures that were not computed.
-    cores, workers
-        Number of processor cores of the machine, and number of processes used.
-    seconds
-        Total wall-clock time [s].
-    """
+    """Return the page as self-contained HTML."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     from rattlebox import EventDriven, __version__

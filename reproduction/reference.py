@@ -18,20 +18,15 @@ _RADIUS = _DAMPER.balls[0].radius
 assert _STRUCTURE.stiffness is not None and _STRUCTURE.damping is not None
 assert _DAMPER.gap is not None and _RADIUS is not None
 
-MASS, STIFFNESS, DAMPING = _STRUCTURE.mass, _STRUCTURE.stiffness, _STRUCTURE.damping
-"""Structure [kg, N/m, N s/m]."""
-RADIUS, GAP = _RADIUS, _DAMPER.gap
-"""Radius of the ball; d0, the clearance on each side when it is centred [m]."""
-ALPHA = _DAMPER.contact.alpha
-"""Tsuji's coefficient of the constant-restitution model."""
-PULSE = _PULSE.duration
-"""Duration of the half sine [s]."""
+MASS, STIFFNESS, DAMPING = _STRUCTURE.mass, _STRUCTURE.stiffness, _STRUCTURE.damping  # Structure [kg, N/m, N s/m]
+RADIUS, GAP = _RADIUS, _DAMPER.gap  # Radius of the ball; d0, the clearance on each side when it is centred [m]
+ALPHA = _DAMPER.contact.alpha  # Tsuji's coefficient of the constant-restitution model
+PULSE = _PULSE.duration  # Duration of the half sine [s]
 
 START = {1: 0.0, 2: -1.0, 3: 1.0}
 """Reduced start position of the paper's cases: centred, touching the trailing wall, touching the leading wall."""
 
-CONSTANT = _DAMPER.contact
-"""The constant-restitution model."""
+CONSTANT = _DAMPER.contact  # The constant-restitution model
 PLASTIC = rb.Tsuji(restitution=rb.JacksonGreen(), ending="zero_overlap")
 """The elasto-plastic impact model between a steel ball and a steel wall."""
 PLASTIC_RIGID = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid"), ending="zero_overlap")
@@ -51,29 +46,7 @@ def paper_case(
     ball: bool = True,
     name: str = "",
 ) -> rb.Case:
-    """Return the paper's case.
-
-    Parameters
-    ----------
-    contact
-        Contact law: CONSTANT, PLASTIC, PLASTIC_RIGID, or any other.
-    start
-        Reduced start position of the ball, -1 at the trailing wall to 1 at the leading wall; see START.
-    amplitude
-        Amplitude of the half sine [N].
-    duration
-        Duration of the run [s].
-    times, rate
-        Output times [s], or samples a second [Hz]; default those that suit pictures of the motion.
-    method
-        Method; default event-driven.
-    wall
-        "rigid" makes the wall rigid in the contact stiffness too.
-    ball
-        False leaves the damper out.
-    name
-        Name of the case.
-    """
+    """Return the paper's case."""
     case = rb.reference_case(
         contact,
         start=start,

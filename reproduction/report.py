@@ -47,8 +47,7 @@ FIGURES = (
 """Modules of the figures, in the order of the page."""
 
 _FIGURE_FOLDER, _CASE_FOLDER = "figures", "cases"
-TABLE = f"{_FIGURE_FOLDER}/figure_claims.md"
-"""Matrix of the claims for the documentation."""
+TABLE = f"{_FIGURE_FOLDER}/figure_claims.md"  # Matrix of the claims for the documentation
 
 Progress = Callable[[int, int, str], None]
 """Function of the number of finished figures, their total and the name of the last one."""
@@ -116,13 +115,7 @@ def cores() -> int:
 
 
 def choose(only: Sequence[str]) -> tuple[str, ...]:
-    """Return the modules of the figures with the given numbers, in the order of the page; default all.
-
-    Raises
-    ------
-    ValueError
-        If there is no such figure.
-    """
+    """Return the modules of the figures with the given numbers, in the order of the page; default all."""
     numbers = {module: load_figure(module).number for module in FIGURES}
     wanted: set[str] = set()
     for text in only:

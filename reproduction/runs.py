@@ -16,11 +16,9 @@ import rattlebox as rb
 if TYPE_CHECKING:
     from rattlebox import Case, Run
 
-Place = tuple[str | int, ...]
-"""Names of fields and numbers in lists: ("dampers", 0, "gap")."""
+Place = tuple[str | int, ...]  # Names of fields and numbers in lists: ("dampers", 0, "gap")
 
-Columns = dict[str, list[float]]
-"""Values by path into a case, one a run."""
+Columns = dict[str, list[float]]  # Values by path into a case, one a run
 
 _MEASURES = ("impacts", "impact_share", "viscous_share")
 """What a study file asks for; the reader may want something else."""
@@ -53,25 +51,7 @@ def record_cases() -> Iterator[list[Case]]:
 
 
 def grouped(named: Mapping[str, Case], runs: Sequence[Case]) -> dict[str, Columns]:
-    """Group runs by the named case from which they differ in the fewest numbers.
-
-    Parameters
-    ----------
-    named
-        Cases by name.
-    runs
-        Cases, each of which differs from a named one in numbers only, such as the start of the ball.
-
-    Returns
-    -------
-    dict of str to dict of str to list of float
-        By the name of the nearest case: for each path, the values of the runs that differ from it, in order.
-
-    Raises
-    ------
-    ValueError
-        When a run is none of the named cases with other numbers.
-    """
+    """Group runs by the named case from which they differ in the fewest numbers."""
     bases = {name: _Leaves(case) for name, case in named.items()}
     found: dict[str, list[dict[Place, float]]] = {name: [] for name in named}
     for run in {leaves.key: leaves for leaves in map(_Leaves, runs)}.values():
@@ -147,27 +127,13 @@ class Files(NamedTuple):
     case: str
     study: str
     runs: int
-    varied: tuple[str, ...]
-    """What takes other values in them, as paths into the case."""
+    varied: tuple[str, ...]  # What takes other values in them, as paths into the case
 
 
 def write_runs(
     named: Mapping[str, Case], runs: Sequence[Case], folder: Path, subfolder: str, stem: str
 ) -> dict[str, Files]:
-    """Write a case file for each named case, and a study file for the runs that differ from it.
-
-    Parameters
-    ----------
-    named, runs
-        Arguments of `grouped`.
-    folder, subfolder, stem
-        Folder of the report, name of the subfolder, and prefix of the file names.
-
-    Returns
-    -------
-    dict of str to Files
-        Files by name; the study is empty if no run differs.
-    """
+    """Write a case file for each named case, and a study file for the runs that differ from it."""
     studies = grouped(named, runs)
     written = {}
     for name, case in named.items():

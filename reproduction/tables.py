@@ -10,26 +10,7 @@ if TYPE_CHECKING:
 
 
 def write_tables(data: xr.Dataset, folder: Path, stem: str) -> dict[Path, xr.Dataset]:
-    """Write a dataset as CSV tables.
-
-    Variables that share their dimensions share a file, in which every row is one combination of the coordinates, the
-    last dimension running fastest. The header names each column and its unit. Numbers have the up to 17 digits that
-    make them read back equal, to the last bit.
-
-    Parameters
-    ----------
-    data
-        Numbers, truth values and text, of any dimensions, with the attribute `units`.
-    folder
-        Existing folder.
-    stem
-        How the files' names begin; the dimensions follow, or "numbers" for what has none.
-
-    Returns
-    -------
-    dict of Path to xarray.Dataset
-        The files, and what stands in each; dimensions that have no coordinate are numbered from 0.
-    """
+    """Write a dataset as CSV tables."""
     tables = {}
     for dims, table in _groups(data).items():
         path = folder / f"{'_'.join([stem, *(dims or ('numbers',))])}.csv"

@@ -19,12 +19,9 @@ Array = NDArray[np.float64]
 class TwoImpacts(NamedTuple):
     """Steady motion in which hard impacts alternate between the walls, half a cycle apart."""
 
-    approach_speed: float
-    """Approach speed of every impact [m/s]."""
-    ball_speed: float
-    """Absolute speed of the ball between impacts [m/s]."""
-    multiplier: float
-    """Largest growth factor of a disturbance in half a cycle; the motion is stable below 1."""
+    approach_speed: float  # Approach speed of every impact [m/s]
+    ball_speed: float  # Absolute speed of the ball between impacts [m/s]
+    multiplier: float  # Largest growth factor of a disturbance in half a cycle; the motion is stable below 1
 
 
 def two_impacts(
@@ -38,26 +35,7 @@ def two_impacts(
     amplitude: float,
     frequency: float,
 ) -> tuple[TwoImpacts, ...]:
-    """Return the motions with two impacts per cycle of a ball in a cavity on a harmonically forced oscillator.
-
-    Parameters
-    ----------
-    mass, stiffness, damping
-        Mass [kg], stiffness [N/m] and damping [N s/m] of the oscillator.
-    ball
-        Mass of the ball [kg].
-    clearance
-        Total clearance of the cavity [m].
-    restitution
-        Coefficient of restitution of both walls.
-    amplitude, frequency
-        Amplitude [N] and frequency [Hz] of the force.
-
-    Returns
-    -------
-    tuple of TwoImpacts
-        Motions in which the ball stays inside the cavity, by decreasing speed; none, one or two.
-    """
+    """Return the motions with two impacts per cycle of a ball in a cavity on a harmonically forced oscillator."""
     omega, e, ratio = 2 * pi * frequency, restitution, ball / mass
     half = pi / omega
     flow = np.array([[0.0, 1.0], [-stiffness / mass, -damping / mass]])
