@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,14 +13,6 @@ from .runs import simulate_many
 
 if TYPE_CHECKING:
     from rattlebox import Case, Run
-
-
-class Band(NamedTuple):
-    """10 % quantile, median and 90 % quantile of an ensemble."""
-
-    low: NDArray[np.float64]
-    median: NDArray[np.float64]
-    high: NDArray[np.float64]
 
 
 def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float = 1e-6) -> list[Run]:
@@ -38,7 +30,6 @@ def near(start: float, offset: float) -> float:
     return place if abs(place) <= 1 else float(np.copysign(2.0, place)) - place
 
 
-def band(values: ArrayLike, axis: int = 0) -> Band:
-    """Return the median of an ensemble and the band of its middle 80 %."""
-    low, median, high = np.quantile(np.asarray(values, dtype=float), (0.1, 0.5, 0.9), axis=axis)
-    return Band(low, median, high)
+def band(values: ArrayLike, axis: int = 0) -> NDArray[np.float64]:
+    """Return the 10 %, 50 % and 90 % quantiles of an ensemble, (3, ...); NaN wherever a member is NaN."""
+    return np.asarray(np.quantile(np.asarray(values, dtype=float), (0.1, 0.5, 0.9), axis=axis))

@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from rattlebox import Case, Run
-from rattlebox.plots import FAINT, INK, StyledFigure, figure_style, label, pen, scaled
+from rattlebox.plots import FAINT, INK, StyledFigure, label, pen, scaled
 
 from .ensemble import band
-from .figure import Reproduction, letters
-from .models import COLOURS, MODELS, SHORT, described, model_case, model_runs
+from .figure import QUANTILES, Reproduction
+from .models import COLOURS, MODELS, SHORT, model_case, model_runs
 from .runs import simulate
 
 PARTS: Mapping[str, str] = {"structure": "structure", "particles": "ball"}
 _LOOKS: Mapping[str, tuple[str, float]] = {"structure": ("-", 1.0), "ball": (":", 0.5)}
 """Line of the median and opacity of the single run."""
 _SPAN, _RATE, _BEGIN, _MEMBERS = 10.0, 1000.0, 0.6, 64
-_WINDOW = 100  # Samples of a mean over 0.1 s, one period of the structure
+_WINDOW = 100  # samples of a mean over 0.1 s, one period of the structure
 
 
 def cases() -> Mapping[str, Case]:
@@ -50,41 +50,37 @@ def data() -> xr.Dataset:
     over = ("model", "quantile", "part")
     return xr.Dataset(
         {
-            "energy": described(("model", "part", "time"), [each[:, ::2] for each in energies], "J", "energy, one run"),
-            "begin_energy": described(("model", "part", "begin"), energies[..., :begun], "J", "energy, one run"),
-            "begin_spread": described((*over, "begin"), begins, "J", "energy, ensemble of start positions"),
-            "mean": described((*over, "window"), means, "J", "energy, mean over 0.1 s, ensemble of start positions"),
+            "energy": (("model", "part", "time"), energies[..., ::2]),
+            "begin_energy": (("model", "part", "begin"), energies[..., :begun]),
+            "begin_spread": ((*over, "begin"), begins),
+            "mean": ((*over, "window"), means),
         },
         {
-            "time": described("time", time[::2], "s", "time"),
-            "begin": described("begin", time[:begun], "s", "time, beginning"),
-            "window": described("window", time[1:].reshape(-1, _WINDOW).mean(axis=1), "s", "middle of the mean"),
-            "model": described("model", list(MODELS), "", "contact model"),
-            "part": described("part", list(PARTS.values()), "", "body"),
-            "quantile": described("quantile", [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
+            "time": time[::2],
+            "begin": time[:begun],
+            "window": time[1:].reshape(-1, _WINDOW).mean(axis=1),
+            "model": list(MODELS),
+            "part": list(PARTS.values()),
+            **QUANTILES,
         },
-    )  # fmt: skip
+    )
 
 
-def draw(data: xr.Dataset) -> Figure:
+def draw(figure: StyledFigure, data: xr.Dataset) -> None:
     """Draw one row per model: the beginning, and ten seconds on a logarithmic axis."""
-    with figure_style("page"):
-        figure = StyledFigure("page", 0.8)
-        panels = figure.subplots(data.model.size, 2, sharex="col", sharey="col", squeeze=False, width_ratios=(1, 1.2))
-        for row, model in zip(panels, data.model.values, strict=True):
-            _begin(row[0], data.sel(model=model), COLOURS[model])
-            _whole(row[1], data.sel(model=model), COLOURS[model])
-            row[0].set_title(SHORT[model])
-        proxies = [
-            Line2D([], [], color=FAINT, lw=pen(0.5), label="one run"),
-            Patch(color=FAINT, lw=0, label="10 to 90 %"),
-            *(Line2D([], [], color=INK, ls=line, label=f"{part}, median") for part, (line, _) in _LOOKS.items()),
-        ]
-        figure.legend(handles=proxies, loc="outside lower center", ncols=4)
-        for panel in panels[-1]:
-            label(panel, "x", "Time", "s")
-        letters(figure)
-    return figure
+    panels = figure.subplots(data.model.size, 2, sharex="col", sharey="col", squeeze=False, width_ratios=(1, 1.2))
+    for row, model in zip(panels, data.model.values, strict=True):
+        _begin(row[0], data.sel(model=model), COLOURS[model])
+        _whole(row[1], data.sel(model=model), COLOURS[model])
+        row[0].set_title(SHORT[model])
+    proxies = [
+        Line2D([], [], color=FAINT, lw=pen(0.5), label="one run"),
+        Patch(color=FAINT, lw=0, label="10 to 90 %"),
+        *(Line2D([], [], color=INK, ls=line, label=f"{part}, median") for part, (line, _) in _LOOKS.items()),
+    ]
+    figure.legend(handles=proxies, loc="outside lower center", ncols=4)
+    for panel in panels[-1]:
+        label(panel, "x", "Time", "s")
 
 
 def _begin(axes: Axes, data: xr.Dataset, colour: str) -> None:
@@ -105,9 +101,8 @@ def _whole(axes: Axes, data: xr.Dataset, colour: str) -> None:
     for part in data.part.values:
         low, median, high = data["mean"].sel(part=part).values
         line, opacity = _LOOKS[part]
-        axes.plot(
-            data.time, data.energy.sel(part=part), color=colour, lw=pen(0.3), alpha=0.5 * opacity, rasterized=True
-        )
+        look: dict[str, Any] = {"lw": pen(0.3), "alpha": 0.5 * opacity, "rasterized": True}
+        axes.plot(data.time, data.energy.sel(part=part), color=colour, **look)
         axes.fill_between(data.window, low, high, color=colour, alpha=0.35, lw=0)
         axes.plot(data.window, median, color=INK, ls=line, zorder=3)
     highest = float(data.energy.max())
@@ -115,20 +110,11 @@ def _whole(axes: Axes, data: xr.Dataset, colour: str) -> None:
     label(axes, "y", "Energy", "J")
 
 
-def caption(data: xr.Dataset) -> str:
-    """Return the caption."""
-    left = data["mean"].sel(quantile=0.5).isel(window=-1)
-    ends = ", ".join(
-        f"{float(left.sel(model=m, part='structure')):.0e} and {float(left.sel(model=m, part='ball')):.0e} J ({SHORT[m]})"
-        for m in data.model.values
-    )
-    return (
-        "After 2 s the energy of the structure is no smoother with the elasto-plastic model. Centred ball, 5 kN; "
-        "bands: means over "
-        f"0.1 s of {_MEMBERS} starts within 1 µm. Structure and ball at 10 s: {ends}."
-    )
+def values(data: xr.Dataset) -> dict[str, Any]:
+    """Return the energies of structure and ball that are left, by model."""
+    left = data["mean"].sel(quantile=0.5).isel(window=-1).values
+    ends = [f"{one[0]:.0e} and {one[1]:.0e} J ({SHORT[m]})" for one, m in zip(left, data.model.values, strict=True)]
+    return {"members": _MEMBERS, "ends": ", ".join(ends)}
 
 
-FIGURE = Reproduction(
-    number="7a, 7b", title="Instantaneous energies", data=data, draw=draw, caption=caption, cases=cases
-)
+FIGURE = Reproduction("figure_07a", data, draw, 0.8, cases, values)

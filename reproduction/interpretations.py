@@ -10,45 +10,22 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from rattlebox import (
-    Case,
-    JacksonGreen,
-    Sphere,
-    Tsuji,
-    contact_pairs,
-    materials,
-    restitution_of_alpha,
-)
-from rattlebox.plots import FAINT, INK, SERIES_MARKERS, StyledFigure, figure_style, pen
+from rattlebox import Case, JacksonGreen, Run, Sphere, Tsuji, contact_pairs, materials, restitution_of_alpha
+from rattlebox.plots import FAINT, INK, SERIES_MARKERS, StyledFigure, pen
 
-from .ensemble import Band, band, ensemble, near
-from .figure import Reproduction, letters
-from .judge import CORRECTED, PRINTED, SYSTEM, Claim, exact
-from .models import COLOURS, CONSTANT_E, RIGID, STEEL, STIFF, described, two
-from .reference import (
-    ALPHA,
-    CONSTANT,
-    GAP,
-    MASS,
-    PLASTIC,
-    PLASTIC_RIGID,
-    RADIUS,
-    START,
-    Contact,
-    paper_case,
-)
+from .ensemble import band, ensemble, near
+from .figure import Reproduction
+from .models import COLOURS, CONSTANT_E, RIGID, STEEL, STIFF, two
+from .reference import ALPHA, CONSTANT, GAP, MASS, PLASTIC, PLASTIC_RIGID, RADIUS, START, Contact, paper_case
 from .runs import simulate
 
-_CAVITY, _SIZE = 67.14e-3, 33.17e-3  # Printed length of the cavity and size of the ball [m]
+_CAVITY, _SIZE = 67.14e-3, 33.17e-3  # printed length of the cavity and size of the ball [m]
 _RADII = {"radius": _SIZE, "diameter": _SIZE / 2}
-_MASS_SHARE = 0.06
 _STEEL = materials()["steel"]
-_EACH = ("reading", "start", "level")
 _MEMBERS = 16
 
-PAIR = contact_pairs(paper_case(), 0)[0]  # The ball and the wall of the structure that moves
+PAIR = contact_pairs(paper_case(), 0)[0]  # the ball and the wall of the structure that moves
 _WALLS = {"steel": PAIR, "rigid": PAIR.against("rigid")}
 _REDUCED, _BALL = float(PAIR.mass), float(PAIR.above.mass)
 
@@ -110,49 +87,52 @@ def cases() -> Mapping[str, Case]:
 def data() -> xr.Dataset:
     """Compute the results of each interpretation."""
     radii = np.array(list(_RADII.values()))
-    shares = [[_shares(make, start) for start in START.values()] for make in INTERPRETATIONS.values()]
-    met = [[_impacts(partial(_sized, radius), start) for start in START.values()] for radius in _RADII.values()]
     limits = [
         [JacksonGreen().critical_speed(pair) * sqrt(_REDUCED / mass) for mass in (_REDUCED, _BALL)]
         for pair in _WALLS.values()
     ]
     first = simulate(_recorded()).impacts.isel(impact=0)
     deepest = float(first.peak_overlap)
-    gamma = ALPHA * sqrt(_REDUCED * PAIR.hertz_stiffness) * deepest**0.25
-    forces = [[_force(deepest, root, unit) for unit in (1.0, 1e-3)] for root in (True, False)]
+    sizes = [partial(_sized, radius) for radius in radii]
     return xr.Dataset(
         {
-            "share": described(_EACH, shares, "", "share of the work lost in impacts in 10 s after 5 kN"),
-            "mass_share": described("size", 4 / 3 * pi * radii**3 * _STEEL.density / MASS, "", "mass ratio m/M"),
-            "clearance": described("size", _CAVITY - 2 * radii, "m", "total clearance"),
-            "impacts": described(("size", "start", "level"), met, "", "number of impacts in 10 s after 5 kN, ensemble"),
-            "gamma": described((), gamma, "N s/m", "γ of equation (9) where the first impact is deepest"),
-            "critical_speed": described(("wall", "moving"), limits, "m/s", "elastic limit V_c"),
-            "first_speed": described((), first.approach_speed, "m/s", "speed of the first impact after 5 kN, case 1"),
-            "force": described(("formula", "unit"), forces, "N", "elastic force where the first impact is deepest"),
-            "stiffness": described((), PAIR.hertz_stiffness, "N m^-1.5", "A of a ball on a steel wall"),
+            "share": (("reading", "start", "level"), _bands(INTERPRETATIONS.values(), _share)),
+            "mass_share": ("size", 4 / 3 * pi * radii**3 * _STEEL.density / MASS),
+            "clearance": ("size", _CAVITY - 2 * radii),
+            "impacts": (("size", "start", "level"), _bands(sizes, lambda run: len(run.arrays.impacts))),
+            "gamma": ((), ALPHA * sqrt(_REDUCED * PAIR.hertz_stiffness) * deepest**0.25),
+            "critical_speed": (("wall", "moving"), limits),
+            "first_speed": ((), float(first.approach_speed)),
+            "force": (
+                ("formula", "unit"),
+                [[_force(deepest, root, unit) for unit in (1.0, 1e-3)] for root in (True, False)],
+            ),
+            "stiffness": ((), PAIR.hertz_stiffness),
         },
         {
-            "reading": described("reading", list(INTERPRETATIONS), "", "interpretation of the paper"),
-            "start": described("start", list(START), "", "the paper's case"),
-            "level": described("level", [0.1, 0.5, 0.9], "", "quantile of an ensemble within a micrometre"),
-            "size": described("size", list(_RADII), "", "what the printed 33.17 mm is"),
-            "wall": described("wall", list(_WALLS), "", "elasticity of the wall in V_c"),
-            "moving": described("moving", ["m* = mM/(m+M)", "m* = m"], "", "reduced mass in V_c"),
-            "formula": described("formula", ["(4/3) E* sqrt(R*)", "(4/3) E* R*"], "", "A of equation (5)"),
-            "unit": described("unit", ["m", "mm"], "", "unit of length of the computation"),
+            "reading": list(INTERPRETATIONS),
+            "start": list(START),
+            "level": [0.1, 0.5, 0.9],
+            "size": list(_RADII),
+            "wall": list(_WALLS),
+            "moving": ["m* = mM/(m+M)", "m* = m"],
+            "formula": ["(4/3) E* sqrt(R*)", "(4/3) E* R*"],
+            "unit": ["m", "mm"],
         },
     )
 
 
-def _shares(make: Callable[[float], Case], start: float) -> Band:
-    runs = ensemble(lambda offset: make(near(start, offset)), _MEMBERS)
-    return band([max(run.ledger.shares["normal"], 0.0) for run in runs])
+def _share(run: Run) -> float:
+    return max(run.ledger.shares["normal"], 0.0)
 
 
-def _impacts(make: Callable[[float], Case], start: float) -> Band:
-    runs = ensemble(lambda offset: make(near(start, offset)), _MEMBERS)
-    return band([len(run.arrays.impacts) for run in runs])
+def _bands(makers: Any, of: Callable[[Run], float]) -> list[list[Any]]:
+    """Return the bands of a result, (maker, start, quantile)."""
+
+    def one(make: Callable[[float], Case], start: float) -> Any:
+        return band([of(run) for run in ensemble(lambda offset: make(near(start, offset)), _MEMBERS)])
+
+    return [[one(make, start) for start in START.values()] for make in makers]
 
 
 def _force(overlap: float, square_root: bool, unit: float) -> float:
@@ -161,37 +141,30 @@ def _force(overlap: float, square_root: bool, unit: float) -> float:
     return float(4 / 3 * modulus * (sqrt(radius) if square_root else radius) * depth**1.5)
 
 
-def draw(data: xr.Dataset) -> Figure:
+def draw(figure: StyledFigure, data: xr.Dataset) -> None:
     """Draw the loss for each interpretation, and the elastic limits."""
-    with figure_style("page"):
-        figure = StyledFigure("page", 0.5)
-        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        names = [str(reading) for reading in data.reading.values]
-        for k, start in enumerate(data.start.values):
-            low, median, high = (100 * data.share.sel(start=start, level=level).values for level in data.level.values)
-            for row, (name, least, middle, most) in enumerate(zip(names, low, median, high, strict=True)):
-                at = row + 0.22 * (k - 1)
-                left.plot([middle], [at], SERIES_MARKERS[k], color=_colour(name), ms=3.5)
-                left.plot([least, most], [at, at], color=_colour(name), lw=pen(0.9))
-            left.plot([], [], SERIES_MARKERS[k], color=INK, ms=3.5, label=f"case {start}")
-        _rows(left, names)
-        left.set(
-            xlim=(-0.2, 105 * float(data.share.max())),
-            xlabel="Share of the work (%)",
-            title="Lost in impacts, 10 s after 5 kN",
-        )
-        left.legend(loc="lower right", frameon=True, facecolor="white", edgecolor="none")
-        speed = float(data.first_speed)
-        right.axvline(speed, color=INK, ls=(0, (4, 1.5)), label="first impact in case 1, 5 kN")
-        limits = data.critical_speed.values.ravel()
-        for row, (value, model) in enumerate(zip(limits, (STEEL, STEEL, RIGID, RIGID), strict=True)):
-            right.plot([value], [row], "o", color=COLOURS[model], ms=4)
-            right.annotate(f"{value:.4f}", (value, row), (5, 5), textcoords="offset points", fontsize="small")
-        _rows(right, [f"{wall} wall,\n{moving}" for wall in data.wall.values for moving in data.moving.values])
-        right.set(xlim=(0, 0.23), xlabel="Speed (m/s)", title="Elastic limit $V_c$")
-        right.legend(loc="lower right")
-        letters(figure)
-    return figure
+    left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
+    names = [str(reading) for reading in data.reading.values]
+    for k, start in enumerate(data.start.values):
+        for row, (name, (least, middle, most)) in enumerate(
+            zip(names, 100 * data.share.sel(start=start).values, strict=True)
+        ):
+            at = row + 0.22 * (k - 1)
+            left.plot([middle], [at], SERIES_MARKERS[k], color=_colour(name), ms=3.5)
+            left.plot([least, most], [at, at], color=_colour(name), lw=pen(0.9))
+        left.plot([], [], SERIES_MARKERS[k], color=INK, ms=3.5, label=f"case {start}")
+    _rows(left, names)
+    left.set(xlim=(-0.2, 105 * float(data.share.max())), xlabel="Share of the work (%)")
+    left.set_title("Lost in impacts, 10 s after 5 kN")
+    left.legend(loc="lower right", frameon=True, facecolor="white", edgecolor="none")
+    right.axvline(float(data.first_speed), color=INK, ls=(0, (4, 1.5)), label="first impact in case 1, 5 kN")
+    limits = data.critical_speed.values.ravel()
+    for row, (value, model) in enumerate(zip(limits, (STEEL, STEEL, RIGID, RIGID), strict=True)):
+        right.plot([value], [row], "o", color=COLOURS[model], ms=4)
+        right.annotate(f"{value:.4f}", (value, row), (5, 5), textcoords="offset points", fontsize="small")
+    _rows(right, [f"{wall} wall,\n{moving}" for wall in data.wall.values for moving in data.moving.values])
+    right.set(xlim=(0, 0.23), xlabel="Speed (m/s)", title="Elastic limit $V_c$")
+    right.legend(loc="lower right")
 
 
 def _colour(name: str) -> str:
@@ -210,71 +183,29 @@ def _rows(axes: Axes, names: Sequence[str]) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-def caption(data: xr.Dataset) -> str:
-    """Return the caption."""
-    steel, rigid = (float(data.critical_speed.sel(wall=wall)[0]) for wall in ("steel", "rigid"))
-    speed = float(data.first_speed)
+def values(data: xr.Dataset) -> dict[str, Any]:
+    """Return speeds, losses and the numbers that contradict each other."""
+    steel, rigid = data.critical_speed[:, 0].values
     share = 100 * data.share.sel(level=0.5, start=1)
-    return (
-        f"The elasticity of the wall in V_c matters most: the first impact, at {speed:.4f} m/s, is below the limit of "
-        "a steel wall "
-        f"({steel:.4f} m/s) and {speed / rigid:.1f} times that of a rigid one. Where a contact ends matters little "
-        f"({two(share[0])} and {two(share[1])} %). Median and 10 to 90 % of {_MEMBERS} starts within 1 µm."
-    )
+    return {
+        "speed": data.first_speed,
+        "steel": steel,
+        "times": data.first_speed / rigid,
+        "shares": [two(share[0]), two(share[1])],
+        "members": _MEMBERS,
+        "clearance": 1e3 * data.clearance,
+        "stiffness": data.stiffness,
+        "gamma": data.gamma,
+    }
 
 
-def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Return the claims on printed numbers that contradict each other."""
-    mass, clearance = 100 * data.mass_share, 1e3 * data.clearance
-    ratios = data.force.sel(unit="mm") / data.force.sel(unit="m")
-    return (
-        Claim(
-            "The ball has 6 % of the structure's mass.",
-            "section 4.3",
-            "mass ratio, with 33.17 mm as the radius (%)",
-            {SYSTEM: exact(mass.sel(size="radius"))},
-            accept=(5.5, 6.5),
-            printed="6 %",
-            scope="system",
-            note=f"the clearance is then {float(clearance.sel(size='radius')):.2f} mm, twice the printed d_0 = 0.4 mm",
-        ),
-        Claim(
-            "33.17 mm is the diameter of the ball.",
-            "table 1",
-            "mass ratio with 33.17 mm as the diameter, and as the radius (%)",
-            {PRINTED: exact(mass.sel(size="diameter")), CORRECTED: exact(mass.sel(size="radius"))},
-            accept=(5.5, 6.5),
-            printed="6 %",
-            kind="misprint",
-            note=f"as a diameter the clearance would be {float(clearance.sel(size='diameter')):.1f} mm, and the "
-            "centred ball would never "
-            "be touched",
-        ),
-        Claim(
-            "The contact stiffness is A = (4/3) E* R*.",
-            "equation (5)",
-            "force computed in mm over force computed in m, as printed and with sqrt(R*)",
-            {PRINTED: exact(ratios[1]), CORRECTED: exact(ratios[0])},
-            accept=(1 - 1e-9, 1 + 1e-9),
-            kind="misprint",
-            note=f"A = {float(data.stiffness):.6e} N m^-1.5",
-        ),
-        Claim(
-            "The damping of the constant model is γ = 0.006313.",
-            "section 5.1",
-            "restitution with the number as γ (N s/m) where the first impact is deepest, and with the number as α",
-            {
-                PRINTED: exact(restitution_of_alpha(ALPHA**2 / float(data.gamma))),
-                CORRECTED: exact(restitution_of_alpha(ALPHA)),
-            },
-            accept=(0.985, 0.995),
-            printed="γ = 0.006313, e ~ 0.99",
-            kind="misprint",
-            note=f"γ depends on the overlap and reaches {float(data.gamma):.0f} N s/m",
-        ),
-    )
+def cells(data: xr.Dataset) -> dict[str, Any]:
+    """Return the printed numbers and the corrected ones."""
+    mass, ratios = 100 * data.mass_share, data.force.sel(unit="mm") / data.force.sel(unit="m")
+    radius, diameter = mass.sel(size="radius"), mass.sel(size="diameter")
+    as_gamma, as_alpha = (restitution_of_alpha(alpha) for alpha in (ALPHA**2 / float(data.gamma), ALPHA))
+    stiffness, damping = (ratios[1], ratios[0]), (as_gamma, as_alpha)
+    return {"mass": radius, "diameter": (diameter, radius), "stiffness": stiffness, "damping": damping}
 
 
-FIGURE = Reproduction(
-    number="R1", title="Interpretations of the paper", data=data, draw=draw, caption=caption, cases=cases, claims=claims
-)
+FIGURE = Reproduction("interpretations", data, draw, 0.5, cases, values, cells)

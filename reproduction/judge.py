@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from math import inf, isnan
+from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .models import ALL_MODELS, CONSTANT_E, RIGID, SHORT
+
+CLAIMS: Mapping[str, Any] = tomllib.loads(Path(__file__).with_name("claims.toml").read_text(encoding="utf-8"))
+"""Claims by the key of the figure that tests them, the rule, and the tables of the readings of the text."""
 
 Verdict = Literal[
     "reproduced",
@@ -31,7 +36,6 @@ STATED = RIGID
 """Interpretation that the paper states: contact with a rigid body (section 3.2), and equation (6) for the stiffness."""
 WALLS = tuple(model for model in ALL_MODELS if model != CONSTANT_E)
 HEDGED = 0.1  # Relative tolerance of a number that the paper prints with "about", "nearly" or "~"
-SIZE = 2.0  # Factor within which the size of an effect is right qualitatively
 
 RESAMPLES = 400  # Number of bootstrap samples behind an interval
 
@@ -67,16 +71,6 @@ def estimate(function: Callable[..., NDArray[np.float64]], *samples: Any) -> Est
         return Estimate(float(function(*medians)), float(low), float(high), float(least), float(most))
 
 
-def about(number: float, tolerance: float = HEDGED) -> Range:
-    """Return the range of values that agree with a number printed as approximate."""
-    return number * (1 - tolerance), number * (1 + tolerance)
-
-
-def size_of(number: float) -> Range:
-    """Return the range of values that have the size of a number."""
-    return number / SIZE, number * SIZE
-
-
 @dataclass(frozen=True)
 class Claim:
     """Statement of the paper, the quantity that tests it, and its value under each interpretation."""
@@ -94,13 +88,28 @@ class Claim:
     see: str = ""
 
 
-def by_wall(values: Mapping[str, Estimate]) -> dict[Place, Estimate]:
-    """Return the cells of a claim that does not depend on the order of the cases."""
-    return {(model, ""): value for model, value in values.items()}
-
-
 PRINTED, CORRECTED = ("printed", ""), ("corrected", "")  # Places of the two values of a misprint
 SYSTEM = (CONSTANT_E, "")  # Place of the value of a claim about the system
+
+
+def cells_of(values: Any) -> dict[Place, Estimate]:
+    """Return the cells of a claim: one value of the system, a printed and a corrected one, or values by place or model."""
+    if isinstance(values, tuple) and not isinstance(values, Estimate):
+        values = dict(zip((PRINTED, CORRECTED), values, strict=True))
+    if not isinstance(values, Mapping):
+        values = {SYSTEM: values}
+    return {
+        at if isinstance(at, tuple) else (str(at), ""): value if isinstance(value, Estimate) else exact(value)
+        for at, value in values.items()
+    }
+
+
+def claim_of(row: Mapping[str, Any], quantity: str, note: str, cells: Mapping[Place, Estimate]) -> Claim:
+    """Return a claim of the table with its values; quantity and note contain numbers."""
+    partly = tuple(row["partly"]) if "partly" in row else None
+    plain = {key: row[key] for key in ("statement", "where", "printed", "scope", "kind", "see") if key in row}
+    accept = tuple(row.get("accept", (-inf, inf)))
+    return Claim(**plain, quantity=quantity, note=note, cells=cells, accept=accept, partly=partly)
 
 
 def grade(value: Estimate, accept: Range, partly: Range | None = None) -> Grade:
@@ -173,29 +182,6 @@ def where_it_holds(claim: Claim) -> str:
     if claim.kind != "test" or not found or len(found) == len(grades) or verdict(claim) == "reproduced":
         return ""
     return "; ".join(f"{SHORT[model]}{f', cases {order}' if order else ''}" for model, order in found)
-
-
-RULE = (
-    "Each claim is tested by one computed quantity and one criterion, under each interpretation of the text: a steel "
-    "wall, a "
-    "wall that is rigid in the elastic limit, or a wall that is rigid in the stiffness too; where a claim names case "
-    "2 or 3, "
-    "with case 2 at the trailing wall (as read) and at the leading wall (swapped).",
-    f"The criterion is met if the 95 % interval of the median over starts within 1 µm is inside it. A number printed with "
-    f"“about”, “nearly” or “~” has a tolerance of {100 * HEDGED:.0f} %, any other number that of its last digit. "
-    "If the interval contains the limit, chaotic scatter decides, which is no agreement; a dagger marks values for which "
-    "more than a tenth of the single runs are on the other side.",
-    "A claim is reproduced if it is met under the interpretation that the paper states, a rigid wall, for both "
-    "orders of the "
-    "cases, and, where it is about constant restitution too, with e = 0.99117. It holds under one interpretation only if it "
-    "is met under others. It is qualitatively right if it holds for a part of the time or range, or if a printed number is "
-    f"within a factor of {SIZE:g}. Otherwise it is not reproducible.",
-    "Statements that equation (11) contains already follow from the equations. A misprint is a statement that "
-    "contradicts the "
-    "rest of the text or its own dimensions, where a corrected one does not. A claim without a number, or about curves that "
-    "the text does not contain, cannot be checked.",
-)
-"""The rule, in words."""
 
 
 def fit(claims: Sequence[Claim]) -> dict[Place, dict[Grade, int]]:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from .judge import (
     AS_READ,
+    CLAIMS,
     CORRECTED,
     ORDER,
     PRINTED,
@@ -29,7 +30,6 @@ from .judge import (
     where_it_holds,
 )
 from .models import ALL_MODELS, SHORT, STEEL
-from .reading import INTERPRETATIONS, MISPRINTS
 
 TEXTS = dict(zip(WALLS, ("a steel wall", "a rigid wall", "a wall that is rigid in the stiffness too"), strict=True))
 MARKS: dict[Grade, str] = {"holds": "✓", "partly": "≈", "fails": "✗", "undecided": "?", "": ""}
@@ -159,8 +159,9 @@ def documentation(claims: Sequence[Claim]) -> str:
     lines += _header("wall", "cases 2 and 3", "met", "in part", "undecided", "not met")
     lines += [_line(SHORT[wall], order, *map(str, found.values())) for (wall, order), found in fit(claims).items()]
     lines += [f"\n{best_fit(claims)}", "\n### Interpretations\n", *_header("printed", "read as", "reason")]
-    lines += [_line(*each) for each in INTERPRETATIONS]
-    lines += ["\n### Misprints\n", *_header("printed", "should be", "shown by"), *[_line(*each) for each in MISPRINTS]]
+    lines += [_line(*each) for each in CLAIMS["readings"]]
+    lines += ["\n### Misprints\n", *_header("printed", "should be", "shown by")]
+    lines += [_line(*each) for each in CLAIMS["misprints"]]
     return "\n".join(lines) + "\n"
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from math import inf
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rattlebox import Case, Run, Tsuji
+from rattlebox import Case, JacksonGreen, Pair, Run, Tsuji, contact_pairs
 from rattlebox.plots import SERIES_COLOURS, SERIES_STYLES
 
 from .ensemble import ensemble, near
@@ -64,6 +66,14 @@ def two(value: Any) -> str:
     return f"{float(value):#.2g}".rstrip(".")
 
 
-def described(dims: Any, values: Any, units: str, long_name: str) -> tuple[Any, ...]:
-    """Return a variable of a dataset with its unit and meaning."""
-    return dims, np.asarray(values), {"units": units, "long_name": long_name}
+def critical_speed(model: str) -> float:
+    """Return the speed at which yield begins in a model [m/s], infinite with constant restitution."""
+    law = ALL_MODELS[model].contact.restitution
+    return law.critical_speed(contact_pairs(model_case(model), 0)[0]) if isinstance(law, JacksonGreen) else inf
+
+
+def lasting(log: Any, pair: Pair) -> NDArray[np.bool_]:
+    """Return which contacts take more than five times as long as an elastic collision at their speed."""
+    speed = np.maximum(log.approach_speed, 1e-12)
+    collision = 2.9432752 * (1.25 * pair.mass * speed**2 / pair.hertz_stiffness) ** 0.4 / speed
+    return np.asarray(log.duration > 5 * collision)

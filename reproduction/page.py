@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import sqrt
 from pathlib import Path
-from typing import NamedTuple, get_args
+from typing import Any, NamedTuple, get_args
 
 from markupsafe import Markup, escape
 
-from .judge import RESAMPLES, RULE, Claim, Verdict, fit
+from .judge import CLAIMS, RESAMPLES, Claim, Verdict, fit
 from .matrix import MARKS, best_fit, place, row
 from .models import COLOURS, SHORT
-from .reading import EQUATIONS, INTERPRETATIONS, MISPRINTS, PROVENANCE
 from .runs import Files
 
 GENERATOR = '<meta name="generator" content="Rattlebox">'  # Mark by which pages of this program are recognised
@@ -75,13 +74,7 @@ class FigureFiles:
 
 
 def render(
-    figures: Sequence[FigureFiles],
-    *,
-    table: str,
-    missing: Sequence[str] = (),
-    cores: int,
-    workers: int,
-    seconds: float,
+    figures: Sequence[FigureFiles], *, table: str, missing: Sequence[str] = (), cores: int, workers: int, seconds: float
 ) -> str:
     """Return the page as self-contained HTML."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -93,13 +86,9 @@ def render(
     anchors = {number: one for one in figures for number in (one.number, *_parts(one.number))}
     rows = [(row(claim), anchors.get(claim.see, figure)) for claim, figure in pairs]
     counts = Counter(each.verdict for each, _ in rows)
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).with_name("templates")),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
+    loader = FileSystemLoader(Path(__file__).with_name("templates"))
+    spaces: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **spaces)
     environment.filters["typeset"] = typeset
     return environment.get_template("report.html").render(
         generator=Markup(GENERATOR),
@@ -109,14 +98,11 @@ def render(
         missing=missing,
         table=table,
         groups=(
-            (
-                "Figures of the paper",
-                [figure for figure in figures if figure.number[0].isdigit() and figure.name != FIRST],
-            ),
+            ("Figures of the paper", [f for f in figures if f.number[0].isdigit() and f.name != FIRST]),
             ("Interpretations, ensembles and gap", [f for f in figures if f.number.startswith("R")]),
-            ("Extensions", [figure for figure in figures if figure.number.startswith("A")]),
+            ("Extensions", [f for f in figures if f.number.startswith("A")]),
         ),
-        first=[figure for figure in figures if figure.name == FIRST],
+        first=[f for f in figures if f.name == FIRST],
         rows=rows,
         unprinted=sum(each.verdict == "reproduced" and not each.claim.printed for each, _ in rows),
         reproduced=counts["reproduced"],
@@ -127,12 +113,8 @@ def render(
         best=best_fit(claims),
         marks=MARKS,
         models=[(SHORT[model], colour) for model, colour in COLOURS.items()],
-        rule=RULE,
         resamples=RESAMPLES,
-        provenance=PROVENANCE,
-        equations=EQUATIONS,
-        interpretations=INTERPRETATIONS,
-        misprints=MISPRINTS,
+        **{name: CLAIMS[name] for name in ("rule", "provenance", "equations", "readings", "misprints")},
         system=system(),
         version=__version__,
         platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
@@ -201,27 +183,29 @@ def system() -> tuple[Quantity, ...]:
     ball = pair.above
     assert ball.material is not None and isinstance(pulse, HalfSine)
     steel, rigid = JacksonGreen(), JacksonGreen(wall="rigid")
-    together = MASS + ball.mass
-    return (
-        Quantity("Mass of the structure", "M", f"{MASS:g}", "kg"),
-        Quantity("Stiffness", "K", f"{STIFFNESS / 1e3:g}", "kN/m"),
-        Quantity("Viscous damping", "C", f"{DAMPING:g}", "N s/m"),
-        Quantity("Damping ratio", "C / 2√(KM)", f"{100 * DAMPING / (2 * sqrt(STIFFNESS * MASS)):.4f}", "%"),
-        Quantity("Natural frequency, ball in flight", "√(K/M)", f"{sqrt(STIFFNESS / MASS):.4f}", "rad/s"),
-        Quantity("Natural frequency, ball riding along", "√(K/(M+m))", f"{sqrt(STIFFNESS / together):.4f}", "rad/s"),
-        Quantity("Radius of the ball", "R", f"{1e3 * RADIUS:g}", "mm"),
-        Quantity("Mass of the ball", "m", f"{ball.mass:.6f}", "kg"),
-        Quantity("Mass ratio", "m/M", f"{100 * ball.mass / MASS:.4f}", "%"),
-        Quantity("Clearance on each side of the centred ball", "d_0", f"{1e3 * GAP:g}", "mm"),
-        Quantity("Young's modulus of steel", "E", f"{ball.material.young / 1e9:g}", "GPa"),
-        Quantity("Poisson's ratio", "ν", f"{ball.material.poisson:g}", ""),
-        Quantity("Yield stress", "S_y", f"{(ball.material.yield_stress or 0) / 1e6:g}", "MPa"),
-        Quantity("Density", "ρ", f"{ball.material.density:g}", "kg/m³"),
-        Quantity("Hertz stiffness, ball on steel wall", "A", f"{pair.hertz_stiffness / 1e9:.5f}", "GN/m^1.5"),
-        Quantity("Damping coefficient of the constant model", "α", f"{ALPHA:g}", ""),
-        Quantity("Its restitution", "e", f"{restitution_of_alpha(ALPHA, 'zero_overlap'):.6f}", ""),
-        Quantity("Speed of first yield, steel wall", "V_c", f"{steel.critical_speed(pair):.5f}", "m/s"),
-        Quantity("Speed of first yield, rigid wall", "V_c", f"{rigid.critical_speed(pair):.5f}", "m/s"),
-        Quantity("Amplitude of the pulse", "F_0", f"{pulse.amplitude:g}", "N"),
-        Quantity("Duration of the pulse", "t_f", f"{1e3 * PULSE:g}", "ms"),
+    values = {
+        "mass": MASS,
+        "stiffness": STIFFNESS / 1e3,
+        "damping": DAMPING,
+        "ratio": 100 * DAMPING / (2 * sqrt(STIFFNESS * MASS)),
+        "flight": sqrt(STIFFNESS / MASS),
+        "riding": sqrt(STIFFNESS / (MASS + ball.mass)),
+        "radius": 1e3 * RADIUS,
+        "ball": ball.mass,
+        "share": 100 * ball.mass / MASS,
+        "gap": 1e3 * GAP,
+        "young": ball.material.young / 1e9,
+        "poisson": ball.material.poisson,
+        "yield_stress": (ball.material.yield_stress or 0) / 1e6,
+        "density": ball.material.density,
+        "hertz": pair.hertz_stiffness / 1e9,
+        "alpha": ALPHA,
+        "restitution": restitution_of_alpha(ALPHA, "zero_overlap"),
+        "steel": steel.critical_speed(pair),
+        "rigid": rigid.critical_speed(pair),
+        "load": pulse.amplitude,
+        "pulse": 1e3 * PULSE,
+    }
+    return tuple(
+        Quantity(name, symbol, form.format_map(values), unit) for name, symbol, form, unit in CLAIMS["parameters"]
     )

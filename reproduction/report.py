@@ -14,7 +14,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .figure import Reproduction
+from .figure import WORDS, Reproduction
 from .matrix import documentation
 from .page import GENERATOR, Column, FigureFiles, Table, render
 from .runs import record_cases, write_runs
@@ -23,28 +23,7 @@ from .tables import write_tables
 if TYPE_CHECKING:
     import xarray as xr
 
-FIGURES = (
-    "figure_01",
-    "figure_02",
-    "figure_04",
-    "figure_05",
-    "figure_06",
-    "figure_07a",
-    "figure_07c",
-    "figure_07de",
-    "figure_09a",
-    "figure_10",
-    "figure_11",
-    "interpretations",
-    "evidence",
-    "gap_study",
-    "hundred_times",
-    "contacts_per_cycle",
-    "bifurcation",
-    "chattering",
-    "lyapunov",
-)
-"""Modules of the figures, in the order of the page."""
+FIGURES = tuple(key for key in WORDS if key != "columns")  # modules of the figures, in the order of the page
 
 _FIGURE_FOLDER, _CASE_FOLDER = "figures", "cases"
 TABLE = f"{_FIGURE_FOLDER}/figure_claims.md"  # Matrix of the claims for the documentation
@@ -54,37 +33,13 @@ Progress = Callable[[int, int, str], None]
 
 
 def write_report(
-    folder: str | os.PathLike[str],
-    only: Sequence[str] = (),
-    *,
-    workers: int = 1,
-    progress: Progress | None = None,
+    folder: str | os.PathLike[str], only: Sequence[str] = (), *, workers: int = 1, progress: Progress | None = None
 ) -> Path:
-    """Compute all figures and write the report, with each figure as SVG, PNG and CSV and its runs as case and study files.
+    """Write the report with each figure as SVG, PNG and CSV and its runs as case and study files; return its page.
 
-    Parameters
-    ----------
-    folder
-        New or empty folder, or the folder of an earlier report, which is replaced.
-    only
-        Numbers of figures, such as "4", "7c" or "A1"; "7" means all its parts, and "paper" all figures except the
-        extensions A1 to A5, which take two thirds of the time. Default all.
-    workers
-        Number of processes. More than one needs `if __name__ == "__main__":` in a script.
-    progress
-        Function that is called after each figure.
-
-    Returns
-    -------
-    Path
-        Path of the page, index.html.
-
-    Raises
-    ------
-    ValueError
-        If there is no such figure.
-    OSError
-        If the folder contains other files, or cannot be written.
+    The folder is new, empty, or that of an earlier report. `only` has numbers of figures, such as "4", "7c" or "A1"; "7"
+    means all its parts, and "paper" all but the extensions A1 to A5, which take two thirds of the time. More than one
+    worker needs `if __name__ == "__main__":` in a script.
     """
     began = time.perf_counter()
     modules = choose(only)

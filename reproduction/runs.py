@@ -142,11 +142,7 @@ def write_runs(
         case.to_file(folder / f"{path}.toml")
         count = len(next(iter(columns.values()), ()))
         if columns:
-            study = {
-                "measure": list(_MEASURES),
-                "case": {"file": f"{stem}_{slug}.toml"},
-                "axes": {"run": columns},
-            }
+            study = {"measure": list(_MEASURES), "case": {"file": f"{stem}_{slug}.toml"}, "axes": {"run": columns}}
             (folder / f"{path}_study.toml").write_text(
                 f"# {count} runs that differ from the case by what is listed under axes.run, one value a run.\n"
                 + tomli_w.dumps(study),

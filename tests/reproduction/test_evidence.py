@@ -44,14 +44,14 @@ def data():
 
 def test_few_starts_give_nearly_the_same_verdicts(data):
     """With twelve starts at most two verdicts differ, because of their wider intervals."""
-    found = [verdict(claim) for claim in evidence.claims(data)]
+    found = [verdict(claim) for claim in evidence.FIGURE.claims(data)]
     assert sum(one != other for one, other in zip(found, VERDICTS, strict=True)) <= 2
 
 
 @pytest.mark.slow
 def test_verdicts(computed):
     """The verdicts are those of the documentation."""
-    assert [verdict(claim) for claim in evidence.claims(computed("evidence").data)] == VERDICTS
+    assert [verdict(claim) for claim in evidence.FIGURE.claims(computed("evidence").data)] == VERDICTS
 
 
 @pytest.mark.slow
@@ -59,7 +59,7 @@ def test_verdicts_do_not_depend_on_the_ensemble(monkeypatch):
     """Other starts, and more of them, give the same verdicts."""
     monkeypatch.setattr(evidence, "MEMBERS", 90)
     monkeypatch.setattr(evidence, "near", lambda start, offset: near(start, 0.73 * offset))
-    assert [verdict(claim) for claim in evidence.claims(evidence.data())] == VERDICTS
+    assert [verdict(claim) for claim in evidence.FIGURE.claims(evidence.data())] == VERDICTS
 
 
 def test_plastic_impacts(data):
@@ -112,7 +112,7 @@ def test_measures_of_a_run():
     run = rb.simulate(evidence._case(RIGID, 0.0, 5000.0))
     pair, limit = rb.contact_pairs(run.case, 0)[0], evidence.critical_speed(RIGID)
     bare = evidence.envelope(rb.simulate(evidence._bare(5000.0)).arrays.displacement[:, 0])
-    found = dict(zip(evidence._MEASURES, evidence._measured(run, pair, limit, bare), strict=True))
+    found = evidence._measured(run, pair, limit, bare)
     log = run.arrays.impacts
     assert found["contacts"] == len(log)
     assert found["last_plastic"] == log.time[log.approach_speed > 0.0423652].max()

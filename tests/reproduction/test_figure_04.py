@@ -58,5 +58,5 @@ def test_growth_is_exponential_until_the_size_of_the_cavity(data):
 
 def test_claims_follow_the_data(data):
     """The curves of Li et al. cannot be checked; chaos needs a growth rate above its error."""
-    assert [verdict(claim) for claim in figure_04.claims(data)] == ["cannot be checked", "reproduced"]
-    assert verdict(figure_04.claims(data.assign(error=data.exponent))[1]) == "not reproducible"
+    assert [verdict(claim) for claim in figure_04.FIGURE.claims(data)] == ["cannot be checked", "reproduced"]
+    assert verdict(figure_04.FIGURE.claims(data.assign(error=data.exponent))[1]) == "not reproducible"

@@ -98,9 +98,9 @@ def test_shares_never_exceed_the_work(shares):
 
 def test_consistency_follows_the_data(shares):
     """Case 2 is not the most consistent, and would be if its losses were the same at all amplitudes."""
-    (claim,) = figure_07de.claims(shares)
+    (claim,) = figure_07de.FIGURE.claims(shares)
     assert verdict(claim) == "not reproducible"
-    (claim,) = figure_07de.claims(shares.assign(impacts=shares.impacts.where(shares.start != 2, 0.05)))
+    (claim,) = figure_07de.FIGURE.claims(shares.assign(impacts=shares.impacts.where(shares.start != 2, 0.05)))
     assert verdict(claim) == "under one interpretation only"
-    (claim,) = figure_07de.claims(shares.assign(impacts=shares.impacts.where(shares.start == 1, 0.05)))
+    (claim,) = figure_07de.FIGURE.claims(shares.assign(impacts=shares.impacts.where(shares.start == 1, 0.05)))
     assert verdict(claim) == "not reproducible"  # both orders alike: neither is the most consistent

@@ -47,14 +47,14 @@ def test_ball_stays_in_its_cavity(data: xr.Dataset) -> None:
 
 def test_claims_follow_the_data(data: xr.Dataset) -> None:
     """All three claims hold, and fail when the data are changed."""
-    assert [verdict(claim) for claim in figure_09a.claims(data)] == ["reproduced"] * 3
+    assert [verdict(claim) for claim in figure_09a.FIGURE.claims(data)] == ["reproduced"] * 3
     other = data.assign(reach=data.reach * 10, decay=data.decay * 1.1, jump=0 * data.jump)
-    assert [verdict(claim) for claim in figure_09a.claims(other)] == ["not reproducible"] * 3
+    assert [verdict(claim) for claim in figure_09a.FIGURE.claims(other)] == ["not reproducible"] * 3
 
 
 def test_draws_what_the_data_hold(data: xr.Dataset) -> None:
     """Each panel holds the portrait of its body, model and case."""
-    (last,) = figure_09a.draw(data).axes[5].collections[:1]
+    (last,) = figure_09a.FIGURE.draw(data).axes[5].collections[:1]
     drawn = np.array([segment[0] for segment in last.get_segments()])
     one = data.sel(body="ball in its cavity", shown=RIGID, case=3).isel(time=slice(None, -1))
     np.testing.assert_allclose(drawn, np.column_stack((1e6 * one.position, 1e3 * one.velocity)), rtol=1e-12)

@@ -65,7 +65,7 @@ def test_band_holds_the_median(data: xr.Dataset) -> None:
 
 def test_verdicts_follow_the_data(data: xr.Dataset) -> None:
     """The peak and its approximate frequency are confirmed, until the data say otherwise."""
-    assert [verdict(claim) for claim in figure_10.claims(data)] == [
+    assert [verdict(claim) for claim in figure_10.FIGURE.claims(data)] == [
         "reproduced",
         "reproduced",
         "under one interpretation only",
@@ -74,17 +74,17 @@ def test_verdicts_follow_the_data(data: xr.Dataset) -> None:
     ]
     lower = xr.where(data.model == CONSTANT_E, 1.0, 1e-4)
     assert (
-        verdict(figure_10.claims(data.assign(ball=data.ball * lower, structure=data.structure * lower))[4])
+        verdict(figure_10.FIGURE.claims(data.assign(ball=data.ball * lower, structure=data.structure * lower))[4])
         == "reproduced"
     )
-    elsewhere = figure_10.claims(data.assign(peak=data.peak + 9.0))
+    elsewhere = figure_10.FIGURE.claims(data.assign(peak=data.peak + 9.0))
     assert [verdict(claim) for claim in elsewhere[:2]] == ["not reproducible", "not reproducible"]
 
 
 def test_draws_what_the_data_hold(data: xr.Dataset) -> None:
     """Each panel holds the median of its model, and the window is named."""
-    axes = np.reshape(figure_10.draw(data).axes, (3, 3))
+    axes = np.reshape(figure_10.FIGURE.draw(data).axes, (3, 3))
     for row, name in enumerate(("ball", "structure", "near")):
         for column in range(3):
             np.testing.assert_array_equal(axes[row, column].lines[0].get_ydata(), data[name].sel(quantile=0.5)[column])
-    assert "boxcar window" in figure_10.caption(data)
+    assert "boxcar window" in figure_10.FIGURE.caption(data)

@@ -75,9 +75,9 @@ def test_lossy_contacts_help(data):
 
 def test_lessons_contain_the_computed_numbers(data):
     """The lessons state the settling times and the best gap of the data."""
-    text = " ".join(gap_study.lessons(data))
+    text = " ".join(gap_study.FIGURE.lessons(data))
     assert f"instead of {float(data.settled_bare):.2f} s" in text and "A gap of 2.3 mm" in text
-    assert len(gap_study.lessons(data)) == 6
+    assert len(gap_study.FIGURE.lessons(data)) == 6
 
 
 def test_animation_moves_as_the_runs(data):

@@ -15,8 +15,7 @@ from reproduction.judge import (
     WALLS,
     Claim,
     Estimate,
-    about,
-    by_wall,
+    cells_of,
     estimate,
     exact,
     fit,
@@ -32,7 +31,7 @@ from reproduction.models import CONSTANT_E, RIGID, STEEL, STIFF
 def claim(values, **options):
     """Return a claim that a quantity is at least 1, and qualitatively at least 0.5."""
     return Claim(
-        "It holds.", "section 5", "quantity", by_wall(values), **({"accept": (1, inf), "partly": (0.5, inf)} | options)
+        "It holds.", "section 5", "quantity", cells_of(values), **({"accept": (1, inf), "partly": (0.5, inf)} | options)
     )
 
 
@@ -110,7 +109,8 @@ def test_kinds():
     assert verdict(claim(walls(2, 2, 2), kind="construction")) == "follows from the equations"
     assert verdict(Claim("It holds.", "section 5", "q", kind="unchecked")) == "cannot be checked"
     assert (
-        verdict(Claim("It holds.", "section 5", "q", {SYSTEM: exact(0.55)}, about(0.5), scope="system")) == "reproduced"
+        verdict(Claim("It holds.", "section 5", "q", {SYSTEM: exact(0.55)}, (0.45, 0.55), scope="system"))
+        == "reproduced"
     )
 
 
