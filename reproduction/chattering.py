@@ -221,8 +221,6 @@ def values(data: xr.Dataset) -> dict[str, Any]:
     longest = 1e3 * data.longest_spread.sel(quantile=0.5).max("amplitude")
     return {
         "contact": 1e3 * rigid.contact_time.where(rigid.lasting).max().fillna(0.0),
-        "frequency": data.frequency,
-        "load": data.shown_load,
         "swing": 1e3 * np.abs(data.displacement).max(),
         "acceleration": data.peak_acceleration / 9.80665,
         "members": MEMBERS,

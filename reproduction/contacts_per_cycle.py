@@ -128,13 +128,11 @@ def values(data: xr.Dataset) -> dict[str, Any]:
     low, _, high = data.mean_spread.transpose("quantile", ...)
     numbers = set().union(*(_steady_counts(data, model) for model in data.model.values))
     return {
-        "amplitude": data.amplitude,
         "members": MEMBERS,
         "none": 100 * ((high - low) == 0).mean(),
         "wide": 100 * ((high - low) > APART).mean(),
         "apart": APART,
-        "first": data.frequency[0],
-        "last": data.frequency[-1],
+        "ends": data.frequency[[0, -1]],
         "numbers": ", ".join(map(str, sorted(numbers))),
     }
 

@@ -72,8 +72,10 @@ class Reproduction:
         return figure
 
     def _fill(self, data: xr.Dataset, texts: Sequence[str]) -> list[str]:
-        """Return texts with the numbers of the data."""
-        values = {k: np.asarray(v) if isinstance(v, xr.DataArray) else v for k, v in self.values(data).items()}
+        """Return texts with the numbers of the data: the `values` of the figure, and its variables of one number or row."""
+        rows = {str(name): variable for name, variable in data.variables.items() if variable.ndim < 2}
+        every = {**rows, **data.attrs, **self.values(data)}
+        values = {k: np.asarray(v) if isinstance(v, xr.DataArray | xr.Variable) else v for k, v in every.items()}
         return [text.format_map(values) for text in texts]
 
     def caption(self, data: xr.Dataset) -> str:

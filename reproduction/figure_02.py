@@ -100,7 +100,6 @@ def values(data: xr.Dataset) -> dict[str, Any]:
     return {
         "error": np.abs(data.simulated_missed / data.expected_missed - 1).max(),
         "off": 100 * data.deviation.sel(missed=1e-3, method="nearest"),
-        "needed": data.needed_alpha,
         "ranges": ", ".join(f"{x:g}" for x in data.fit_from.values),
         "errors": ", ".join(f"{x:.1g}" for x in off.values),
     }

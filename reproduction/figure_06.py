@@ -125,13 +125,11 @@ def _portrait(axes: Axes, data: xr.Dataset) -> None:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return V* after some hits, and what the elastic zone loses."""
+    """Return V* after some hits, and the power of the yield stress in V_c."""
     return {
         "start": data.speed[0, 0],
         "after": [float(data.simulated.sel(hit=n)) for n in (1, 10, 100)],
         "hits": data.sizes["hit"],
-        "drift": data.elastic_drift,
-        "elastic_hits": data.elastic_hits,
         "power": np.polyfit(np.log(data.yield_stress), np.log(data.critical_speed), 1)[0],
     }
 

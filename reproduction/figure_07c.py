@@ -80,7 +80,7 @@ def values(data: xr.Dataset) -> dict[str, Any]:
     share = 100 * data.lost.sel(quantile=0.5).isel(time=-1) / data.work
     shares = by_model(lambda m: f"{two(share.sel(model=m))} %")
     highest = two(data.ratio.sel(quantile=0.5).max())
-    return {"highest": highest, "shares": shares, "work": data.work, "members": _MEMBERS}
+    return {"highest": highest, "shares": shares, "members": _MEMBERS}
 
 
 FIGURE = Reproduction("figure_07c", data, draw, 0.42, cases, values)

@@ -127,7 +127,7 @@ def values(data: xr.Dataset) -> dict[str, Any]:
     low, _, high = data.contacts.sel(model=CONSTANT_E).values
     touch = AMPLITUDE * GAP / float(data.reach)
     numbers = {"amplitude": AMPLITUDE, "duration": DURATION, "members": MEMBERS, "low": low, "high": high}
-    return {**numbers, "touch": touch, "reach": 1e3 * data.reach, "decay": data.decay}
+    return {**numbers, "touch": touch, "reach": 1e3 * data.reach}
 
 
 def cells(data: xr.Dataset) -> dict[str, Any]:

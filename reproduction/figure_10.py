@@ -149,15 +149,12 @@ def values(data: xr.Dataset) -> dict[str, Any]:
     """Return the resonance, the band of the rattle, and the resolution [rad/s]."""
     peak = data.peak.median("member")
     return {
-        **data.attrs,
         "low": peak.min(),
         "high": peak.max(),
         "hump": _hump(data, STEEL),
         "members": MEMBERS,
         "bin": 2 * np.pi / DURATION,
         "hedged": 100 * HEDGED,
-        "riding": data.riding,
-        "bare": data.bare,
         "rattle": data.trips.sel(model=STEEL),
         "bins": data.sizes["frequency"],
         "last": data.frequency[-1],

@@ -188,14 +188,11 @@ def values(data: xr.Dataset) -> dict[str, Any]:
     steel, rigid = data.critical_speed[:, 0].values
     share = 100 * data.share.sel(level=0.5, start=1)
     return {
-        "speed": data.first_speed,
         "steel": steel,
         "times": data.first_speed / rigid,
         "shares": [two(share[0]), two(share[1])],
         "members": _MEMBERS,
         "clearance": 1e3 * data.clearance,
-        "stiffness": data.stiffness,
-        "gamma": data.gamma,
     }
 
 

@@ -310,9 +310,6 @@ def values(data: xr.Dataset) -> dict[str, Any]:
         "weak": weak.pulse,
         "quick": [float(_rate(strong).min()), float(_rate(strong).max())],
         "slow": [two(_rate(weak).min()), two(_rate(weak).max())],
-        "found": data.steady_exponent,
-        "expected": data.expected,
-        "pairs": data.pairs,
         "regular": regular,
     }
 
