@@ -381,7 +381,11 @@ protected:
                                 -before.rate, -after.rate,
                                 [&](const real* y) { return -gap(problem_, contact(c), y).rate; },
                                 [&](const real* y) { return value(y) < deepest; });
-                        if (before.rate >= 0 || value(trial_.data()) >= deepest) continue;
+                        if (value(trial_.data()) >= deepest) continue;
+                        if (before.rate >= 0) { // it closes and opens again within the step
+                            retry = true;
+                            continue;
+                        }
                     }
                     // It opens and closes again within the step. Rounding errors may hide that it opens.
                     bool is_hidden = false;

@@ -41,36 +41,29 @@ protected:
 
     // ---- first touch
 
-    // Sums of the magnitudes of the terms of a gap and of its rate.
-    struct GapTerms {
-        real length = 0, speed = 0;
-    };
-    GapTerms gap_terms(int c) const {
+    // Returns the sum of the magnitudes of the terms of a gap.
+    real gap_terms(int c) const {
         const Damper& damper = problem_.dampers[damper_of(c)];
         const real* y = state_.y.data();
-        GapTerms sums{damper.clearance, 0};
+        real sum = damper.clearance;
         for (const int side : {contact(c).below, contact(c).above}) {
             if (side != wall) {
-                sums.length += std::fabs(positions(problem_, y)[side]);
-                sums.speed += std::fabs(velocities(problem_, y)[side]);
+                sum += std::fabs(positions(problem_, y)[side]);
                 continue;
             }
-            for (std::size_t m = 0; m < damper.shape.size(); ++m) {
-                sums.length += std::fabs(damper.shape[m] * y[2 * m]);
-                sums.speed += std::fabs(damper.shape[m] * y[2 * m + 1]);
-            }
+            for (std::size_t m = 0; m < damper.shape.size(); ++m)
+                sum += std::fabs(damper.shape[m] * y[2 * m]);
         }
-        return sums;
+        return sum;
     }
 
     // Whether the gap of contact c is zero, to the rounding errors of its terms and those that they
     // accumulate in time. This must hold wherever a contact begins: the energy balance holds for a contact at
-    // any gap.
+    // any gap. Balls that rest on each other may drift as fast as velocities can be told from zero.
     bool is_touching(int c) const {
-        const GapTerms terms = gap_terms(c);
         const real value = gap(problem_, contact(c), state_.y.data()).value;
-        const real length = terms.length + largest_overlap_; // without clearance there are no other lengths
-        return std::fabs(value) <= 64 * epsilon * (length + state_.t * terms.speed);
+        const real length = gap_terms(c) + largest_overlap_; // without clearance there are no other lengths
+        return std::fabs(value) <= 64 * (epsilon * length + velocity_rounding() * state_.t);
     }
 
     void begin_contact_at(int c) {
@@ -451,7 +444,7 @@ protected:
     bool closes_now(int c) const {
         const Gap g = gap(problem_, contact(c), state_.y.data());
         return phase_[static_cast<std::size_t>(c)] == Phase::open && g.rate < 0 &&
-               g.value <= 16 * epsilon * (gap_terms(c).length + state_.t * -g.rate);
+               g.value <= 16 * epsilon * (gap_terms(c) + state_.t * -g.rate);
     }
 
     // Resolves the impact of contact c together with those of all contacts that close at the same time.

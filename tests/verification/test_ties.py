@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support import tie_search
+from support import impact_cases, tie_search
 
 import rattlebox as rb
 
@@ -407,6 +407,29 @@ def test_what_does_not_matter_changes_no_impact() -> None:
 def test_what_does_not_matter_changes_no_impact_of_two_thousand_cases(block: int) -> None:
     """The same for 2000 cases, in blocks."""
     compare_changes(range(1000 + 63 * block, 1063 + 63 * block))
+
+
+def random_hard_runs(seeds: Iterable[int]) -> None:
+    """Check that hard impacts of rows, of several dampers and in chatter begin at closed gaps."""
+    cases = [impact_cases.hard_dampers(np.random.default_rng(seed)) for seed in seeds]
+    cases += [impact_cases.hard_row(np.random.default_rng(seed), 2 + seed % 4) for seed in seeds]
+    for number, run in enumerate(rb.simulate_many(cases, threads=2)):
+        assert run.status == "finished", f"{number}: {run.message}"
+
+
+def test_hard_impacts_in_chatter_begin_at_closed_gaps() -> None:
+    """Chatter, collapse and contacts at rest begin no impact at an open gap or an overlap.
+
+    In case 380 a contact opened, closed and opened again within one step of others at rest, and its next impact began at an
+    overlap: the overlaps of soft balls were compared with the log, those of hard balls, which have none, with nothing.
+    """
+    random_hard_runs([*range(12), 380])
+
+
+@pytest.mark.slow
+def test_hard_impacts_of_a_thousand_runs_begin_at_closed_gaps() -> None:
+    """The same for 1200 runs."""
+    random_hard_runs(range(600))
 
 
 @pytest.mark.parametrize("method", METHODS)
