@@ -137,9 +137,7 @@ def outside(node: Any, folder: Path) -> None:
     """Raise if a case names a file that is not in the folder."""
     for file in _named_files(node):
         if not (folder / file).resolve().is_relative_to(folder.resolve()):
-            raise rb.CaseError(
-                f"case: the file {file!r} is outside of the folder of this page\n  try: a copy in {folder}"
-            )
+            raise rb.CaseError(f"case: the file {file!r} is outside of the folder of this page", f"a copy in {folder}")
 
 
 def _named_files(node: Any, is_file: bool = False) -> list[str]:

@@ -45,9 +45,9 @@ def make_folder(out: Path) -> None:
     try:
         out.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
-        raise DataError(f"{out} is a file; results need a folder\n  try: --out results") from None
+        raise DataError(f"{out} is a file; results need a folder", "--out results") from None
     except OSError as error:
-        raise DataError(f"the folder {out} cannot be created: {error.strerror}\n  try: --out results") from None
+        raise DataError(f"the folder {out} cannot be created: {error.strerror}", "--out results") from None
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
     make_folder(out)
     marker = folder_marker(out)
     if (out / "zarr.json").exists() or (marker and marker.name not in (RUN_FOLDER, "")):
-        raise DataError(f"{out} contains a study; a run needs a folder of its own\n  try: another -o folder")
+        raise DataError(f"{out} contains a study; a run needs a folder of its own", "another -o folder")
     _check_inputs(out, case)
     own = Checkpoint(out / CHECKPOINT, case)
     resumable = bool(case.particle_dampers) and checkpoint is None
@@ -146,7 +146,7 @@ def _replacement(out: Path, case: Case) -> Iterator[Path]:
     """Yield a folder for the files of a run that replaces another one; keep it if the run can resume from it."""
     folder = out / f"replacement-{hashlib.sha256(comparable_toml(case).encode()).hexdigest()[:8]}"
     if folder.exists() and folder not in replacements(out) and not (folder.is_dir() and is_free(folder)):
-        raise DataError(f"{folder} was not written by Rattlebox\n  try: another -o folder, or move this one")
+        raise DataError(f"{folder} was not written by Rattlebox", "another -o folder, or move this one")
     folder.mkdir(exist_ok=True)
     write_marker(folder, _new_marker(REPLACEMENT, dict.fromkeys(WRITTEN, "")))
     try:

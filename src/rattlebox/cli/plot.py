@@ -41,7 +41,7 @@ def plot_study(
     with output_file(out, "study.png") as (file, note):
         if number is not None:
             raise CaseError(
-                f"--number {number}: {study} is a study, which has no snapshots\n  try: leave out --number, or plot a run"
+                f"--number {number}: {study} is a study, which has no snapshots", "leave out --number, or plot a run"
             )
         data, options, values = open_study(study), {"of": of, "size": size}, _axis_values(at)
         own = str(data.attrs.get("study", "sweep"))
@@ -71,11 +71,9 @@ def refuse_particle_options(**options: str | None) -> None:
 def check_output(out: Path | None, size: str | None, formats: Sequence[str] = FORMATS) -> None:
     """Raise if a figure cannot be written to a file."""
     if out is not None and out.suffix not in formats:
-        raise CaseError(
-            f"-o {out}: the suffix must be one of {', '.join(formats)}\n  try: -o {out.stem or 'study'}.png"
-        )
+        raise CaseError(f"-o {out}: the suffix must be one of {', '.join(formats)}", f"-o {out.stem or 'study'}.png")
     if size is not None and size not in WIDTHS:
-        raise CaseError(f"--size {size}: unknown size\n  try: {', '.join(WIDTHS)}")
+        raise CaseError(f"--size {size}: unknown size", ", ".join(WIDTHS))
     if out is not None and not out.parent.is_dir():
         raise DataError(f"-o {out}: the folder {out.parent} does not exist", "another folder, or create it first")
 
@@ -89,9 +87,7 @@ def _draw_kind(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], a
         )
     draw = getattr(rattlebox, f"plot_{kind}")
     if "of" in options and "of" not in signature(draw).parameters:
-        raise CaseError(
-            f"--of {options['of']}: a figure of the kind {kind} has no choice of measures\n  try: --kind lines"
-        )
+        raise CaseError(f"--of {options['of']}: a figure of the kind {kind} has no choice of measures", "--kind lines")
     figure: Figure = draw(select(data, at)[0], **options)
     return figure
 
@@ -101,6 +97,6 @@ def _axis_values(at: Sequence[str]) -> dict[str, str]:
     for text in at:
         name, sign, value = text.partition("=")
         if not sign or not name.strip() or not value.strip():
-            raise CaseError(f'--at "{text}": an axis and a value are needed\n  try: --at "load.amplitude=5 kN"')
+            raise CaseError(f'--at "{text}": an axis and a value are needed', '--at "load.amplitude=5 kN"')
         values[name.strip()] = value.strip()
     return values

@@ -65,7 +65,7 @@ def _plot(
     for option, value in (("--of", of), ("--at", at and at[0])):
         if value:
             alternative = "--number" if path.suffix == ".vtkhdf" else "--kind"
-            raise CaseError(f"{option} {value}: this option is for studies, and {path} is a run\n  try: {alternative}")
+            raise CaseError(f"{option} {value}: this option is for studies, and {path} is a run", alternative)
     film = out.suffix in FILMS
     if film and size is not None:
         raise CaseError(f"--size {size}: the size of films is in pixels", "--pixels 1280x720")
@@ -128,15 +128,15 @@ def _check_film(out: Path, kind: str | None, number: int | None) -> None:
     """Raise if an option does not apply to a film."""
     picture = out.with_suffix(".png")
     if number is not None:
-        raise CaseError(f"--number {number}: a film shows all snapshots\n  try: -o {picture}")
+        raise CaseError(f"--number {number}: a film shows all snapshots", f"-o {picture}")
     if kind not in (None, "particles"):
-        raise CaseError(f"--kind {kind}: a film can only show particles\n  try: run.nc, -o {picture}")
+        raise CaseError(f"--kind {kind}: a film can only show particles", f"run.nc, -o {picture}")
 
 
 def _write_film(run: Any, out: Path, options: dict[str, Any]) -> None:
     if not isinstance(run, Snapshots):
         raise CaseError(
-            f"-o {out}: a film needs the snapshots in run.vtkhdf\n  try: run.vtkhdf; output.snapshots in the case creates it"
+            f"-o {out}: a film needs the snapshots in run.vtkhdf", "run.vtkhdf; output.snapshots in the case creates it"
         )
     try:
         film_particles(run, out, **options)

@@ -132,7 +132,7 @@ class Checkpoint:
             except Timeout:
                 holder = name.read_text() or "another process"
                 raise DataError(
-                    f"{self.path} is in use by {holder}\n  try: another file, or wait until that run has ended"
+                    f"{self.path} is in use by {holder}", "another file, or wait until that run has ended"
                 ) from None
         try:
             name.write_text(f"process {os.getpid()} on {socket.gethostname()}")

@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
+from rattlebox._util.exceptions import CaseError
+
 from ..results import Run
 from .energy import draw_ledger
 from .motion import ball_displacements, draw_cavity, draw_structure
@@ -36,7 +38,7 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
         If there is no run, or the size is unknown.
     """
     if not runs:
-        raise ValueError('runs is empty; a comparison needs at least one run\n  try: {"name": run}')
+        raise CaseError("runs is empty; a comparison needs at least one run", '{"name": run}')
     every = list(runs.values())
     moving = any(run.arrays.mode_frequency.size for run in every)
     with_balls = [run for run in every if _has_balls(run)]

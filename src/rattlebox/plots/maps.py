@@ -108,7 +108,7 @@ def _measure_name(study: xr.Dataset, of: str | None) -> str:
     measures = [name for name, values in results if values.dtype.kind in "fiu"]
     if of is None:
         if not measures:
-            raise CaseError("this study has no measure to draw\n  try: name one as measure in the study")
+            raise CaseError("this study has no measure to draw", "name one as measure in the study")
         return measures[0]
     if of not in study.data_vars:
         raise CaseError(f"of = {of!r}: the study has no such measure\n  {nearest(of, measures)}")
@@ -120,10 +120,10 @@ def _check_axes(study: xr.Dataset, name: str, dims: list[str], kind: str | None)
     series = [dim for dim in dims if "status" in study and dim not in study["status"].dims]
     if series:
         raise CaseError(
-            f"{name} has several values per run, along {', '.join(series)}; a map needs one\n  try: a scalar measure"
+            f"{name} has several values per run, along {', '.join(series)}; a map needs one", "a scalar measure"
         )
     if dims == ["sample"] and "sample" not in study.indexes:
-        raise CaseError("a random design has no axes to draw along\n  try: a grid of values")
+        raise CaseError("a random design has no axes to draw along", "a grid of values")
     if not dims:
         raise CaseError(
             f"no axis of the study is left to draw along: {name} = {float(study[name].values):.6g}\n"
@@ -132,10 +132,10 @@ def _check_axes(study: xr.Dataset, name: str, dims: list[str], kind: str | None)
     if len(dims) > 2 or (kind == "map" and len(dims) == 1):
         variation = f"varies along {', '.join(dims)}"
         if len(dims) == 1:
-            raise CaseError(f"a map needs two axes, but {name} {variation}\n  try: kind lines")
+            raise CaseError(f"a map needs two axes, but {name} {variation}", "kind lines")
         last = study[dims[-1]]
         value = value_of(last, last.values[0])
-        raise CaseError(f"{name} {variation}; two axes can be drawn\n  try: at {dims[-1]} = {value}")
+        raise CaseError(f"{name} {variation}; two axes can be drawn", f"at {dims[-1]} = {value}")
 
 
 def _map_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> Figure:

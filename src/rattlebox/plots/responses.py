@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from rattlebox._util.exceptions import CaseError
+
 from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
@@ -83,7 +85,7 @@ def plot_responses(
     if drifts:
         panels.insert(min(1, len(panels)), _drifts(arrays, drifts))
     if not panels:
-        raise ValueError("of is empty\n  try: " + ", ".join(QUANTITIES))
+        raise CaseError("of is empty", ", ".join(QUANTITIES))
     with figure_style(size):
         figure, axes = time_panels(size, len(panels))
         time = scaled(arrays.time[window], "s")
@@ -112,9 +114,7 @@ def _default(arrays: RunArrays) -> list[str]:
 def _variable(arrays: RunArrays, name: str) -> _Panel:
     """Return the lines of a variable: one for each point, mode, load or damper, with axis in a 3-D run."""
     if name not in QUANTITIES:
-        raise ValueError(
-            f"of = {name!r} is not a response\n  try: {', '.join(QUANTITIES)}, or 'upper point - lower point'"
-        )
+        raise CaseError(f"of = {name!r} is not a response", f"{', '.join(QUANTITIES)}, or 'upper point - lower point'")
     values = np.asarray(getattr(arrays, name), dtype=float)
     first: list[str] = [""]
     if name in ("displacement", "velocity", "acceleration", "absolute_acceleration"):
@@ -127,9 +127,7 @@ def _variable(arrays: RunArrays, name: str) -> _Panel:
         first = list(arrays.loads)
     values = values.reshape(arrays.time.size, len(first), -1) if first else np.zeros((arrays.time.size, 0, 1))
     if not values.size:
-        raise ValueError(
-            f"of = {name!r}: this run has no {QUANTITIES[name][0].lower()}\n  try: {', '.join(QUANTITIES)}"
-        )
+        raise CaseError(f"of = {name!r}: this run has no {QUANTITIES[name][0].lower()}", f"{', '.join(QUANTITIES)}")
     if values.shape[2] == len(AXES):
         several = len(first) > 1
         names = [f"{one} {axis}" if several else f"along {axis}" for one in first for axis in AXES]
@@ -145,9 +143,9 @@ def _drifts(arrays: RunArrays, names: list[str]) -> _Panel:
     for name in names:
         pair = next((pair for pair in permutations(motion, 2) if name == " - ".join(pair)), None)
         if pair is None:
-            raise ValueError(
-                f"of = {name!r} is not a drift between two points of the run\n  try: two of {', '.join(motion)}, as in "
-                f"'{next(iter(motion))} - base'"
+            raise CaseError(
+                f"of = {name!r} is not a drift between two points of the run",
+                f"two of {', '.join(motion)}, as in '{next(iter(motion))} - base'",
             )
         columns.append(motion[pair[0]] - motion[pair[1]])
     return _Panel(np.stack(columns, axis=1), names, "Drift", "m")

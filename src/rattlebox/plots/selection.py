@@ -63,5 +63,5 @@ def _nearest_index(coord: xr.DataArray, name: str, value: Any) -> int:
     low, high = float(values.min()), float(values.max())
     if not low - 1e-6 * abs(low) <= number <= high + 1e-6 * abs(high):
         limits = f"{value_of(coord, low)} to {value_of(coord, high)}"
-        raise CaseError(f"at: {name} = {value!r} is outside the range of the study\n  try: {limits}")
+        raise CaseError(f"at: {name} = {value!r} is outside the range of the study", limits)
     return int(np.argmin(np.abs(values - number)))

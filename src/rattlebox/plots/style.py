@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from rattlebox._util.atomic_io import atomic_write
+from rattlebox._util.exceptions import CaseError
 from rattlebox._util.narrow import present
 from rattlebox._util.own_files import seal
 from rattlebox._util.quantities import in_unit
@@ -130,7 +131,7 @@ def figure_style(size: Size = "column") -> Iterator[None]:
     >>> plt.close(figure)
     """
     if size not in WIDTHS:
-        raise ValueError(f"size = {size!r}: unknown size\n  try: {', '.join(map(repr, WIDTHS))}")
+        raise CaseError(f"size = {size!r}: unknown size", ", ".join(map(repr, WIDTHS)))
     with mpl.rc_context(cast("Any", _settings(size))):
         yield
 
