@@ -7,7 +7,6 @@ from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import rattlebox
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.output import output_file
 from rattlebox.cli.terminal import terminal
@@ -15,7 +14,7 @@ from rattlebox.model.errors import nearest
 from rattlebox.plots.maps import plot_map
 from rattlebox.plots.selection import nearest_value_notes, select
 from rattlebox.plots.style import WIDTHS
-from rattlebox.studies.kinds import KINDS
+from rattlebox.results.figures import figures_of_studies
 from rattlebox.studies.run.stored import open_study
 
 if TYPE_CHECKING:
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = (".png", ".svg", ".pdf")
-MAPS = tuple(kind for kind in KINDS if kind != "sweep")
 
 
 def plot_study(
@@ -46,12 +44,14 @@ def plot_study(
         data, options, values = open_study(study), {"of": of, "size": size}, _axis_values(at)
         own = str(data.attrs.get("study", "sweep"))
         options = {name: value for name, value in options.items() if value is not None}
-        if (kind or own) in MAPS:
+        if (kind or own) in figures_of_studies():
             figure = _draw_kind(data, kind or own, own, options, values)
         elif kind in (None, "map", "lines"):
             figure = plot_map(data, kind=kind, at=values, **options)  # type: ignore[arg-type]
         else:
-            raise CaseError(f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *MAPS))}")
+            raise CaseError(
+                f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *figures_of_studies()))}"
+            )
         figure.savefig(file)
         for line in nearest_value_notes(data, values):
             terminal().print(line, soft_wrap=True)
@@ -81,11 +81,12 @@ def check_output(out: Path | None, size: str | None, formats: Sequence[str] = FO
 def _draw_kind(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:
     """Draw the figure that belongs to a kind of study."""
     if kind != own:
+        other = own if own in figures_of_studies() else "lines"
         raise CaseError(
-            f"--kind {kind}: this study is a {own.replace('_', ' ')}, or is not finished\n"
-            f"  try: {f'--kind {own}' if own in MAPS else '--kind lines'}, or 'rattlebox show' to see its progress"
+            f"--kind {kind}: this study is a {own.replace('_', ' ')}, or is not finished",
+            f"--kind {other}, or 'rattlebox show' to see its progress",
         )
-    draw = getattr(rattlebox, f"plot_{kind}")
+    draw = figures_of_studies()[kind]
     if "of" in options and "of" not in signature(draw).parameters:
         raise CaseError(f"--of {options['of']}: a figure of the kind {kind} has no choice of measures", "--kind lines")
     figure: Figure = draw(select(data, at)[0], **options)

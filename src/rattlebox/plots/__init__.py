@@ -2,18 +2,23 @@
 
 from .basins import plot_basins
 from .bifurcation import plot_bifurcation
+from .calibration import plot_calibration
 from .case import plot_case
 from .compare import plot_comparison
 from .damping_curve import plot_damping_curve
+from .design import plot_design
 from .energy import plot_energy
 from .impacts import plot_impacts
+from .loss_map import plot_loss_map
 from .lyapunov import plot_lyapunov
 from .map_response import plot_response_from_map
+from .maps import plot_map
 from .motion import plot_motion
 from .particles import film_particles, plot_particles
 from .phase import plot_phase_portrait
 from .response import plot_frequency_response
 from .responses import plot_responses
+from .sensitivity import plot_sensitivity
 from .style import (
     CHANNEL_COLOURS,
     FAINT,
@@ -44,17 +49,22 @@ __all__ = [
     "pen",
     "plot_basins",
     "plot_bifurcation",
+    "plot_calibration",
     "plot_case",
     "plot_comparison",
     "plot_damping_curve",
+    "plot_design",
     "plot_energy",
     "plot_frequency_response",
     "plot_impacts",
+    "plot_loss_map",
     "plot_lyapunov",
+    "plot_map",
     "plot_motion",
     "plot_particles",
     "plot_phase_portrait",
     "plot_response_from_map",
     "plot_responses",
+    "plot_sensitivity",
     "scaled",
 ]

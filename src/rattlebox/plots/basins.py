@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..model.errors import Hint
+from ..results.figures import study_figure
 from .style import FAINT, INK, Size, StyledFigure, figure_style, label, map_colours, pen, scaled
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ _COLOURED = 6
 _OTHER, _NONE, _FAILED, _TRANSIENT = _COLOURED, _COLOURED + 1, _COLOURED + 2, _COLOURED + 3
 
 
+@study_figure("basins")
 def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
     """Draw a map of starts, each in the colour of the attractor to which it leads.
 

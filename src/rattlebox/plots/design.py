@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rattlebox.studies.work.measures import INTERVAL
 
+from ..results.figures import study_figure
 from .labels import LabelledValues
 from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen
 
@@ -35,6 +36,7 @@ _RINGS: dict[str, Any] = {
 _BEST: dict[str, Any] = {"linestyle": "", "marker": "D", "color": SERIES_COLOURS[1]}
 
 
+@study_figure("design")
 def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
     """Draw the trials of a design.
 

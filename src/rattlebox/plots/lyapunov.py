@@ -11,6 +11,7 @@ from matplotlib.patches import Patch
 
 from rattlebox._util.exceptions import CaseError
 
+from ..results.figures import study_figure
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ _REGULAR, _CHAOTIC = SERIES_COLOURS[:2]
 _MAX_LINES = 200  # of the convergence
 
 
+@study_figure("lyapunov")
 def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
     """Draw Lyapunov exponents per cycle of the load, or per second if there is no cycle.
 

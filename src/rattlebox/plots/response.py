@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import nearest
+from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
 from .labels import log_ticks
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
@@ -26,6 +27,7 @@ _COEXISTING = 0.02  # relative difference between up and down above which two mo
 _DISPLACEMENTS = "amplitude", "peak", "rms", "bare_amplitude"
 
 
+@study_figure("frequency_response")
 def plot_frequency_response(
     response: xarray.Dataset,
     of: str | Sequence[str] | None = None,

@@ -6,7 +6,6 @@ import inspect
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,7 +19,7 @@ from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
 from rattlebox.model.units import Whole
 from rattlebox.studies.grid import sampling
-from rattlebox.studies.kinds import KINDS
+from rattlebox.studies.kinds import study_kind, study_kinds
 from rattlebox.studies.run.study import Axes, SpacedTable, Study, Table, make_study, table_shape
 
 _EXAMPLE = '[axes]\n       "damper.gap" = { from = "0.1 mm", to = "2 mm", count = 20 }'
@@ -67,9 +66,9 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
                 f'rattlebox run {source}, or case.file = "{source}" in a study',
             )
         kind = given.pop("kind", "sweep")
-        if not isinstance(kind, str) or kind not in KINDS:
-            raise Hint(f"kind = {kind!r} is not a kind of study", nearest(str(kind), KINDS))
-        cls = kind_of(kind)
+        if not isinstance(kind, str) or kind not in study_kinds():
+            raise Hint(f"kind = {kind!r} is not a kind of study", nearest(str(kind), study_kinds()))
+        cls = study_kind(kind)
         given = {name: _NESTED[name](value) if name in _NESTED else value for name, value in given.items()}
         if "case" in given:
             given["case"], own = _case(given["case"], source, folder or Path())
@@ -82,13 +81,6 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
     except CaseError as error:
         raise error if str(error).startswith(source) else CaseError(f"{source}: {error}") from None
     return study
-
-
-def kind_of(name: str) -> type[Study]:
-    """Return the class of a kind of study."""
-    module = import_module(f"rattlebox.studies.kinds.{name}")
-    found: type[Study] = getattr(module, name.title().replace("_", ""))
-    return found
 
 
 def _read(content: str, source: str) -> dict[str, Any]:

@@ -30,10 +30,16 @@ KINDS: Mapping[str, tuple[str, str]] = {
 }
 """Module in this folder, and its `Kind`, by the attribute `study` of a dataset; or "run" and "comparison"."""
 
+REGISTERED: dict[str, Kind] = {}
+"""Kinds of reports about studies of other packages, by the attribute `study`."""
+
 
 def kind_of(result: Any) -> Kind:
     """Return the kind of a result; datasets without one of their own are reported as sweeps."""
-    module, name = KINDS[_name(result)]
+    found = _name(result)
+    if found in REGISTERED:
+        return REGISTERED[found]
+    module, name = KINDS[found]
     kind: Kind = getattr(import_module(f"{__name__}.{module}"), name)
     return kind
 
@@ -49,7 +55,7 @@ def _name(result: Any) -> str:
 
     if isinstance(result, xr.Dataset):
         name = str(result.attrs.get("study", "sweep"))
-        return name if name in KINDS else "sweep"
+        return name if name in KINDS or name in REGISTERED else "sweep"
     if isinstance(result, Mapping) and result and all(_name(each) == "damping_curve" for each in result.values()):
         return "damping_curve"
     raise CaseError(

@@ -72,6 +72,8 @@ class Study:
     """
 
     kind: ClassVar[str]
+    kinds: ClassVar[dict[str, type[Study]]] = {}
+    """Classes by kind; `study_function` adds them."""
 
     case: InstanceOf[Case]
     _: KW_ONLY
@@ -132,6 +134,8 @@ class Study:
 def study_function(kind: Callable[Parameters, Study]) -> Callable[Parameters, xr.Dataset]:
     """Return the function that runs a study of a kind; its arguments are the fields of the kind."""
     cls = cast("type[Study]", kind)
+    if Study.kinds.setdefault(cls.kind, cls) is not cls:
+        raise TypeError(f"{cls.__module__}.{cls.__name__}: there is a kind of study {cls.kind!r}; choose another name")
     shared = [field.name for field in dataclasses.fields(Study) if field.kw_only]
     arguments = inspect.signature(cls).parameters.values()
     signature = inspect.Signature(
