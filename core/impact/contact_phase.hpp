@@ -89,6 +89,32 @@ template <class Law> real distance_to_end(const Law& law, const ContactState& s,
     return std::sqrt(std::sqrt(limit)) - x;
 }
 
+// Overlaps [m] between which a force is smooth.
+struct Span {
+    real low = -infinity, high = infinity;
+};
+
+// Returns the knots on both sides of x; beyond the last one the curve is a straight line.
+inline Span knots_around(const PiecewiseCubic& curve, real x) {
+    if (x > curve.last()) return {curve.last(), infinity};
+    const int i = curve.piece(x);
+    return {curve.knots[i], curve.knots[i + 1]};
+}
+
+// Returns the overlaps around `overlap` between which the force of the phase is smooth. Laws with measured
+// curves have knots, over which an integrator must not step.
+template <class Law> Span smooth_span(const Law& law, const ContactState& s, real overlap) {
+    if constexpr (requires { law.loading().knots, law.unloading().knots; }) {
+        const real deepest = s.history.deepest;
+        if (s.phase == ContactState::unloading && !law.unloading().empty() && deepest > 0) {
+            const Span parts = knots_around(law.unloading(), overlap / deepest);
+            return {parts.low * deepest, parts.high * deepest};
+        }
+        return knots_around(law.loading(), overlap);
+    }
+    return {};
+}
+
 // Positive until the phase ends.
 template <class Law> real phase_end(const Law& law, const ContactState& s, real x, real rate) {
     if constexpr (Law::hysteretic) {
