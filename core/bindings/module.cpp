@@ -59,6 +59,7 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
     bindings::add_sweep(module);
     bindings::add_dem(module);
     module.attr("worst_energy_residual") = worst_energy_residual;
+    module.attr("energy_at_rest") = energy_at_rest;
     module.attr("speed_at_rest") = speed_at_rest;
     module.def(
         "simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1, nb::arg("progress") = nb::none(),

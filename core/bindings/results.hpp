@@ -55,14 +55,16 @@ struct RunResult : Node {
     ImpactColumns impacts;
     RunCounts counts;
     Status status{};
-    double energy_residual_limit = 0, stopped_at = 0, stopped_value = 0;
+    double energy_residual_limit = 0, permitted_error = 0, energy_rounding = 0, stopped_at = 0,
+           stopped_value = 0;
     int stopped_contact = -1;
     double seconds = 0;
 
     RunResult() = default;
     RunResult(const Problem& problem, Result&& r, double elapsed)
         : impacts(problem, r.impacts), counts{{}, r.counts}, status(r.status),
-          energy_residual_limit(problem.settings.energy_residual_limit()), stopped_at(r.stopped_at),
+          energy_residual_limit(problem.settings.energy_residual_limit()), permitted_error(r.permitted_error),
+          energy_rounding(r.rounding(problem.settings)), stopped_at(r.stopped_at),
           stopped_value(r.stopped_value), stopped_contact(r.stopped_contact), seconds(elapsed) {
         Samples& s = r.samples;
         const std::size_t n = s.time.size(), d = problem.dampers.size();
@@ -116,6 +118,7 @@ inline void add_results(nb::module_& module) {
         field("plastic_loss", &R::plastic_loss), field("contact_energy", &R::contact_energy),
         field("cavity_force", &R::cavity_force), field("impacts", &R::impacts), field("counts", &R::counts),
         field("status", &R::status), field("energy_residual_limit", &R::energy_residual_limit),
+        field("permitted_error", &R::permitted_error), field("energy_rounding", &R::energy_rounding),
         field("stopped_at", &R::stopped_at), field("stopped_value", &R::stopped_value),
         field("stopped_contact", &R::stopped_contact), field("seconds", &R::seconds));
 }

@@ -5,14 +5,17 @@
 #pragma once
 
 #include "impact/contact_begin.hpp"
+#include "impact/lasting_contact.hpp"
 #include "math/dop853.hpp"
 
 namespace rattlebox {
 
 class ClosedContacts : protected ContactBegin {
     Dop853 integrator_;
-    std::vector<real> partial_, scale_, slope_, forward_, backward_;
+    LastingContact lasting_;
+    std::vector<real> partial_, inside_, scale_, slope_, forward_, backward_;
     real deepest_ = 0;                           // scale of the overlaps
+    real step_error_ = 0;                        // energy error that counts as permitted in one step [J]
     static constexpr real peak_precision = 1e-8; // part of a step; the error of a peak is its square
 
 protected:
@@ -134,11 +137,13 @@ protected:
         }
         deepest_ = square(square(deepest));
         largest_overlap_ = std::fmax(largest_overlap_, deepest_);
+        step_error_ = 0;
         for (std::size_t j = 0; j < system_.active.size(); ++j) {
             const Active& a = system_.active[j];
             // A contact that starts from rest has no scale of its own.
             const real size = std::max(depth(a), 0.1 * deepest);
             scale_[system_.x_index(j)] = std::fmax(tolerance * size, x_rounding(a, depth(a)));
+            step_error_ += step_error(a, depth(a));
         }
         if (system_.active.empty())
             for (real y : state_.y) speed = std::max(speed, std::fabs(y));
@@ -154,6 +159,17 @@ protected:
             for (const Damper& damper : problem_.dampers) shape = std::max(shape, std::fabs(damper.shape[k]));
             scale_[2 * k + 1] = bound(shape > 0 ? speed / shape : speed, y_[2 * k + 1]);
         }
+    }
+
+    // Returns the energy error of a step whose speed and overlap are wrong by the tolerance: in m V^2 / 2,
+    // and in the stored energy, which grows at most with the power 10 of x.
+    real step_error(const Active& a, real depth) const {
+        const Contact& k = contact(a.contact);
+        const real stored = k.normal.visit([&](const auto& law) {
+            const real deepest = std::sqrt(std::sqrt(last_overlap(law, a.state) - a.state.origin()));
+            return stored_energy(law, a.state, std::fmin(depth, deepest));
+        });
+        return resolution() * (k.mass * square(a.speed) + 10 * stored);
     }
 
     // Returns where, in a step of length h from y_, a function changes from `before` (>= 0) to <= 0: the far
@@ -256,6 +272,21 @@ protected:
                 200 * problem_.settings.max_events)
                 fail(Status::too_many_events);
             if (!running()) return unload_system(y_);
+            if (may_last()) {
+                // Whether or not long steps were possible, the next attempt waits for some explicit steps.
+                const bool advanced = advance_lasting(remaining);
+                for (Active& a : system_.active)
+                    a.wait = a.steps + (advanced ? 250 : std::max(1000L, a.steps));
+                if (advanced) set_scales();
+                if (y_[clock] >= remaining) {
+                    const real start = state_.t;
+                    unload_system(y_);
+                    state_.t = start + remaining;
+                    return;
+                }
+                if (advanced) h = first_step(remaining);
+                continue;
+            }
             integrator_.start(system_, y_.data());
             if (problem_.settings.peaks) record_forces();
             // One step whose error is within the tolerance.
@@ -273,6 +304,8 @@ protected:
                 break;
             }
             ++result_.counts.contact_steps;
+            for (Active& a : system_.active) ++a.steps;
+            result_.permitted_error += step_error_;
             const real error = integrator_.error(h, scale_);
             const real grow = error > 0 ? std::fmin(4.0, 0.9 * std::pow(error, -0.125)) : 4.0;
 
@@ -475,6 +508,217 @@ protected:
         }
     }
 
+    // ---- contacts that stay closed
+
+    // Whether all closed contacts have lasted so long that long steps may pay. The explicit steps before keep
+    // ordinary impacts as they are.
+    bool may_last() const {
+        if (system_.active.empty() || hard() || !released_.empty() || !problem_.coupling.empty())
+            return false;
+        for (const Active& a : system_.active)
+            if (a.steps < a.wait || a.state.phase == ContactState::yielding) return false;
+        for (Phase p : phase_)
+            if (p == Phase::touching) return false;
+        return true;
+    }
+
+    // Returns whether nothing will move before the next knot: the loads are constant, and speeds and
+    // accelerations of all bodies are below the tolerance of the overlaps, at the frequency of the contacts
+    // or of the mode.
+    bool is_at_rest(real frequency) {
+        for (std::size_t l = 0; l < loads_.size(); ++l)
+            if (loads_.piece(l).amplitude != 0 || loads_.piece(l).slope != 0) return false;
+        real overlap = infinity;
+        for (std::size_t j = 0; j < system_.active.size(); ++j)
+            overlap = std::fmin(overlap, overlap_of(y_.data(), j));
+        system_(y_.data(), trial_.data());
+        const real clock = trial_[system_.time_index()], small = rest_part() * overlap;
+        if (!(clock > 0)) return false;
+        const auto rests = [&](real x, real speed, real acceleration, real rate, real shape) {
+            const real length = std::fmax(small / shape, 4 * epsilon * std::fabs(x));
+            return std::fabs(speed) <= length * rate &&
+                   std::fabs(acceleration / clock) <= length * rate * rate;
+        };
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
+            real shape = 0;
+            for (const Damper& damper : problem_.dampers)
+                shape = std::fmax(shape, std::fabs(damper.shape[k]));
+            const real rate = std::fmin(std::sqrt(problem_.modes[k].stiffness), frequency);
+            if (shape > 0 && !rests(y_[2 * k], y_[2 * k + 1], trial_[2 * k + 1], rate, shape)) return false;
+            if (shape == 0 && (y_[2 * k + 1] != 0 || trial_[2 * k + 1] != 0)) return false;
+        }
+        const real *v = velocities(problem_, y_.data()), *dv = velocities(problem_, trial_.data());
+        for (std::size_t b = 0; b < problem_.ball_mass.size(); ++b)
+            if (!rests(0, v[b], dv[b], frequency, 1)) return false;
+        return true;
+    }
+
+    // Part of an overlap below which its changes count as rounding.
+    real rest_part() const { return 4 * resolution(); }
+
+    // Returns the error of the long step over the tolerance, apart from the rounding errors of the forces,
+    // which follow from overlaps and of the time.
+    real lasting_error(real frequency) const {
+        const real time = state_.t + y_[system_.time_index()]; // at which loads are evaluated
+        const real rounding = epsilon * (8 + square(frequency * lasting_.h) + loads_.frequency() * time);
+        const auto tail = [&](const LastingContact::Row& f, real size) {
+            return std::fmax(lasting_.tail(f) - rounding * size, 0.0);
+        };
+        real error = 0;
+        for (const auto& force : lasting_.force) {
+            const real largest = *std::max_element(std::begin(force.at), std::end(force.at));
+            error = std::fmax(error, tail(force, largest) / (resolution() * largest));
+        }
+        const std::size_t modes = problem_.modes.size(), balls = problem_.ball_mass.size();
+        for (std::size_t b = 0; b < modes + balls; ++b)
+            error =
+                std::fmax(error, lasting_.h * tail(lasting_.acceleration[b], lasting_.free_acceleration(b)) /
+                                     scale_[b < modes ? 2 * b + 1 : modes + balls + b]);
+        return error;
+    }
+
+    // The smallest and the largest value that a resolved function can have between the nodes.
+    static Span range_of(const LastingContact::Row& f) {
+        const auto [low, high] = std::minmax_element(std::begin(f.at), std::end(f.at));
+        const real margin = 0.05 * (*high - *low);
+        return {*low - margin, *high + margin};
+    }
+
+    // Returns the largest value of a function within the long step.
+    static real largest_within(const LastingContact::Row& f) {
+        const auto& node = LastingContact::rule().node;
+        const auto top = std::max_element(std::begin(f.at), std::end(f.at)) - std::begin(f.at);
+        real low = top == 0 ? 0 : node[top - 1], high = top == LastingContact::n - 1 ? 1 : node[top + 1];
+        real most = f[static_cast<int>(top)];
+        constexpr real golden = 0.6180339887498949;
+        for (int i = 0; i < 40; ++i) {
+            const real a = high - golden * (high - low), b = low + golden * (high - low);
+            const real left = LastingContact::rule().interpolate(f, a),
+                       right = LastingContact::rule().interpolate(f, b);
+            most = std::fmax(most, std::fmax(left, right));
+            (left < right ? low : high) = left < right ? a : b;
+        }
+        return most;
+    }
+
+    // Whether no contact begins, ends or changes its phase within the long step.
+    bool stays_closed() {
+        for (std::size_t j = 0; j < system_.active.size(); ++j) {
+            const Active& a = system_.active[j];
+            const Span force = range_of(lasting_.force[j]), overlap = range_of(lasting_.overlap[j]);
+            if (!(force.low > 0) || !(overlap.low > a.state.origin())) return false;
+            const Span smooth = smooth_span_at(j, lasting_.overlap[j][0]);
+            if (overlap.low < smooth.low || overlap.high > smooth.high) return false;
+            // A vibration returns to its deepest overlap without yielding again.
+            const real end =
+                contact(a.contact).normal.visit([&](const auto& law) { return last_overlap(law, a.state); });
+            if (overlap.high > end && largest_within(lasting_.overlap[j]) > end * (1 + resolution()))
+                return false;
+        }
+        for (int c = 0; c < problem_.contact_count(); ++c) {
+            if (phase(c) != Phase::open) continue;
+            if (!(range_of(lasting_.gap_of(contact(c), scratch_)).low > gap_rounding(c, y_.data())))
+                return false;
+        }
+        return true;
+    }
+
+    // Makes long steps until a contact begins, ends or changes its phase, or until the time `remaining`.
+    // Returns whether there was a step.
+    bool advance_lasting(real remaining) {
+        const std::size_t clock = system_.time_index();
+        const real frequency = std::sqrt(lasting_.square_of_frequency(system_, y_.data()));
+        if (!(frequency > 0 && frequency < infinity)) return false;
+        // Beyond the longest step rounding errors of the forces matter; below the shortest one the equations
+        // of all nodes and contacts cost more than explicit steps.
+        const real longest = 40 / frequency;
+        const real shortest = 4 * cube(static_cast<real>(system_.active.size())) / frequency;
+        bool advanced = false;
+        for (real h = 1.5 * shortest;;) {
+            if (stop_ && stop_->load(std::memory_order_relaxed)) return advanced;
+            if (is_at_rest(frequency)) {
+                while (sample_due(state_.t + remaining))
+                    sample_closed(y_, problem_.sample_times[next_sample_++], true);
+                y_[clock] = remaining;
+                return true;
+            }
+            const real now = state_.t + y_[clock], left = remaining - y_[clock];
+            if (h < shortest || shortest > longest || (!advanced && left < shortest)) return advanced;
+            const bool last = h >= left;
+            // Rounded to a representable time, or the time would drift from the motion with each step.
+            const real step = last ? left : now + h - now;
+            const bool solved = lasting_.solve_step(system_, loads_, y_.data(), now, step);
+            const real error = solved ? lasting_error(frequency) : infinity;
+            if (!(error <= 1)) {
+                ++result_.counts.rejected_steps;
+                h = step * (error < infinity ? std::fmax(0.3, 0.9 * std::pow(error, -1.0 / 15)) : 0.5);
+                continue;
+            }
+            if (!stays_closed()) return advanced;
+            ++result_.counts.contact_steps;
+            result_.permitted_error += step_error_;
+            lasting_.state_at(system_, y_.data(), 1, trial_);
+            sample_lasting(now, last ? state_.t + remaining : now + step);
+            if (problem_.settings.peaks) record_lasting_peaks();
+            std::swap(y_, trial_);
+            bool faster = false;
+            for (std::size_t j = 0; j < system_.active.size(); ++j) {
+                Active& a = system_.active[j];
+                a.x = y_[system_.x_index(j)];
+                for (real rate : lasting_.rate[j].at)
+                    if (std::fabs(rate) > 2 * a.speed) a.speed = std::fabs(rate), faster = true;
+            }
+            if (faster) set_scales();
+            advanced = true;
+            if (last) {
+                y_[clock] = remaining;
+                return true;
+            }
+            h = std::fmin(longest, step * std::fmin(1.5, 0.9 * std::pow(std::fmax(error, 1e-12), -1.0 / 15)));
+        }
+    }
+
+    // Takes the samples within a long step: requested times and deepest overlaps.
+    void sample_lasting(real from, real to) {
+        std::vector<std::pair<real, bool>> times; // and whether the time was requested
+        while (sample_due(to)) times.emplace_back(problem_.sample_times[next_sample_++], true);
+        if (samples_contacts())
+            for (std::size_t j = 0; j < system_.active.size(); ++j)
+                for (int i = 0; i + 1 < LastingContact::n; ++i) {
+                    const LastingContact::Row& rate = lasting_.rate[j];
+                    const real moves = resolution() * system_.active[j].speed;
+                    if (!(rate[i] > moves && rate[i + 1] < 0) && !(rate[i] > 0 && rate[i + 1] < -moves))
+                        continue;
+                    real low = LastingContact::rule().node[i], high = LastingContact::rule().node[i + 1];
+                    for (int half = 0; half < 30; ++half) {
+                        const real middle = 0.5 * (low + high);
+                        (LastingContact::rule().interpolate(rate, middle) > 0 ? low : high) = middle;
+                    }
+                    times.emplace_back(from + low * lasting_.h, false);
+                }
+        std::sort(times.begin(), times.end());
+        for (const auto& [t, given] : times) {
+            inside_.resize(system_.size());
+            const real part = (t - from) / lasting_.h;
+            if (part >= 1) {
+                sample_closed(trial_, t, given);
+            } else {
+                lasting_.state_at(system_, y_.data(), part, inside_);
+                sample_closed(inside_, t, given);
+            }
+        }
+    }
+
+    void record_lasting_peaks() {
+        for (std::size_t j = 0; j < system_.active.size(); ++j) {
+            Impact& impact = result_.impacts[static_cast<std::size_t>(system_.active[j].impact)];
+            if (range_of(lasting_.force[j]).high > impact.peak_force)
+                impact.peak_force = std::fmax(impact.peak_force, largest_within(lasting_.force[j]));
+            if (range_of(lasting_.overlap[j]).high > impact.peak_overlap)
+                impact.peak_overlap = std::fmax(impact.peak_overlap, largest_within(lasting_.overlap[j]));
+        }
+    }
+
     // Takes the samples in the step of length h from y_ to trial_: requested times, deepest overlaps, and the
     // end of the step if a contact begins or ends there.
     void sample_step(real h, bool at_event) {
@@ -658,7 +902,8 @@ protected:
     }
 
 public:
-    using ContactBegin::ContactBegin;
+    ClosedContacts(const Problem& problem, const std::atomic<bool>* stop)
+        : ContactBegin(problem, stop), lasting_(problem) {}
 };
 
 } // namespace rattlebox

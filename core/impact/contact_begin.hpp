@@ -197,8 +197,8 @@ protected:
         const real residual = energy(scratch_) + stored - energy(state_) + contact_ledger_.normal[d] +
                               contact_ledger_.viscous - contact_ledger_.load_work - contact_ledger_.base_work;
         const real size = contact(c).mass * speed * speed + energy(state_) * 1e-2;
-        if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size))
-            return false;
+        if (!(std::fabs(residual) < resolution() * size)) return false;
+        result_.permitted_error += resolution() * size;
 
         Impact impact;
         impact.contact = c;

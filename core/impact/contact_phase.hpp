@@ -81,6 +81,15 @@ template <class Law> real plastic_loss(const Law& law, const ContactState& s, re
     }
 }
 
+// Returns the overlap at which the phase ends while it grows, or infinity.
+template <class Law> real last_overlap(const Law& law, const ContactState& s) {
+    if constexpr (Law::hysteretic) {
+        if (s.phase == ContactState::loading) return law.yield_overlap(s.coefficients);
+        if (s.phase == ContactState::unloading) return s.history.deepest;
+    }
+    return infinity;
+}
+
 // For a law with hysteresis: distance in x to the end of the phase, at the yield overlap or at the deepest
 // overlap.
 template <class Law> real distance_to_end(const Law& law, const ContactState& s, real x) {

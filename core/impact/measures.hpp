@@ -244,9 +244,12 @@ public:
         return sums;
     }
 
+    // Zero if nothing moves, so that only rounding errors of the largest energy are left.
     real energy_residual() const {
         const Balance b = balance();
-        return b.residual == 0 ? 0 : b.residual / b.supplied;
+        const bool rests =
+            b.supplied <= energy_at_rest * b.turnover && b.residual <= energy_at_rest * b.turnover;
+        return b.residual == 0 || rests ? 0 : b.residual / b.supplied;
     }
 
     // Returns the status of a run that reached its end. A residual at rounding level is no error if little
@@ -254,9 +257,11 @@ public:
     Status end(real bound) const {
         const Balance b = balance();
         if (!std::isfinite(b.residual)) return Status::not_finite;
-        real floor = 1e-10 * b.turnover;
+        real floor = run_.rounding(problem_.settings) * b.turnover;
         for (real mass : problem_.ball_mass) floor += mass * square(speed_at_rest);
-        const bool open = b.residual > bound * b.supplied && b.residual > floor;
+        const real permitted =
+            std::fmin(bound * b.supplied + run_.permitted_error, worst_energy_residual * b.supplied);
+        const bool open = b.residual > permitted && b.residual > floor;
         return open ? Status::energy_error : Status::finished;
     }
 

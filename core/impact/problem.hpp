@@ -37,6 +37,12 @@ inline constexpr real worst_energy_residual = 0.01;
 // Balls below this speed [m/s] count as at rest: an energy residual below their kinetic energy is rounding.
 inline constexpr real speed_at_rest = 1e-9;
 
+// Rounding errors of the energies at one time, as part of the largest energy of a run.
+inline constexpr real energy_rounding = 64 * epsilon;
+
+// Part of the largest energy of a run up to which the energy supplied and the residual count as none.
+inline constexpr real energy_at_rest = 1e-10;
+
 enum class Method : int { event_driven = 0, newton = 1, two_step = 2 };
 
 struct Settings {
@@ -55,11 +61,9 @@ struct Settings {
 
     bool peaks = true; // whether the peaks of force and overlap of each impact are computed
 
-    // Largest energy residual over the energy supplied for which a run with this method counts as finished.
-    real energy_residual_limit() const {
-        if (method == Method::two_step) return worst_energy_residual;
-        return method == Method::newton ? 1e-8 : std::clamp(1e4 * tolerance, 1e-8, worst_energy_residual);
-    }
+    // Largest energy residual over the energy supplied for which a run with this method counts as finished,
+    // apart from the permitted errors of its steps (Result::permitted_error).
+    real energy_residual_limit() const { return method == Method::two_step ? worst_energy_residual : 1e-8; }
 };
 
 struct Problem {

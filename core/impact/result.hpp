@@ -42,6 +42,7 @@ struct Result {
     real stopped_at = 0;
     int stopped_contact = -1; // contact whose law left its range of validity
     real stopped_value = 0;   // its approach speed
+    real permitted_error = 0; // of the energy [J], by the tolerance of all steps of contacts
 
     // Reserves memory for the requested samples, and as many for those at contacts.
     explicit Result(const Problem& problem) {
@@ -55,6 +56,14 @@ struct Result {
             column->reserve(d);
     }
     Result() = default;
+
+    // Returns the part of the largest energy of a run that rounding errors may reach. In soft contacts those
+    // of positions add up like a random walk.
+    real rounding(const Settings& settings) const {
+        if (settings.method != Method::event_driven) return 1e-10;
+        return energy_rounding +
+               4 * epsilon * std::sqrt(static_cast<real>(counts.events + counts.contact_steps));
+    }
 
     // Adds an impact to the log and returns its index.
     int add_impact(const Impact& impact) {

@@ -34,6 +34,8 @@ protected:
     Phase& phase(int c) { return phase_[static_cast<std::size_t>(c)]; }
     bool hard() const { return problem_.settings.method == Method::newton; }
     bool running() const { return result_.status == Status::finished; }
+    // The tolerance, at least the rounding error of a step.
+    real resolution() const { return std::fmax(problem_.settings.tolerance, 64 * epsilon); }
     real next_stop() const { return std::min(loads_.next_knot(), until_); }
 
     void fail(Status status, int c = -1, real value = 0) {

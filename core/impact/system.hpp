@@ -20,9 +20,11 @@ namespace rattlebox {
 struct Active {
     int contact = 0;
     ContactState state;
-    int impact = -1; // index in the impact log
-    real x = 0;      // overlap = state.origin() + x^4
-    real speed = 0;  // largest approach speed so far, the scale of its errors
+    int impact = -1;  // index in the impact log
+    real x = 0;       // overlap = state.origin() + x^4
+    real speed = 0;   // largest approach speed so far, the scale of its errors
+    long steps = 0;   // of its integration so far
+    long wait = 1000; // number of steps after which a long step (impact/lasting_contact.hpp) is tried
 };
 
 // A contact whose force became zero before its overlap: the bodies recover their shape in flight, or touch

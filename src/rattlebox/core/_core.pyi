@@ -677,7 +677,7 @@ class Result(Node):
     A run of the 1-D engine. `state` holds displacement and velocity of each mode, then positions and velocities of all balls; `chosen` is true for samples at times of the problem.
     """
 
-    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], chosen: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], contact_energy: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], cavity_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], impacts: Impacts, counts: Counts, status: Status, energy_residual_limit: float, stopped_at: float, stopped_value: float, stopped_contact: int, seconds: float) -> None: ...
+    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], chosen: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], contact_energy: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], cavity_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], impacts: Impacts, counts: Counts, status: Status, energy_residual_limit: float, permitted_error: float, energy_rounding: float, stopped_at: float, stopped_value: float, stopped_contact: int, seconds: float) -> None: ...
 
     @property
     def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
@@ -720,6 +720,12 @@ class Result(Node):
 
     @property
     def energy_residual_limit(self) -> float: ...
+
+    @property
+    def permitted_error(self) -> float: ...
+
+    @property
+    def energy_rounding(self) -> float: ...
 
     @property
     def stopped_at(self) -> float: ...
@@ -1337,6 +1343,8 @@ class Dem:
     def threads(self, arg: int, /) -> None: ...
 
 worst_energy_residual: float = 0.01
+
+energy_at_rest: float = 1e-10
 
 speed_at_rest: float = 1e-09
 

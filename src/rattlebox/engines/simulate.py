@@ -216,7 +216,9 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
     if raw.status == Status.finished:
         ledger = Ledger(arrays)
         mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
-        end = final_status(ledger, raw.energy_residual_limit, mass)
+        end = final_status(
+            ledger, raw.energy_residual_limit, mass, permitted=raw.permitted_error, rounding=raw.energy_rounding
+        )
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     counts = [len(damper.balls) for damper in case.impact_dampers]
     contact = contact_name(arrays.dampers, counts, raw.stopped_contact)

@@ -79,17 +79,25 @@ ADVICE: dict[Status, dict[str, str]] = {
 """Advice by status and kind of method; "" for all other methods, "softened" for softened contacts."""
 
 
-def final_status(ledger: Ledger, limit: float, mass: float) -> Status:
+def final_status(
+    ledger: Ledger, limit: float, mass: float, *, permitted: float = 0.0, rounding: float = 1e-10
+) -> Status:
     """Return the status of a run that reached its end.
 
     Parameters
     ----------
     mass
         Mass of all balls or particles [kg]. A residual below their kinetic energy at 1 nm/s counts as rounding.
+    permitted
+        Energy error that the tolerance permits in all steps [J], allowed in addition to the limit, up to 1 %.
+    rounding
+        Residual that counts as rounding, as part of the largest energy of the run.
     """
     if not np.isfinite(ledger.residual).all():
         return Status.not_finite
-    return Status.finished if ledger.is_balanced(limit, mass * _core.speed_at_rest**2) else Status.energy_error
+    floor = mass * _core.speed_at_rest**2
+    balanced = ledger.is_balanced(limit, permitted=permitted, floor=floor, rounding=rounding)
+    return Status.finished if balanced else Status.energy_error
 
 
 def contact_name(dampers: Sequence[str], counts: Sequence[int], contact: int) -> str:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rattlebox.results.run import Run
 
 ENERGY_BOUNDS = {
-    "event_driven": "1e-8 or 10 000 tolerances",
+    "event_driven": "1e-8 and the tolerance of all steps",
     "newton": "1e-8",
     "two_step": "1 %",
     "dem": "1 %",

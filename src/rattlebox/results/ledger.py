@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from rattlebox._util.quantities import quantity
+from rattlebox.core import _core
 
 from .arrays import FloatArray, RunArrays, raise_absent
 from .schema import channels
@@ -104,37 +105,60 @@ class Ledger:
             return np.asarray(self.total - self.total[0] - self.work + self.losses)
 
     @cached_property
-    def energy_residual(self) -> float:
-        """Largest residual over the energy put in; 0 if nothing moves.
-
-        The reference is max|W_load| + max|W_base| + E(0), in which max|V(t) - V(0)| replaces the gravity potential V(0),
-        whose zero is arbitrary.
-        """
+    def _put_in(self) -> float:
+        """Energy put in: max|W_load| + max|W_base| + E(0), with max|V(t) - V(0)| for the gravity potential [J]."""
         arrays = self.arrays
-        reference = (
+        return float(
             np.max(np.abs(arrays.load_work))
             + np.max(np.abs(arrays.base_work))
             + self.motion[0]
             + np.max(np.abs(self.gravity - self.gravity[0]))
         )
-        worst = np.max(np.abs(self.residual))
-        if worst == 0.0:
-            return 0.0
-        return float(worst / reference) if reference != 0.0 else float("inf")
 
-    def is_balanced(self, limit: float, floor: float = 0.0) -> bool:
-        """Return whether the energy residual is within a limit or within rounding.
+    @cached_property
+    def _largest(self) -> float:
+        """Largest sum of all terms of the balance at one time, whose rounding errors the residual contains [J]."""
+        arrays = self.arrays
+        handled = self.motion + np.abs(self.gravity) + arrays.viscous_loss
+        return float(np.max(handled + np.abs(arrays.load_work) + np.abs(arrays.base_work)))
+
+    @cached_property
+    def energy_residual(self) -> float:
+        """Largest residual over the energy put in; 0 if nothing moves.
+
+        Nothing moves if residual and energy put in are below 1e-10 of the largest energy of the run, the potential of
+        gravity for instance, so that both are its rounding errors.
+
+        The reference is max|W_load| + max|W_base| + E(0), in which max|V(t) - V(0)| replaces the gravity potential V(0),
+        whose zero is arbitrary.
+        """
+        worst = float(np.max(np.abs(self.residual)))
+        if worst == 0.0 or max(worst, self._put_in) <= _core.energy_at_rest * self._largest:
+            return 0.0
+        return worst / self._put_in if self._put_in != 0.0 else float("inf")
+
+    def is_balanced(self, limit: float, *, permitted: float = 0.0, floor: float = 0.0, rounding: float = 1e-10) -> bool:
+        """Return whether the largest residual is within a limit or within rounding.
 
         Parameters
         ----------
+        limit
+            Largest allowed `energy_residual`, apart from the permitted error.
+        permitted
+            Error that the tolerance permits in all steps of a run [J]. With it the limit is at most 1 %.
         floor
-            Residual [J] that counts as rounding, added to 1e-10 of the largest energy of the run.
+            Residual that counts as rounding in addition to that of the largest energy [J].
+        rounding
+            Residual that counts as rounding, as part of the largest energy of the run.
+
+        Returns
+        -------
+        bool
+            False also if an energy is NaN.
         """
-        arrays = self.arrays
-        handled = self.motion + np.abs(self.gravity) + arrays.viscous_loss
-        handled = handled + np.abs(arrays.load_work) + np.abs(arrays.base_work)
-        rounding = 1e-10 * float(np.max(handled)) + floor
-        return self.energy_residual <= limit or float(np.max(np.abs(self.residual))) <= rounding
+        worst = float(np.max(np.abs(self.residual)))
+        allowed = min(limit * self._put_in + permitted, _core.worst_energy_residual * self._put_in)
+        return worst <= max(allowed, rounding * self._largest + floor)
 
     @cached_property
     def shares(self) -> dict[str, float]:
