@@ -63,7 +63,9 @@ protected:
     bool is_touching(int c) const {
         const real value = gap(problem_, contact(c), state_.y.data()).value;
         const real length = gap_terms(c) + largest_overlap_; // without clearance there are no other lengths
-        return std::fabs(value) <= 64 * (epsilon * length + velocity_rounding() * state_.t);
+        // The overlap of a soft contact is integrated apart from the positions, and ends with its errors.
+        const real apart = hard() ? 0 : resolution() * largest_overlap_;
+        return std::fabs(value) <= 64 * (epsilon * length + velocity_rounding() * state_.t + apart);
     }
 
     void begin_contact_at(int c) {
