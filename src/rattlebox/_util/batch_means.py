@@ -9,8 +9,26 @@ from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
 
-FEWEST_VALUES = 20
+FEWEST_VALUES = 30
 """Smallest number of values for an interval; fewer cannot show how long they are correlated."""
+_LEAST_DECAY = 31.4
+"""Shortest window of a linear motion for an interval, times the decay rate of its least damped mode: 31 correlation times
+of the squared displacement, 2 x 31.4 decay rates, half of the window that suffices for most intervals."""
+ENOUGH_DECAY = 2 * _LEAST_DECAY
+"""Length of a window that suffices for most intervals, times the decay rate: 10 cycles over the damping ratio."""
+
+
+def shortest_window(decay: ArrayLike) -> float:
+    """Return the shortest window in which a linear motion has an interval [s].
+
+    Parameters
+    ----------
+    decay : (m,) array_like
+        Decay rates of the modes [1/s]. Those of zero belong to modes that never come to rest, and are left out.
+    """
+    rates = np.asarray(decay, dtype=float)
+    rates = rates[rates > 0]
+    return float(_LEAST_DECAY / rates.min()) if rates.size else 0.0
 
 
 class Interval(NamedTuple):
@@ -63,11 +81,13 @@ def mean_interval(values: ArrayLike) -> Interval:
 
     by Whittle's likelihood, with a prior uniform in log(c). The upper quartile of S(0) gives the interval by Student's t
     with 20 degrees of freedom. The series holds about pi c independent batches. No interval is given if c may be below 6
-    with a probability above 90 % over the number of ordinates; if the lowest 6 or 12 ordinates alone contradict it, which
-    recognises trends; or if there are fewer than 20 values. A series that passes by chance has too small a scatter:
-    near that limit the interval is up to 3.25 times as wide. There is also none if an oscillation of fewer than
-    about 50 cycles holds most of the power. If there is no interval, but the means of ten parts differ by less
-    than 0.1 % of the mean, as at the end of a transient to periodic motion, half the interval is the range of these ten.
+    with a probability above 80 % over the number of ordinates; if the lowest 6 or 12 ordinates alone contradict it, which
+    recognises trends; or if there are fewer than 30 values. If the upper of at most 64 ordinates are larger than those in
+    the middle, as in squares of an oscillation, only the lower half counts. A series that passes by chance has too small a
+    scatter: near that limit the interval is up to 3.5 times as wide. There is also none if few ordinates, such as those of
+    an oscillation of fewer than about 50 cycles, hold most of the power. If there is no interval, but the means of ten
+    parts differ by less than 0.1 % of the mean, as at the end of a transient to periodic motion, half the interval is the
+    range of these ten.
 
     The guide [](/how-to/analysis.md) states how often the interval holds the mean, and where it does not.
 
@@ -94,13 +114,16 @@ def mean_interval(values: ArrayLike) -> Interval:
     return Interval(mean, mean - float(half), mean + float(half), int(batches))
 
 
-def half_widths(series: NDArray[np.float64]) -> tuple[FloatArray, NDArray[np.intp]]:
+def half_widths(series: NDArray[np.float64], least: ArrayLike = 0.0) -> tuple[FloatArray, NDArray[np.intp]]:
     """Return half of the width of the 95 % interval of the mean of each of many series, and its number of batches.
 
     Parameters
     ----------
     series : (K, N) float
         Series, see `mean_interval`. Those with a number that is not finite have no interval.
+    least
+        Smallest number of values for an interval of each series, where the correlation is known; they may still agree by
+        0.1 % in ten parts.
 
     Returns
     -------
@@ -111,6 +134,7 @@ def half_widths(series: NDArray[np.float64]) -> tuple[FloatArray, NDArray[np.int
     """
     rows, length = series.shape
     half, batches = np.full(rows, np.nan), np.zeros(rows, np.intp)
+    least = np.broadcast_to(least, rows)
     finite = np.flatnonzero(np.isfinite(series).all(axis=1))
     if length < _PARTS:
         return half, batches
@@ -124,6 +148,7 @@ def half_widths(series: NDArray[np.float64]) -> tuple[FloatArray, NDArray[np.int
         if length >= FEWEST_VALUES:
             with np.errstate(divide="ignore", invalid="ignore"):
                 width, level = _spectral_half_widths(x - mean[:, None])
+                width[length < least[chosen]] = np.nan
                 count = np.clip(length * variance / level, 1, length)
         else:
             width, count = np.full(chosen.size, np.nan), np.full(chosen.size, np.nan)
@@ -151,41 +176,70 @@ _GATES = (6, 2.0), (12, 4.0)
 """Smaller numbers of ordinates, and the corner frequencies that each must make improbable."""
 _PEAK, _OSCILLATION = 4.0, 96
 """An oscillation is a mean of three ordinates above 4 times the median of lower ones, searched in the first 96."""
-_SPREAD, _NARROW = 0.16, 0.25
-"""Effective share of the ordinates that hold the power, below which there is no interval, and an oscillation is narrow."""
-_QUANTILE, _FREEDOM, _WIDENING = 0.75, 20, 2.25
+_CLEAR_PEAK, _FEW = 7.0, 64
+"""Such a ratio of up to 64 ordinates is an oscillation however much power it holds."""
+_RISE = 1.25
+"""Ratio of the upper to the middle third of up to 64 ordinates above which only the lower half counts."""
+_LOBE = 2.0
+"""Ratio of the lowest three ordinates to the median of the next ones above which the spectrum may have a lobe at zero."""
+_SPREAD, _NARROW, _CLEAR_SPREAD = 0.16, 0.25, 0.33
+"""Effective share of the ordinates that hold the power below which there is no interval, below which an oscillation is
+narrow, and below which there is no interval if up to 64 ordinates have a lobe at zero."""
+_QUANTILE, _FREEDOM, _WIDENING = 0.75, 20, 2.5
+_DOUBT, _REFUSED = 0.8, 0.7
+"""Probability of too low a corner frequency that is tolerated, times the number of ordinates, and of fewer ordinates."""
 
 
 def _spectral_half_widths(x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return half widths (NaN if refused) and spectral densities S(0) of series with zero mean."""
-    from scipy.special import stdtrit
-
     length = x.shape[1]
     found = np.abs(np.fft.rfft(x, axis=1)[:, 1 : (length - 1) // 2 + 1]) ** 2 / length
     found = found[:, :_OSCILLATION]
-    full = min(_ORDINATES, found.shape[1])
-    # Effective share of the ordinates that hold the power: about half for noise.
-    share = found.sum(axis=1) ** 2 / (found**2).sum(axis=1) / found.shape[1]
-    low, level = _posterior(found[:, :full], min(_SHORTEST, full / 2.5))
-    doubt = low / (0.9 / full)
-    # Power in few ordinates is that of an oscillation whose amplitude has hardly changed within the series.
-    refused = (doubt > 1) | (share < _SPREAD) | ((share < _NARROW) & _oscillates(found))
+    count = found.shape[1]
+    # Effective number of the ordinates that hold the power: about half of all for noise.
+    holders = found.sum(axis=1) ** 2 / (found**2).sum(axis=1)
+    peak = _peak(found)
+    refused = (holders < _SPREAD * count) | ((holders < _NARROW * count) & (peak > _PEAK))
+    half, level = _fitted(found[:, :_ORDINATES], length)
+    if count <= _FEW:
+        # The lobe of a squared oscillation at twice its frequency makes a spectrum look flat that has one at zero, too.
+        # A spectrum that rises from zero on, of parts that make up for each other, has none.
+        lobe = found[:, :3].mean(axis=1) > _LOBE * np.median(found[:, 3 : max(count // 2, 4)], axis=1)
+        refused |= lobe & ((peak > _CLEAR_PEAK) | (holders < _CLEAR_SPREAD * count))
+        third = count // 3
+        rises = lobe & (found[:, -third:].mean(axis=1) > _RISE * found[:, third : 2 * third].mean(axis=1))
+        if rises.any():
+            half[rises], level[rises] = _fitted(found[rises, : -(-count // 2)], length)
+    half[refused] = np.nan
+    return half, level
+
+
+def _fitted(found: FloatArray, length: int) -> tuple[FloatArray, FloatArray]:
+    """Return half widths (NaN if refused) and densities S(0) from ordinates of the periodograms of series of a length."""
+    from scipy.special import stdtrit
+
+    full = found.shape[1]
+    low, level = _posterior(found, min(_SHORTEST, full / 2.5))
+    doubt = low / (_DOUBT / full)
+    refused = doubt > 1
     for ordinates, limit in _GATES:
         if ordinates < full:
             low, rough = _posterior(found[:, :ordinates], limit)
-            refused |= low > 0.7
+            refused |= low > _REFUSED
             level = rough if ordinates > 6 else level
+    level = np.maximum(level, found[:, :4].mean(axis=1))
     factor = stdtrit(min(_FREEDOM, 2 * full), 0.975) * (1 + _WIDENING * np.cbrt(np.minimum(doubt, 1)))
     half = factor * np.sqrt(level / length)
     half[refused] = np.nan
     return half, level
 
 
-def _oscillates(found: FloatArray) -> NDArray[np.bool_]:
-    """Return whether the periodogram has a peak away from frequency zero."""
-    peak = np.zeros(len(found), bool)
-    for j in range(12, found.shape[1] - 1):
-        peak |= found[:, j - 1 : j + 2].mean(axis=1) > _PEAK * np.median(found[:, : j - 3], axis=1)
+def _peak(found: FloatArray) -> FloatArray:
+    """Return the largest ratio of three ordinates away from frequency zero to the median of lower ones."""
+    peak = np.zeros(len(found))
+    for j in range(12, found.shape[1]):
+        ratio = found[:, j - 1 : j + 2].mean(axis=1) / np.median(found[:, : j - 3], axis=1)
+        peak = np.fmax(peak, ratio)
     return peak
 
 

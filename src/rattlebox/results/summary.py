@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
-from rattlebox._util.batch_means import mean_interval
+from rattlebox._util.batch_means import half_widths, shortest_window
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.html import bullets, paragraph, table
 from rattlebox._util.quantities import MISSING, digits, quantity
@@ -293,20 +293,35 @@ def _steady_results(run: Record, base: Any) -> dict[str, Value]:
         return np.diff(late(x)) / (even[1] - even[0])
 
     values: dict[str, Value] = {}
+    least = _fewest_samples(run, even)
     for k, point in enumerate(arrays.points):
-        values |= _with_interval(f"steady_rms_displacement[{point}]", late(arrays.displacement[:, k]))
-        values |= _with_interval(f"steady_rms_acceleration[{point}]", late_rate(arrays.velocity[:, k] + base[:, k]))
+        values |= _with_interval(f"steady_rms_displacement[{point}]", late(arrays.displacement[:, k]), least)
+        accelerations = late_rate(arrays.velocity[:, k] + base[:, k])
+        values |= _with_interval(f"steady_rms_acceleration[{point}]", accelerations, least)
     force = arrays.interface_force.reshape(time.size, -1)
     if np.isfinite(force).all() and force.any():
-        values |= _with_interval("steady_rms_interface_force", late(np.linalg.norm(force, axis=1)))
-    values |= _with_interval("steady_loss_power", late_rate(run.ledger.losses), squared=False)
+        values |= _with_interval("steady_rms_interface_force", late(np.linalg.norm(force, axis=1)), least)
+    values |= _with_interval("steady_loss_power", late_rate(run.ledger.losses), least, squared=False)
     return values
 
 
-def _with_interval(key: str, x: Any, *, squared: bool = True) -> dict[str, Value]:
+def _fewest_samples(run: Record, times: Any) -> float:
+    """Return the fewest samples for an interval of a motion in which no damper acts, from its least damped mode; else 0."""
+    arrays = run.arrays
+    acts = np.any(arrays.impacts.time >= times[0]) if "impacts" in run.groups else arrays.contacts.any()
+    if acts or not run.source:
+        return 0.0
+    with suppress(RattleboxError):  # of the case of a run from a file, which may name files that are gone
+        return shortest_window(run.case.modes.decay) / float(times[1] - times[0])
+    return 0.0
+
+
+def _with_interval(key: str, x: Any, least: float, *, squared: bool = True) -> dict[str, Value]:
     """Return the root mean square, or the mean, of a steady series, and half the width of its 95 % interval."""
-    interval = mean_interval(x**2 if squared else x)
-    lower, mean, upper = interval.lower, interval.mean, interval.upper
+    series = x**2 if squared else x
+    mean = float(np.mean(series))
+    half = float(half_widths(series[None], least)[0][0])
+    lower, upper = mean - half, mean + half
     if squared:
         lower, mean, upper = (math.sqrt(max(square, 0.0)) for square in (lower, mean, upper))
     return {key: mean, _error_of(key): 0.5 * (upper - lower)}

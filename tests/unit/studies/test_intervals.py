@@ -33,7 +33,7 @@ def ball(**changes):
 
 def test_the_intervals_of_chaotic_motion_cover_the_mean():
     """About 95 % of the intervals of 60 runs with different starts contain the mean of all runs."""
-    result = rb.sweep(ball(), {"damper.start": rb.linspace(-0.9, 0.9, 60)}, STEADY, cycles=(100, 192), progress=False)
+    result = rb.sweep(ball(), {"damper.start": rb.linspace(-0.9, 0.9, 60)}, STEADY, cycles=(100, 384), progress=False)
     for name in STEADY:
         half = result[f"{name}_interval"]
         assert np.isfinite(half).mean() > 0.85, name
@@ -54,7 +54,7 @@ def test_periodic_motion_has_a_narrow_interval():
     short = rb.sweep(ball(), {"load.frequency": ["34.4 Hz"]}, STEADY, cycles=(300, 9), progress=False)
     assert np.isnan(short.rms_interval).all() and np.isfinite(short.rms).all()
     assert "rms (1 of 1 variants)" in short.attrs["too_short"]
-    assert "a window of 31.5 s" in short.attrs["too_short"]  # 10 cycles of the mode over its damping ratio
+    assert "a window of 31.4 s" in short.attrs["too_short"]  # 10 cycles of the mode over its damping ratio
 
 
 def test_a_free_decay_has_no_interval():
@@ -107,10 +107,10 @@ def test_random_vibration():
     assert 0.01 < medians[1] < 0.1
 
 
-def test_particles_on_a_shaker():
-    """Measures of particle dampers have intervals; a window of six cycles is too short."""
-    case = rb.Case(
-        structure=rb.Shaker(motion=rb.Harmonic(amplitude="60 m/s^2", frequency="50 Hz", direction="z")),
+def shaken(amplitude):
+    """Return twelve balls on a shaker."""
+    return rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=amplitude, frequency="50 Hz", direction="z")),
         damper=rb.ParticleDamper(
             particles=rb.Particles(material="steel", diameter="5 mm", count=12),
             cavity=rb.Box(size=("15 mm", "15 mm", "20 mm")),
@@ -121,23 +121,75 @@ def test_particles_on_a_shaker():
         ),
         duration="1 s",
     )
+
+
+def test_particles_on_a_shaker():
+    """Measures of particle dampers have intervals; a window of six cycles is too short."""
+    case = shaken("60 m/s^2")
     axes = {"damper.packing.seed": [1, 2, 3, 4, 5, 6]}
-    names = ["loss_per_cycle", "reduced_loss", "loss_factor", "impact_loss"]
+    names = ["loss_per_cycle", "reduced_loss", "impact_loss", "effective_mass", "loss_factor"]
     result = rb.sweep(case, axes, names, cycles=(5, 120), progress=False)
-    for name in names:
+    for name in names[:-1]:
         half = result[f"{name}_interval"]
         assert np.isfinite(half).mean() > 0.6, name
-        # The effective mass of some parts is near zero: their loss factors scatter more than that of the whole.
-        most = 12 if name == "loss_factor" else 4
-        assert 0.3 < float(half.median()) / (1.96 * float(result[name].std())) < most, name
+        assert 0.3 < float(half.median()) / (1.96 * float(result[name].std())) < 4, name
+    # The effective mass may be zero within its interval: the loss factor has no limits.
+    assert (result.effective_mass_interval > 0.5 * result.effective_mass).sum() >= 4
+    assert np.isnan(
+        result.loss_factor_interval.where(result.effective_mass_interval > 0.5 * result.effective_mass)
+    ).all()
     short = rb.sweep(case, {"damper.packing.seed": [1]}, names, cycles=(5, 6), progress=False)
     assert np.isnan(short.loss_per_cycle_interval).all() and "loss_per_cycle" in short.attrs["too_short"]
+
+
+def test_the_interval_of_a_ratio():
+    """The interval of the loss factor agrees with the scatter between packings where the effective mass is not near zero.
+
+    It was that of the mean of the ratios of the parts of the window, which a part with hardly any effective mass decides.
+    """
+    axes = {"damper.packing.seed": [1, 2, 3, 4, 5, 6]}
+    result = rb.sweep(shaken("20 m/s^2"), axes, ["loss_factor", "effective_mass"], cycles=(20, 120), progress=False)
+    half = result.loss_factor_interval
+    assert np.isfinite(half).mean() > 0.6
+    assert 0.3 < float(half.median()) / (1.96 * float(result.loss_factor.std())) < 4
+
+
+def test_a_linear_motion_has_an_interval_only_in_long_windows():
+    """A window of less than five cycles over the damping ratio gives no interval of a linear motion, however it turns out.
+
+    The motions of the other tests were observed for long, and a short series may look uncorrelated by chance. A ball that
+    never touches a wall changes nothing; a run and a sweep have the same limit.
+    """
+    psd = [("10 Hz", "0.01 g_0^2/Hz"), ("200 Hz", "0.01 g_0^2/Hz")]
+    parts = {"structure": rb.SDOF(mass="1 kg", frequency="40 Hz", damping_ratio=0.05)}
+    parts |= {"base": rb.Random(psd=psd, duration="24 s", unit="m/s^2")}
+    axes = {"base.seed": list(range(1, 41))}
+    still = rb.ImpactDamper(
+        ball=rb.Sphere(radius="4 mm", material="steel"), gap="4 m", contact=rb.Tsuji(restitution=0.5)
+    )
+    for damper in (None, still):
+        for length, given in (("3.4 s", False), ("12 s", True)):
+            case = rb.Case(**parts, damper=damper, duration=length)
+            result = rb.sweep(case, axes, ["rms"], skip="1 s", samples=8001, progress=False)
+            assert np.isfinite(result.rms_interval).any() == given
+            assert "a window of 5 s" in result.attrs.get("too_short", "a window of 5 s")
+    for length, given in (("4.8 s", False), ("24 s", True)):
+        case = rb.Case(**parts, duration=length, output=rb.Output(rate="1 kHz"))
+        values = rb.simulate(case).summary().values
+        assert np.isfinite(values["steady_rms_displacement_error[mass]"]) == given
+
+
+def test_a_cavity_without_modes_has_intervals():
+    """A ball in a cavity with a given motion has intervals: there is no mode whose damping limits them."""
+    case = ball(structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="20 Hz")), load=None)
+    result = rb.sweep(case, {"damper.start": [-0.5, 0.0, 0.5]}, ["impact_loss"], cycles=(50, 200), progress=False)
+    assert np.isfinite(result.impact_loss_interval).any()
 
 
 def test_a_line_lies_in_its_interval():
     """The figure of a measure over one axis has a band with the width of the interval."""
     result = rb.sweep(
-        ball(), {"load.frequency": ["28 Hz", "28.1 Hz", "28.2 Hz"]}, ["rms"], cycles=(100, 192), progress=False
+        ball(), {"load.frequency": ["28 Hz", "28.1 Hz", "28.2 Hz"]}, ["rms"], cycles=(100, 384), progress=False
     )
     (band,) = rb.plot_map(result).axes[0].collections
     heights = [

@@ -19,7 +19,7 @@ from rattlebox.studies.grid.grid import Grid
 from rattlebox.studies.work.along_last import AlongLast
 from rattlebox.studies.work.case_work import Extra
 from rattlebox.studies.work.gather_variants import gather_values, gather_variants
-from rattlebox.studies.work.impact_work import ImpactWork, with_intervals
+from rattlebox.studies.work.impact_work import ImpactWork, shortest_windows, with_intervals
 from rattlebox.studies.work.measures import MEASURES, check_names, name_of
 from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
@@ -165,7 +165,9 @@ class _Step:
             output,
             progress=proceed_unless(self._cancelled),
         )
-        return None if values is None else with_intervals(values, output)
+        if values is None:
+            return None
+        return with_intervals(values, output, shortest_windows(packed, (count,), output))
 
     def _start_from(self, before: _States) -> _core.Problem:
         """Return the problem of the core with other initial states."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.batch_means import shortest_window
 from rattlebox.analysis.shaken import MIN_SAMPLES
 from rattlebox.core import _core
 from rattlebox.engines.batch import BlockOutput, run_block
@@ -18,7 +19,7 @@ from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 from rattlebox.prepare.pack import Batch, pack_parts
 from rattlebox.studies.work.case_work import CaseWork, Extra
-from rattlebox.studies.work.measures import INTERVAL, MEASURES, interval_of
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, interval_of, parts_needed
 from rattlebox.studies.work.observed import Observed
 from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
@@ -119,7 +120,11 @@ class ImpactWork(CaseWork):
                 continue
             values = run_block(part.packed, part.shape, first, last, output, threads=threads, progress=proceed)
             if values is not None:
-                values = self.reduced(with_intervals(values, output), first, last)
+                values = self.reduced(
+                    with_intervals(values, output, shortest_windows(part.packed, part.shape, output)[first:last]),
+                    first,
+                    last,
+                )
             if values is None or numbers is None:
                 return values
             for name, array in values.items():
@@ -219,7 +224,7 @@ class ImpactWork(CaseWork):
             motion=self.motion,
             last=self.last,
             state=self.state,
-            batched=self.averages,
+            batched=[*parts_needed(self.averages), _CONTACTS] if self.averages else (),
         )
         return replace(part, packed=packed.replace(settings=settings)), output
 
@@ -232,14 +237,59 @@ class ImpactWork(CaseWork):
         return self.case.modes.point(self.case.dampers[0].point if self.case.dampers else None)
 
 
-def with_intervals(values: Values, output: BlockOutput) -> dict[str, NDArray[Any]]:
-    """Return outputs in which the intervals of measures replace the batches."""
+_CONTACTS = "impacts"
+"""Batched in every window with intervals, last: without any, the motion is that of the linear structure."""
+
+
+def with_intervals(values: Values, output: BlockOutput, shortest: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    """Return outputs in which the intervals of measures replace the batches.
+
+    Parameters
+    ----------
+    values
+        Outputs of `run_block`.
+    output
+        Requested quantities.
+    shortest : (n,) float
+        Shortest window for an interval of each variant whose damper does not act [s].
+    """
     found = dict(values)
     if output.batched:
         batches, lengths = found.pop("batches"), found.pop("batch_length")
-        for name, part in zip(output.batched, batches, strict=True):
-            found[name + INTERVAL] = interval_of(name, found[name], part, lengths)
+        parts = dict(zip((*output.batched[:-1], ""), batches, strict=True))
+        least = np.where(np.nansum(parts.pop(""), axis=1) > 0, 0.0, shortest)
+        for name in output.measures:
+            if set(parts_needed([name])) <= set(parts) and MEASURES[name].average:
+                found[name + INTERVAL] = interval_of(name, found[name], parts, lengths, least)
     return found
+
+
+def shortest_windows(packed: _core.Problem, shape: Sequence[int], output: BlockOutput) -> NDArray[np.float64]:
+    """Return the shortest window for an interval of the linear motion of each variant, see `shortest_window`, flat [s].
+
+    Parameters
+    ----------
+    packed
+        Variants.
+    shape
+        Shape of their grid.
+    output
+        Requested quantities, with the shapes of the modes at the observed point.
+    """
+    modes = len(packed.mode_decay)
+    if not modes:  # a cavity with a given motion
+        return np.zeros(math.prod(shape))
+
+    def over_grid(values: Any) -> Any:
+        array = np.asarray(values, dtype=float)
+        array = array.reshape(modes, *(1,) * (len(shape) + 1 - array.ndim), *array.shape[1:])
+        return np.broadcast_to(array, (modes, *shape)).reshape(modes, -1)
+
+    decay, motion = over_grid(packed.mode_decay), np.abs(over_grid(output.shape))
+    seen = np.where(motion > 1e-9 * motion.max(axis=0, initial=0.0), decay, 0.0)
+    # Few variants differ in their structure.
+    different, inverse = np.unique(seen, axis=1, return_inverse=True)
+    return np.array([shortest_window(column) for column in different.T])[inverse.ravel()]
 
 
 def _period(packed: _core.Problem) -> Any:

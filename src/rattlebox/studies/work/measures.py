@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from rattlebox._util.batch_means import FEWEST_VALUES, half_widths
+from rattlebox._util.batch_means import ENOUGH_DECAY, FEWEST_VALUES, half_widths
 from rattlebox._util.html import Catalogue
 from rattlebox.model.errors import Hint
 from rattlebox.results.schema import OUTCOMES
@@ -129,14 +129,32 @@ MEASURES = Measures(_MEASURES)
 
 MOST_BATCHES = 64
 """Largest number of parts of a window for the interval of a measure; the same as in the core."""
-_LONG = 63.0
-"""Length of a window that suffices for most intervals, times the decay rate of the least damped mode: 10 cycles over the
-damping ratio."""
 INTERVAL = "_interval"
 """Suffix of the name of the half width of an interval."""
 
 
-def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: NDArray[np.float64]) -> Any:
+_RATIOS = {"loss_factor": ("damping_mass", "effective_mass")}
+"""Numerators and denominators of measures that are ratios of averages."""
+
+
+def parts_needed(names: Iterable[str]) -> list[str]:
+    """Return the measures whose parts the intervals of measures require.
+
+    Parameters
+    ----------
+    names
+        Names of measures with intervals.
+    """
+    return list(dict.fromkeys(part for name in names for part in _RATIOS.get(name, (name,))))
+
+
+def interval_of(
+    name: str,
+    value: Any,
+    parts: Mapping[str, NDArray[np.float64]],
+    lengths: NDArray[np.float64],
+    shortest: ArrayLike = 0.0,
+) -> Any:
     """Return half of the width of the 95 % interval of a measure of steady motion.
 
     Parameters
@@ -145,10 +163,12 @@ def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: ND
         Name of the measure.
     value : (K,) float
         Measure over the whole window, for each run.
-    batches : (K, N) float
-        Measure over consecutive parts of the window, padded with NaN.
+    parts : dict of str to (K, N) float
+        Measures over consecutive parts of the window, padded with NaN; see `parts_needed`.
     lengths : (K, N) float
         Lengths of the parts [s].
+    shortest
+        Shortest window for an interval of each run [s], see `rattlebox._util.batch_means.shortest_window`.
 
     Returns
     -------
@@ -159,24 +179,62 @@ def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: ND
     -----
     The method is that of `rattlebox.analysis.mean_interval`, for the measure in the parts, of its square for "root mean
     square", with the half width divided by twice the value, or of its rate for "total".
+
+    A ratio r = a / b of averages, such as the loss factor, is linearised: the series is r + (a_k - r b_k) / b. If the
+    interval of b comes closer to zero than half of b, that of r has no limits (Fieller), and there is none.
     """
     average = MEASURES[name].average
     value = np.asarray(value, dtype=float)
+    if name in _RATIOS:
+        above, below = _RATIOS[name]
+        return _interval_of_ratio(value, parts[above], parts[below], lengths, shortest)
+    batches = parts[name]
     if average == "root mean square":
         batches = batches**2
     elif average == "total":
         batches = batches / lengths
-    half = np.full(len(batches), np.nan)
-    known = np.isfinite(lengths).sum(axis=1)
-    for count in np.unique(known):
-        rows = known == count
-        half[rows] = half_widths(batches[rows, :count])[0]
+    half = _half_widths(batches, lengths, shortest)
     with np.errstate(invalid="ignore", divide="ignore"):
         if average == "root mean square":
             half = np.where(half > 0, half / (2 * value), half)
         elif average == "total":
             half = half * np.nansum(lengths, axis=1)
     return half
+
+
+def _half_widths(batches: NDArray[np.float64], lengths: NDArray[np.float64], shortest: ArrayLike) -> Any:
+    """Return half widths of the intervals of means of parts, whose number differs between the runs."""
+    half = np.full(len(batches), np.nan)
+    known = np.isfinite(lengths).sum(axis=1)
+    least = np.zeros(len(batches))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # Rounding must not refuse a window of just that length.
+        least[:] = np.asarray(shortest) * (1 - 1e-9) * known / np.nansum(lengths, axis=1)
+    for count in np.unique(known):
+        rows = known == count
+        half[rows] = half_widths(batches[rows, :count], least[rows])[0]
+    return half
+
+
+_NEAREST = 0.5
+"""Largest half width of the interval of a denominator over its value, for an interval of the ratio."""
+
+
+def _interval_of_ratio(
+    value: NDArray[np.float64],
+    above: NDArray[np.float64],
+    below: NDArray[np.float64],
+    lengths: NDArray[np.float64],
+    shortest: ArrayLike,
+) -> Any:
+    """Return half widths of the interval of a ratio `above` over the magnitude of `below`, of averages."""
+    known = np.isfinite(lengths)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.sum(below, axis=1, where=known) / known.sum(axis=1)
+        ratio = value[:, None]
+        linear = ratio + (above - ratio * np.sign(mean)[:, None] * below) / np.abs(mean)[:, None]
+        half = _half_widths(linear, lengths, shortest)
+        return np.where(_half_widths(below, lengths, shortest) <= _NEAREST * np.abs(mean), half, np.nan)
 
 
 def interval_warning(found: xr.Dataset, case: Case) -> dict[str, str]:
@@ -200,7 +258,7 @@ def interval_warning(found: xr.Dataset, case: Case) -> dict[str, str]:
     which = ", ".join(f"{name} ({count} of {size} variants)" for name, (count, size) in lacking.items())
     decay = np.asarray(case.modes.decay)
     decay = decay[decay > 0]
-    length = f" of {_LONG / decay.min():.3g} s after the transient" if decay.size else ""
+    length = f" of {ENOUGH_DECAY / decay.min():.3g} s after the transient" if decay.size else ""
     return {
         "too_short": f"no 95 % interval of {which}: the window must have {FEWEST_VALUES} parts and be much longer than the "
         "correlation of the motion, which must be steady; try: more cycles to skip and to evaluate, or a window"

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
-from rattlebox._util.batch_means import FEWEST_VALUES
+from rattlebox._util.batch_means import FEWEST_VALUES, shortest_window
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time
 from rattlebox.analysis.cycle_loss import UNSTEADY, CycleLoss, cycle_loss
@@ -31,7 +31,7 @@ from rattlebox.results import Run
 from rattlebox.results.damper_force import mean_damper_force
 from rattlebox.results.schema import variables
 from rattlebox.studies.work.case_work import CaseWork, Extra
-from rattlebox.studies.work.measures import INTERVAL, MEASURES, MOST_BATCHES, interval_of
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, MOST_BATCHES, interval_of, parts_needed
 from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
@@ -372,10 +372,10 @@ class ParticleWork(CaseWork):
         limits = _batch_limits(self._start(case), float(run.arrays.time[-1]), _frequency(case), run.arrays.time)
         lengths = np.diff(limits)[None]
         parts = [self.window(cut_after(run, end), case, start) for start, end in pairwise(limits)]
+        found = {name: np.array([[part.part(name) for part in parts]]) for name in parts_needed(self.averages)}
+        shortest = 0.0 if run.arrays.contacts.any() else shortest_window(case.modes.decay)
         return {
-            name + INTERVAL: float(
-                interval_of(name, [row[name]], np.array([[part.part(name) for part in parts]]), lengths)[0]
-            )
+            name + INTERVAL: float(interval_of(name, [row[name]], found, lengths, shortest)[0])
             for name in self.averages
         }
 
