@@ -129,7 +129,8 @@ def atomic_write(
     """
     path = Path(path)
     with disk_errors(path, advice):
-        if path.exists() and not path.is_file():  # a device or a pipe; for a folder the caller raises
+        # The caller raises for a folder, and may write to a device or a pipe, unless nothing must be there.
+        if path.exists() and not path.is_file() and replace is not False:
             yield path
             return
         target = path.resolve() if path.is_symlink() else path
