@@ -99,7 +99,7 @@ WRITERS = {
     "run.png": (RUN, "out/motion.png"),
     "run of particles": (command("run", "beads.toml", "-o", "out"), "out/run.vtkhdf"),
     "demo.png": (command("demo", "-o", "out"), "out/demo.png"),
-    "demo.toml": (command("demo", "-o", "out"), "out/jackson_green.toml"),
+    "demo.toml": (command("demo", "-o", "out"), "out/with_the_ball.toml"),
     "plot run": (command("plot", "{}/run.nc"), "run.png"),
     "plot particles": (command("plot", "{}/run.nc", "--kind", "case"), "run.png"),
     "plot study": (command("plot", "{}/study.zarr"), "study.png"),
