@@ -438,9 +438,10 @@ def test_an_fmu_that_cannot_be_written_leaves_the_earlier_one(tmp_path: Path, mo
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(zipfile.ZipFile, "writestr", full)
+    monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(rb.ResourceError, match="no space is left"):
         rb.to_fmu(ball(), file, fmi=2)
+    monkeypatch.undo()
     assert file.read_bytes() == before and [each.name for each in tmp_path.iterdir()] == ["damper.fmu"]
     (tmp_path / "folder.fmu").mkdir()
     for path in (tmp_path / "folder.fmu", file / "damper.fmu"):

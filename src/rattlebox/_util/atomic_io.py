@@ -135,8 +135,8 @@ def atomic_write(
             return
         target = path.resolve() if path.is_symlink() else path
         require_folder(target)
-        if replace is False and os.path.lexists(target):  # before a long computation in the block
-            raise _taken(target)
+        if replace is False and os.path.lexists(path):  # before a long computation in the block
+            raise _taken(path)
         handle, name = tempfile.mkstemp(f".partial{target.suffix}", f".{target.name}.", target.parent)
         os.close(handle)
         temporary = Path(name)

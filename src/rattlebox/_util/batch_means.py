@@ -104,7 +104,7 @@ def mean_interval(values: ArrayLike) -> Interval:
     >>> import numpy as np
     >>> result = mean_interval(np.random.default_rng(1).normal(5.0, 1.0, 4000))
     >>> result.lower < 5.0 < result.upper, round(result.half_width, 2)
-    (True, 0.04)
+    (True, 0.05)
     """
     x = np.asarray(values, dtype=np.float64)
     if x.ndim != 1 or not x.size or not np.isfinite(x).all():

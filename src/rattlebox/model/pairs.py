@@ -165,7 +165,7 @@ def contact_pairs(case: Case, index: int = 0) -> list[Pair]:
     >>> import rattlebox as rb
     >>> trailing, leading = rb.contact_pairs(rb.reference_case())
     >>> trailing.radius  # doctest: +NUMBER
-    0.015
+    0.03317
     """
     count = len(case.impact_dampers)
     if case.particle_dampers:
