@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from rattlebox._util.batch_means import half_widths
+from rattlebox._util.batch_means import _STUDENT, FEWEST_VALUES, half_widths
 from rattlebox.analysis import mean_interval
 
 
@@ -149,3 +149,13 @@ def test_the_end_of_a_transient():
     result = mean_interval(5 + 2e-3 * decay)
     assert result.lower < 5.0 < result.upper and result.half_width < 2e-3
     assert np.isnan(mean_interval(5 + 5e-2 * decay).half_width)
+
+
+def test_the_quantiles_are_those_of_student() -> None:
+    """The table equals SciPy's quantiles, and has those of the smallest spectra: no test compared the constants."""
+    from scipy.special import stdtrit
+
+    assert {freedom: float(stdtrit(freedom, 0.975)) for freedom in _STUDENT} == pytest.approx(_STUDENT, rel=1e-15)
+    for length in range(FEWEST_VALUES, 2 * FEWEST_VALUES):
+        series = np.random.default_rng(length).normal(size=(50, length)) ** 2
+        half_widths(series)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import math
 import struct
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -347,6 +349,26 @@ def test_a_child_process_with_limits(tmp_path: Path, monkeypatch: pytest.MonkeyP
     with pytest.raises(rb.DataError, match="try: the complete file"):
         guarded.arrays_from_child(RST, "rst")
     assert set(guarded.IN_CHILD) == {"rst", "full"}
+
+
+@pytest.mark.parametrize("replaced", [True, False])
+def test_libraries_for_pictures_are_not_loaded(replaced: bool, tmp_path: Path) -> None:
+    """Arrays of Ansys are read without the libraries for pictures, which took most of the time that no test measured.
+
+    A version of the reader that needs one of them when it is imported gets it, and the arrays are the same.
+    """
+    script = (
+        "import sys; from pathlib import Path; from rattlebox.exchange.read import ansys_arrays as a;"
+        f"a._Unused = a._Unused if {replaced} else 0; a.copy_arrays('rst', sys.argv[1], sys.argv[2]);"
+        "print(isinstance(getattr(sys.modules.get('vtkmodules.vtkCommonCore'), '__file__', 0), str))"
+    )
+    output = tmp_path / "arrays.npz"
+    command = [sys.executable, "-c", script, str(RST), str(output)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.stdout == f"{not replaced}\n", done.stderr
+    with np.load(output) as arrays:
+        assert arrays["frequencies"] == pytest.approx([7366.495, 7366.495, 11504.895, 17285.705, 17285.705, 20137.193])
+        assert arrays["shapes"].shape == (6, len(arrays["nodes"]), 3)
 
 
 def test_a_free_structure(tmp_path: Path) -> None:

@@ -9,23 +9,63 @@ from __future__ import annotations
 import sys
 import warnings
 from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 _FORMATS = {"rst": 12, "full": 4}
+_FOR_PICTURES = ("pyvista", "vtkmodules", "matplotlib", "tqdm", "scooby")
+"""Libraries that the reader imports, but needs for pictures only; they take seconds to load."""
+_READERS = ("ansys.mapdl.reader", *(f"ansys.mapdl.reader.{name}" for name in ("full", "rst", "dis_result")))
+
+
+class _Anything(type):
+    """Metaclass of a class that has every attribute: the class itself."""
+
+    def __getattr__(cls, name: str) -> Any:
+        return cls
+
+
+class _Unused(metaclass=_Anything):
+    """Every class, function and setting of a library for pictures."""
+
+
+class _Placeholders(MetaPathFinder, Loader):
+    """Importer of modules without content in place of libraries for pictures."""
+
+    def find_spec(self, name: str, *_: Any) -> ModuleSpec | None:
+        return ModuleSpec(name, self, is_package=True) if name.partition(".")[0] in _FOR_PICTURES else None
+
+    def exec_module(self, module: Any) -> None:
+        module.__getattr__ = lambda _: _Unused
+
+
+def _import_reader() -> Any:
+    """Return the reader; without the libraries for pictures, unless this version of it uses one when it is imported."""
+    before = set(sys.modules)
+    placeholders = _Placeholders()
+    sys.meta_path.insert(0, placeholders)
+    try:
+        for name in _READERS:  # it imports them when it reads a file
+            import_module(name)
+    except Exception:
+        for name in sys.modules.keys() - before:
+            del sys.modules[name]
+    sys.meta_path.remove(placeholders)
+    return import_module(_READERS[0])
 
 
 def copy_arrays(kind: str, path: str, output: str) -> None:
     """Write the arrays of a file to a NPZ file."""
-    reader: Any = import_module("ansys.mapdl.reader")
-
+    reader = _import_reader()
     try:
         file_format = int(reader.common.read_standard_header(path)["file format"])
         if file_format != _FORMATS[kind]:
             sys.exit(f"is not a .{kind} file; its format is {file_format}")
-        file = reader.read_binary(path)
+        file = reader.read_binary(path, **({"flag_vtk_parse": False, "ignore_cyclic": True} if kind == "rst" else {}))
         arrays = _result(file, path) if kind == "rst" else _matrices(file, path)
     except MemoryError:
         sys.exit(f"cannot be read as .{kind}: it asks for more memory than its size allows; it may be damaged")
