@@ -8,6 +8,7 @@ from inspect import Signature
 from reprlib import Repr
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+import numpy as np
 from pydantic import (
     BaseModel,
     ConfigDict,
@@ -137,7 +138,9 @@ class Part(BaseModel, metaclass=_PartMeta):
         """Return the fields that are not at their defaults, shortened."""
         for name, field in type(self).model_fields.items():
             value = getattr(self, name)
-            if field.is_required() or value != field.get_default(call_default_factory=True):
+            if isinstance(value, np.ndarray):
+                yield name, _Shown(_SHORT.repr(tuple(value[: _SHORT.maxtuple + 1].tolist())))
+            elif field.is_required() or value != field.get_default(call_default_factory=True):
                 yield name, _Shown(_SHORT.repr(value))
 
     def __str__(self) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, get_args
 
+import numpy as np
 from pydantic import ValidationError
 
 from rattlebox._util.narrow import instance
@@ -38,12 +39,12 @@ def place_of(case: Case, path: str) -> Place:
             node = node[_only(node, path, so_far)]
             place.append(0)
         if isinstance(step, int):
-            if not isinstance(node, (tuple, list)):
+            if not isinstance(node, (tuple, list, np.ndarray)):
                 raise Hint(f"{path}: {so_far or 'a case'} is not a list", "the same without an index in brackets")
             if step >= len(node):
                 raise Hint(
                     f"{path}: {so_far} has {several(len(node), 'item')}, counted from 0",
-                    f"an index of at most {len(node) - 1}" if node else "",
+                    f"an index of at most {len(node) - 1}" if len(node) else "",
                 )
             place.append(step)
             node = node[step]

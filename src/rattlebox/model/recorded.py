@@ -9,7 +9,16 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, cast
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, PrivateAttr, model_serializer, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    Field,
+    PlainSerializer,
+    PrivateAttr,
+    WithJsonSchema,
+    model_serializer,
+    model_validator,
+)
 
 from rattlebox._util.exceptions import DataError
 from rattlebox.exchange.read.ground_motion import read_ground_motion
@@ -127,7 +136,10 @@ def _words_on_text(columns: Columns) -> str:
     return "has no unit that is recognised above its numbers" if any(above) else "states no unit"
 
 
-def _column(value: Any) -> tuple[float, ...]:
+def _column(value: Any) -> Vector:
+    """Return a read-only array; that of another record itself."""
+    if isinstance(value, np.ndarray) and value.base is None and not value.flags.writeable:
+        return value
     try:
         array = numbers(value)
     except Hint as hint:
@@ -135,7 +147,17 @@ def _column(value: Any) -> tuple[float, ...]:
         raise Hint(hint.complaint, hint.suggestion or advice, hint.place) from None
     if array.ndim != 1:
         raise Hint(f"one row of numbers is needed, not shape {array.shape}")
-    return tuple(array.tolist())
+    array = np.array(array)  # what the user keeps may change
+    array.flags.writeable = False
+    return array
+
+
+Column1D = Annotated[
+    Vector,
+    BeforeValidator(_column),
+    PlainSerializer(np.ndarray.tolist, when_used="json"),
+    WithJsonSchema({"type": "array", "items": {"type": "number"}}),
+]
 
 
 def _as_time_zero(value: Any) -> Any:
@@ -186,8 +208,8 @@ class Record(FilePart, Sampled):
     file_fields: ClassVar[tuple[str, ...]] = ("times", "values")
     begin_advice: ClassVar[str] = 'time_zero = "first", which shifts its first point to 0 s'
     kind: Literal["record"] = "record"
-    times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
-    values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
+    times: Column1D = Field(default_factory=lambda: _column(()))
+    values: Column1D = Field(default_factory=lambda: _column(()))
     file: str | None = None
     columns: tuple[Column, Column] | tuple[Column] | Literal["rows"] | None = None
     dt: PositiveTime | None = None
@@ -312,7 +334,7 @@ class Record(FilePart, Sampled):
     @property
     def peak(self) -> float:
         """Largest magnitude [SI]."""
-        return abs(self.scale) * float(np.max(np.abs(self.values)))
+        return abs(self.scale) * max(float(self.values.max()), -float(self.values.min()))
 
     @property
     def _begin(self) -> float:
@@ -320,7 +342,7 @@ class Record(FilePart, Sampled):
         if self.time_zero is not None and self.time_zero != "first":
             return self.time_zero
         is_first = self.time_zero == "first" or (self.file or "").lower().endswith(_UNIVERSAL)
-        return self.times[0] if is_first else 0.0
+        return float(self.times[0]) if is_first else 0.0
 
     def notes(self) -> Iterator[str]:
         """Yield notes on assumptions about the file, an assumed unit, a shift, and points that are not used."""
@@ -333,9 +355,9 @@ class Record(FilePart, Sampled):
                 f"{self.unit}{in_g}; set unit if that is wrong"
             )
         zero, first = self._begin, self.times[0]
-        before = sum(1 for time in self.times if time < zero)
+        before = int(np.searchsorted(self.times, zero))
         if before:
-            unused = abs(self.scale) * max(map(abs, self.values[:before]))
+            unused = abs(self.scale) * float(np.abs(self.values[:before]).max())
             yield (
                 f"the record begins at {first:.6g} s; its {several(before, 'point')} before {zero:.6g} s, with a peak of "
                 f"{unused:.4g} {self.unit}, are not used (time_zero sets where the run begins)"
@@ -393,5 +415,19 @@ class Record(FilePart, Sampled):
 
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times in the run [s] and values of the points."""
-        times, zero = np.array(self.times), self._begin
-        return times - zero if zero else times, self.scale * np.array(self.values)
+        zero = self._begin
+        return self.times - zero if zero else self.times, self.values if self.scale == 1 else self.scale * self.values
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Record):
+            return NotImplemented
+        pairs = ((self.times, other.times), (self.values, other.values))
+        return self._rest() == other._rest() and all(np.array_equal(*pair) for pair in pairs)
+
+    def __hash__(self) -> int:
+        return hash((self.kind, self.times.size, *self.values[:8].tolist()))
+
+    def _rest(self) -> tuple[Any, ...]:
+        """Return all that records compare but their arrays."""
+        fields = {name: getattr(self, name) for name in type(self).model_fields if name not in self.file_fields}
+        return type(self), fields, self.__pydantic_private__

@@ -7,6 +7,7 @@ from inspect import Parameter, Signature
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin
 
+import numpy as np
 from pydantic import WithJsonSchema
 
 from .also_accepts import AlsoAccepts
@@ -48,6 +49,8 @@ def _members(annotation: Any, metadata: tuple[Any, ...] = ()) -> list[str]:
         members.sort(key=lambda name: name == "None")
     elif origin in (tuple, list) and (origin is list or arguments[-1] is ...):
         members = [f"Sequence[{type_text(arguments[0])}]"]
+    elif origin is np.ndarray:
+        members = ["ArrayLike"]
     elif origin is Literal:
         members = [f"Literal[{', '.join(map(repr, arguments))}]"]
     elif origin is not None:

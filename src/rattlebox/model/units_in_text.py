@@ -57,8 +57,8 @@ def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str
         Text above the column, from top to bottom: a name, a unit, or both, as in "a (g)", "t [ms]", "force in N" or "a/g".
     """
     for head in reversed(heads):
-        known = factor_of(head, units)
         brackets = _BRACKETED.findall(head)
+        known = None if brackets else factor_of(head, units)
         words = _SEPARATED.split(head.strip())
         name, _, rest = head.partition("/")  # "a/g", "t / s": a quantity over its unit
         parts = [*brackets, *_IN.findall(head), *([rest] if name.strip().isalnum() else [])]
@@ -73,6 +73,8 @@ def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str
             parts.append(words[-1])  # "Acc g", "acc_g"; N may be north, and in an input
         for part in reversed(parts):
             known = known or factor_of(part, units)
+        if brackets and not known:  # "m/(s^2)"; last, since pint loads to read "acceleration (m/s^2)" as a unit
+            known = factor_of(head, units)
         if known:
             return known
         last = brackets[-1].strip() if brackets and head.rstrip()[-1] in ")]" else ""

@@ -322,7 +322,7 @@ def test_record_files(tmp_path: Path, name: str) -> None:
     else:
         savemat(path, {"time": table[:, 0], "value": table[:, 1]})
     record = rb.Record.from_file(path, unit="N", scale=2.0)
-    assert (record.times, record.values) == (tuple(table[:, 0]), tuple(table[:, 1]))
+    np.testing.assert_array_equal([record.times, record.values], table.T)
     np.testing.assert_allclose(record.evaluate([0.5]), 2 / 3, rtol=1e-15)
 
 

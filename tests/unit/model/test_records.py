@@ -248,7 +248,7 @@ def test_a_time_step_in_the_text_above(tmp_path: Path, head: str, width: int) ->
     np.testing.assert_allclose(record.times, TIMES, rtol=1e-12)
     np.testing.assert_allclose(record.values, SHAKE, rtol=1e-8, atol=1e-9)
     assert any("the time step of 0.0125 s is taken from the text" in note for note in record.notes())
-    assert rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", dt=STEP).values == record.values
+    np.testing.assert_array_equal(rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", dt=STEP).values, record.values)
     with pytest.raises(rb.DataError, match=r'0\.0125 s above its samples, not 0\.01 s\n  try: dt = "0\.0125 s"'):
         rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", dt="10 ms")
 
