@@ -160,7 +160,7 @@ class Page:
             self._status = ui.label("").classes("text-sm text-gray-700")
             self._about = ui.label("").classes("text-sm text-gray-700")
         self._show_running(False)
-        self.sliders = Sliders(self.draft, partial(self._follow, None))
+        self.sliders = Sliders(self.draft, partial(self._follow, None), self._keep)
         self._not_saved = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
         self._warnings = ui.label("").classes("text-amber-800 text-sm whitespace-pre-wrap")
@@ -200,8 +200,8 @@ class Page:
     def _restore(self) -> None:
         """Show the case that this tab of the browser had before the page was loaded again."""
         with self._client:
-            kept = app.storage.tab
-            if kept.get("text", self.draft.text) != self.draft.text:
+            kept = dict(app.storage.tab)
+            if kept and (kept["text"], kept["pinned"]) != (self.draft.text, [*self.sliders.pinned]):
                 self.use_text(kept["text"], kept["pinned"])
 
     def _keep(self) -> None:

@@ -23,10 +23,13 @@ USUAL = ("damper.gap", "damper.friction", "load.amplitude", "base.amplitude", "d
 
 
 class Sliders:
-    """Sliders that show the numbers of the case, and change them; `moved` is called with the path after each change."""
+    """Sliders that show the numbers of the case, and change them.
 
-    def __init__(self, draft: Draft, moved: Callable[[Path_], object]) -> None:
-        self._draft, self._moved = draft, moved
+    `moved` is called with the path after each change of the case, `chosen` after another choice of sliders.
+    """
+
+    def __init__(self, draft: Draft, moved: Callable[[Path_], object], chosen: Callable[[], object]) -> None:
+        self._draft, self._moved, self._chosen = draft, moved, chosen
         self.pinned: Sequence[str] = PINNED[FIRST]
         self._shown: tuple[list[str], dict[str, Any]] = [], {}
         self.row = ui.row().classes("w-full items-center gap-4")
@@ -51,6 +54,7 @@ class Sliders:
     def _pin(self, names: list[str]) -> None:
         self.pinned = names[:MOST_SLIDERS]
         self.follow_case()
+        self._chosen()
 
     def _slider(self, name: str, path: Path_) -> None:
         """Show a slider from a quarter to four times the value; from 0 or -1 to 1 for numbers that are shares."""
