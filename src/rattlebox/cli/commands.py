@@ -10,7 +10,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from rattlebox._util.atomic_io import only_watched_files
-from rattlebox._util.exceptions import CaseError, DataError, RattleboxError
+from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
 
@@ -27,8 +27,26 @@ class _PlainFlags:
         return params
 
 
+_LESS_MEMORY = {
+    "run": "a lower output rate, a shorter duration, or fewer particles",
+    "sweep": "fewer workers, fewer samples, or fewer variants",
+    "fmu": "fewer particles",
+    "pack": "fewer particles",
+    "show": "a result of a run with a lower output rate",
+    "plot": "a result of a run with a lower output rate",
+    "report": "fewer results in one report",
+}
+"""What needs less memory, by command; other commands need little."""
+
+
 class _Command(_PlainFlags, TyperCommand):
-    pass
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; a lack of memory becomes an error with advice for this command."""
+        try:
+            return super().invoke(ctx)
+        except MemoryError as error:
+            advice = _LESS_MEMORY.get(self.name or "", "end other programs that need much memory")
+            raise ResourceError(f"not enough memory for 'rattlebox {self.name}'\n  try: {advice}") from error
 
 
 class _Group(_PlainFlags, TyperGroup):
@@ -375,9 +393,6 @@ def run_command() -> None:
     except OSError as error:
         file = f"{error.filename}: " if error.filename else ""
         typer.echo(printable(f"error: {file}{error.strerror or error}"), err=True)
-        sys.exit(2)
-    except MemoryError:
-        typer.echo("error: not enough memory\n  try: a lower output rate, or fewer particles", err=True)
         sys.exit(2)
     except typer.Abort:
         typer.echo("stopped", err=True)

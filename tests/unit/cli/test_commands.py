@@ -252,3 +252,24 @@ def test_errors_of_the_operating_system(monkeypatch: pytest.MonkeyPatch, capsys:
         with pytest.raises(SystemExit, match="2"):
             commands.run_command()
         assert capsys.readouterr().err == f"error: {message}\n"
+
+
+@pytest.mark.parametrize(
+    ("module", "function", "arguments", "advice"),
+    [
+        ("run", "run_case", ["run", "a.toml"], "fewer particles"),
+        ("sweep", "run_sweep", ["sweep", "a.toml"], "fewer workers"),
+        ("materials", "show_materials", ["materials"], "other programs"),
+    ],
+)
+def test_advice_on_a_lack_of_memory_fits_the_command(
+    module: str, function: str, arguments: list[str], advice: str, monkeypatch: pytest.MonkeyPatch, run_cli: RunCli
+) -> None:
+    """A command that runs out of memory ends with advice on what that command can do.
+
+    No test saw that a study was told to use fewer particles: no test had a command without memory.
+    """
+    monkeypatch.setattr(f"rattlebox.cli.{module}.{function}", Mock(side_effect=MemoryError))
+    code, _, errors = run_cli(*arguments)
+    assert code == 2
+    assert f"not enough memory for 'rattlebox {arguments[0]}'" in errors and advice in errors
