@@ -194,11 +194,14 @@ def analytic_signal(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, np.
 
 def oscillation(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatArray, float]:
     """Return times, signal, and samples per cycle of its dominant frequency."""
+    from scipy.fft import next_fast_len
     from scipy.signal import periodogram
 
     t, x = evenly_sampled(time, 16, values=values)
     step = step_of(t)
-    frequency, power = periodogram(x, 1 / step, nfft=4 * t.size, detrend="constant")
+    # A length with a large prime factor would take ten times as long, and nothing can interrupt a transform.
+    length = next_fast_len(4 * t.size, real=True)
+    frequency, power = periodogram(x, 1 / step, nfft=length, detrend="constant")
     peak = float(frequency[np.argmax(power)])
     if not peak > 0:
         raise ValueError("values do not oscillate; a record of an oscillation about zero is needed")
