@@ -151,7 +151,7 @@ def damping_curve(
     test of steadiness. Each is the ratio of the linear oscillator with the same loss.
 
     The interval covers the scatter of random initial states alone. In twelve regimes of two beds, intervals of "shaking"
-    from two or three packings held the mean of 40 to 48 packings in 86 to 97 % of draws: below 95 % where a bed is nearly
+    from two or three packings held the mean of 40 to 120 packings in 86 to 97 % of draws: below 95 % where a bed is nearly
     locked and few packings slide. Where a motion is not steady there is no interval. A decay and a steady vibration also
     differ because particles move as an earlier, larger amplitude made them: one ball by about half a cycle, a thrown bed by
     as long as it flies. `quasi_steady_error`, the largest change of the ratio within half a cycle, estimates this difference

@@ -158,12 +158,18 @@ def test_one_slip_in_the_middle_is_found() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("direction", "acceleration"), [("z", 2.5), ("z", 7.0), ("x", 0.4), ("x", 2.0)])
-def test_intervals_of_a_few_packings_hold_the_mean_of_many(direction: str, acceleration: float) -> None:
-    """Intervals from two or three packings hold the mean of 40 in 86 % of cases or more, as documented."""
+@pytest.mark.parametrize(
+    ("direction", "acceleration", "packings"), [("z", 2.5, 40), ("z", 7.0, 40), ("x", 0.4, 120), ("x", 2.0, 40)]
+)
+def test_intervals_of_a_few_packings_hold_the_mean_of_many(direction: str, acceleration: float, packings: int) -> None:
+    """Intervals from two or three packings hold the mean of many in 86 % of cases or more, as documented.
+
+    In a bed that is nearly locked (x, 0.4 m/s^2) a tenth of the packings lose twice as much as the others. Forty packings
+    then determine the share only to 6 %: three groups of forty gave 85, 90 and 92 %, all of them together 88 %.
+    """
     case = structure_with(bed(packing=rb.Settled(seed=1), direction=direction))
     found = rb.damping_curve(
-        case, levels(acceleration, 1.01 * acceleration), way="shaking", packings=40, progress=False
+        case, levels(acceleration, 1.01 * acceleration), way="shaking", packings=packings, progress=False
     )
     values = found.damping_ratios.values[:, 0]
     rng = np.random.default_rng(5)
