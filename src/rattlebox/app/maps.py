@@ -89,7 +89,7 @@ class MapTab:
 
     def _suggest(self, number: int) -> None:
         """Fill in a range around the value of the case."""
-        name, low, high, *_ = self._rows[number]
+        name, low, high, _, spacing = self._rows[number]
         paths = {dotted(path): path for path in numeric_paths(self._page.draft.given)}
         found = quantity(self._page.draft.value(paths[name.value])) if name.value in paths else None
         if found is None:
@@ -100,6 +100,8 @@ class MapTab:
             if name.value.endswith("start"):
                 start, stop = -1.0, 1.0
             ends = f"{rounded(start):g} {unit}".strip(), f"{rounded(stop):g} {unit}".strip()
+            if start * stop <= 0:  # that of another parameter, which logarithmic spacing suited
+                spacing.set_value(False)
         self._proposed[number] = ends
         low.set_value(ends[0]), high.set_value(ends[1])
 
