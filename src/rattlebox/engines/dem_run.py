@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.interrupts import raise_if_pressed
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.checkpoint import Checkpoint, CheckpointData, concatenate
@@ -89,6 +90,7 @@ class DemRun:
         if self._dem.step == 0:
             self._dem.run(0)
         self._write_checkpoint()
+        raise_if_pressed()  # of a study, of which this run is a part
         return self._dem.status if finished or self._dem.status else Status.interrupted
 
     def _run_to_end(self, last: int, progress: Callable[[int, int], object] | None) -> bool:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.interrupts import raise_if_pressed
 from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
@@ -142,11 +143,14 @@ def simulate_many(
         plain = [case for case in cases if not case.particle_dampers]
         with progress_bar(progress, "runs") as report:
             finished = iter(simulate_many(plain, threads=threads, progress=lambda done, _: report(done, len(cases))))
-            done, runs = len(plain), []
+            done = len(plain)
+            runs: list[Run] = []
             for case in cases:
                 if case.particle_dampers:
-                    report_before = partial(_report_done, report, done, len(cases))
-                    runs.append(simulate_dem(case, threads=threads, progress=report_before))
+                    # Ctrl-C ends all runs.
+                    stopped = any(run.status == "interrupted" for run in runs)
+                    proceed = _stop if stopped else partial(_report_done, report, done, len(cases))
+                    runs.append(simulate_dem(case, threads=threads, progress=proceed))
                     done += 1
                 else:
                     runs.append(next(finished))
@@ -157,12 +161,17 @@ def simulate_many(
     with progress_bar(progress, "runs") as report:
         results = _core.simulate(packed, count, lambda done: report(done, len(packed))) if packed else []
         report(len(packed), len(packed))
+    raise_if_pressed()  # of a study, of which these runs are a part
     return [_result(case, _limit_samples(result)) for case, result in zip(cases, results, strict=True)]
 
 
 def _report_done(report: Report, done: int, total: int, *_steps: int) -> object:
     """Report finished runs, whatever the steps of the present one."""
     return report(done, total)
+
+
+def _stop(*_: int) -> bool:
+    return False
 
 
 def _require_case(case: object) -> None:

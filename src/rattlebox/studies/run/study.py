@@ -30,6 +30,7 @@ from pydantic import (
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox._util.interrupts import remember_ctrl_c
 from rattlebox.analysis import equivalent_damping
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest, translate
@@ -105,7 +106,8 @@ class Study:
         for name in where:
             study.__dict__[name] = getattr(checked, name)
         study.validate()
-        return study.compute()
+        with remember_ctrl_c():  # a run that it ends may be one of many
+            return study.compute()
 
     def validate(self) -> None:
         """Raise if the fields are not valid for the case or exclude each other.
