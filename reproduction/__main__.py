@@ -10,25 +10,19 @@ from pathlib import Path
 
 def main() -> int:
     """Write the report that the command line requests."""
-    parser = argparse.ArgumentParser(
-        prog="python -m reproduction",
-        description="Reproduce and judge the reference paper: all figures and claims on one page.",
-    )
-    parser.add_argument(
+    purpose = "Reproduce and judge the reference paper: all figures and claims on one page."
+    only = 'number of a figure ("4", "7c", "A1"), or "paper" for all but A1 to A5; may be repeated (default: all)'
+    parser = argparse.ArgumentParser(prog="python -m reproduction", description=purpose)
+    add = parser.add_argument
+    add(
         "-o",
         "--out",
         type=Path,
         default=Path("report"),
-        help="new folder, or the folder of an earlier report (default: report)",
+        help="new folder, or that of an earlier report (default: report)",
     )
-    parser.add_argument(
-        "--only",
-        action="append",
-        default=[],
-        metavar="FIGURE",
-        help='number of a figure ("4", "7c", "A1"), or "paper" for all but A1 to A5; may be repeated (default: all)',
-    )
-    parser.add_argument("--workers", type=_positive, help="number of processes (default: one per core)")
+    add("--only", action="append", default=[], metavar="FIGURE", help=only)
+    add("--workers", type=_positive, help="number of processes (default: one per core)")
     arguments = parser.parse_args()
 
     from rich.console import Console
@@ -55,12 +49,9 @@ def main() -> int:
     except rb.RattleboxError as error:
         parser.error(str(error))
     except OSError as error:
-        file = f"{error.filename}: " if error.filename else ""
-        parser.error(f"{file}{error.strerror or error}")
-    console.print(
-        f"written to {arguments.out}: {page.name}, and each figure as SVG, PNG and CSV with its case files",
-        soft_wrap=True,
-    )
+        parser.error(f"{error.filename}: {error.strerror}" if error.filename else str(error.strerror or error))
+    text = f"written to {arguments.out}: {page.name}, and each figure as SVG, PNG and CSV with its case files"
+    console.print(text, soft_wrap=True)
     return 0
 
 

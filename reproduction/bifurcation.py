@@ -14,12 +14,11 @@ from numpy.typing import NDArray
 from rattlebox import Case, Run
 from rattlebox.plots import INK, StyledFigure, pen
 
-from .ensemble import band, ensemble, near
 from .figure import QUANTILES, Reproduction
+from .files import simulate_many
 from .harmonic import State, harmonic_case, paper_two_impacts
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, critical_speed
-from .reference import GAP
-from .runs import simulate_many
+from .system import GAP, band, ensemble, near
 
 AMPLITUDE, FREQUENCY = 20.0, 18.0  # of the load, while the other one varies [N], [Hz]
 FREQUENCIES = np.arange(120, 241) / 10

@@ -16,12 +16,11 @@ from rattlebox import Case, Run, contact_pairs
 from rattlebox.analysis import impacts_per_cycle
 from rattlebox.plots import FAINT, INK, SERIES_MARKERS, StyledFigure, pen
 
-from .ensemble import band, ensemble
 from .figure import QUANTILES, Reproduction, spread
+from .files import simulate_many
 from .harmonic import harmonic_case, resonance, riding
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, STYLES, critical_speed, lasting, two
-from .reference import GAP
-from .runs import simulate_many
+from .system import GAP, band, ensemble
 
 SHOWN = CONSTANT_E, RIGID
 LOAD = 500.0  # of the runs shown in time [N]

@@ -15,12 +15,11 @@ from rattlebox import Case, Run
 from rattlebox.analysis import impacts_per_cycle
 from rattlebox.plots import INK, StyledFigure, pen
 
-from .ensemble import band, ensemble, near
 from .figure import QUANTILES, Reproduction
+from .files import simulate_many
 from .harmonic import State, harmonic_case, resonance
 from .models import COLOURS, MODELS, SHORT
-from .reference import DAMPING, GAP, MASS, STIFFNESS
-from .runs import simulate_many
+from .system import DAMPING, GAP, MASS, STIFFNESS, band, ensemble, near
 
 AMPLITUDE = 20.0  # of the load [N]
 FREQUENCIES = np.arange(30, 231, 2) / 10  # of the load [Hz]

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from rattlebox import Case, JacksonGreen, Pair, Run, Thornton, Tsuji, contact_pairs, materials
 from rattlebox.plots import SERIES_MARKERS, StyledFigure, label, pen
 
-from .ensemble import ensemble, near
 from .figure import QUANTILES, Reproduction, spread
+from .files import simulate
 from .judge import AS_READ, SWAPPED, WALLS, Estimate, estimate
 from .models import (
     ALL_MODELS,
@@ -31,8 +31,7 @@ from .models import (
     lasting,
     model_case,
 )
-from .reference import CONSTANT, START, paper_case
-from .runs import simulate
+from .system import CONSTANT, START, ensemble, near, paper_case
 
 STRONG, WEAK = 5000.0, 100.0  # amplitudes of the pulses of the paper [N]
 MEMBERS, FEWER = 64, 8

@@ -14,7 +14,7 @@ from rattlebox import Case
 from rattlebox.plots import CHANNEL_COLOURS, FAINT, INK, StyledFigure, pen
 
 from .figure import Reproduction
-from .reference import GAP, START, paper_case
+from .system import GAP, START, paper_case
 
 _CASES = {1: "Case 1: centred", 2: "Case 2: at the trailing wall", 3: "Case 3: at the leading wall"}
 _BALL, _ROOM = 1.0, 0.55  # radius of the drawn ball and clearance on each side, far larger than to scale

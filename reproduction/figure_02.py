@@ -14,9 +14,9 @@ from rattlebox import Case, Fixed, ImpactDamper, Sphere, Tsuji, alpha_of_restitu
 from rattlebox.plots import FAINT, INK, StyledFigure, pen
 
 from .figure import Reproduction
+from .files import simulate_many
 from .models import COLOURS, CONSTANT_E
-from .reference import ALPHA, GAP, RADIUS
-from .runs import simulate_many
+from .system import ALPHA, GAP, RADIUS
 
 _DEGREE = 9
 _FIT_FROM = (0.1, 0.01, 0.001)  # least restitution of the fits; the paper does not print it

@@ -15,12 +15,11 @@ from rattlebox import Case, EventDriven, Run, TwoStep
 from rattlebox.analysis import lyapunov_exponent
 from rattlebox.plots import FAINT, INK, StyledFigure, label, pen, scaled
 
-from .ensemble import band, ensemble, near
 from .figure import QUANTILES, Reproduction, spread
+from .files import simulate_many
 from .judge import exact
 from .models import COLOURS, CONSTANT_E
-from .reference import CONSTANT, GAP, START, paper_case
-from .runs import simulate_many
+from .system import CONSTANT, GAP, START, band, ensemble, near, paper_case
 
 SCHEMES: Mapping[str, EventDriven | TwoStep] = {
     "event-driven": EventDriven(),

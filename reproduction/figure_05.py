@@ -13,7 +13,7 @@ from rattlebox.plots import FAINT, INK, StyledFigure, label, pen
 
 from .figure import Reproduction
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, STEEL, STYLES, critical_speed, model_case, model_runs
-from .reference import ALPHA, paper_case
+from .system import ALPHA, paper_case
 
 _WALLS = {STEEL: "steel", RIGID: "rigid"}
 _LAWS = {"Jackson-Green": JacksonGreen(), "Thornton": ThorntonRestitution()}

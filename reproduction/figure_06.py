@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 from rattlebox import Body, Case, Fixed, ImpactDamper, JacksonGreen, Output, Pair, Run, Sphere, restitution_curve
 from rattlebox.plots import FAINT, INK, StyledFigure, pen
 
-from .ensemble import ensemble, near
 from .figure import Reproduction
+from .files import simulate_many
 from .models import COLOURS, RIGID, STEEL
-from .reference import GAP, PLASTIC, RADIUS
-from .runs import simulate_many
+from .system import GAP, PLASTIC, RADIUS, ensemble, near
 
 _BALL = Sphere(radius=RADIUS, material="steel")
 PAIR = Pair(Body(_BALL.material, RADIUS, _BALL.weight), Body(_BALL.material))  # the ball and a wall that cannot move

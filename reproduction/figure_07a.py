@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from rattlebox import Case, Run
 from rattlebox.plots import FAINT, INK, StyledFigure, label, pen, scaled
 
-from .ensemble import band
 from .figure import QUANTILES, Reproduction
+from .files import simulate
 from .models import COLOURS, MODELS, SHORT, model_case, model_runs
-from .runs import simulate
+from .system import band
 
 PARTS: Mapping[str, str] = {"structure": "structure", "particles": "ball"}
 _LOOKS: Mapping[str, tuple[str, float]] = {"structure": ("-", 1.0), "ball": (":", 0.5)}

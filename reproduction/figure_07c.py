@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from rattlebox import Case
 from rattlebox.plots import FAINT, INK, StyledFigure, label, pen, scaled
 
-from .ensemble import band
 from .figure import QUANTILES, Reproduction, spread
+from .files import simulate
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, STEEL, STYLES, by_model, model_case, model_runs, two
-from .runs import simulate
+from .system import band
 
 CLAIMED = 100.0  # times that the elasto-plastic model dissipates faster, as the paper says
 _TIMES = np.unique(np.round(np.concatenate([np.geomspace(4e-3, 10, 240), [10.0]]), 6)).tolist()

@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 from rattlebox import Case, Run
 from rattlebox.plots import FAINT, INK, SERIES_MARKERS, SERIES_STYLES, StyledFigure, label, pen
 
-from .ensemble import band
 from .figure import QUANTILES, Reproduction, spread
+from .files import simulate_many
 from .judge import AS_READ, HEDGED, SWAPPED, estimate
 from .models import ALL_MODELS, COLOURS, MODELS, SHORT, by_model, model_case, model_runs, two
-from .reference import START
-from .runs import simulate_many
+from .system import START, band
 
 AMPLITUDES = (100.0, 200.0, 500.0, 700.0, 1e3, 1.5e3, 2e3, 3e3, 5e3, 1e4, 2e4)
 """Of the pulse [N]; the paper prints only 100 and 5000 N."""

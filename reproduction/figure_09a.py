@@ -18,11 +18,10 @@ from rattlebox import Case
 from rattlebox.analysis import phase_portrait
 from rattlebox.plots import FAINT, INK, StyledFigure, pen
 
-from .ensemble import band
 from .figure import QUANTILES, Reproduction
+from .files import simulate_many
 from .models import ALL_MODELS, CONSTANT_E, RIGID, model_case, model_runs
-from .reference import DAMPING, GAP, MASS, PULSE, START, STIFFNESS
-from .runs import simulate_many
+from .system import DAMPING, GAP, MASS, PULSE, START, STIFFNESS, band
 
 AMPLITUDE = 100.0  # of the pulse [N]
 DURATION, RATE, MEMBERS = 4.0, 1000.0, 24

@@ -13,12 +13,11 @@ from rattlebox import Case, Run
 from rattlebox.analysis import amplitude_spectrum
 from rattlebox.plots import FAINT, INK, StyledFigure, label, pen
 
-from .ensemble import band
 from .figure import QUANTILES, Reproduction, spread
+from .files import simulate
 from .judge import HEDGED, WALLS, estimate
 from .models import ALL_MODELS, COLOURS, CONSTANT_E, MODELS, SHORT, STEEL, model_case, model_runs
-from .reference import MASS, STIFFNESS, paper_case
-from .runs import simulate
+from .system import MASS, STIFFNESS, band, paper_case
 
 DURATION, RATE = 10.0, 2000.0  # of the record [s], and its samples a second [Hz]
 WINDOW = "boxcar"

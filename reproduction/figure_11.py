@@ -15,11 +15,10 @@ from rattlebox import Case, Run
 from rattlebox.analysis import settling_time
 from rattlebox.plots import FAINT, INK, StyledFigure, label, pen, scaled
 
-from .ensemble import band
 from .figure import QUANTILES, Reproduction
+from .files import simulate
 from .models import COLOURS, CONSTANT_E, RIGID, SHORT, STYLES, model_case, model_runs
-from .reference import START, paper_case
-from .runs import simulate
+from .system import START, band, paper_case
 
 AMPLITUDE = 100.0  # of the pulse [N]
 DURATION, RATE, MEMBERS = 30.0, 500.0, 48

@@ -14,8 +14,8 @@ from rattlebox import Case, Run, Tsuji
 from rattlebox.analysis import settling_time
 from rattlebox.plots import FAINT, INK, SERIES_MARKERS, StyledFigure, label, pen
 
-from .ensemble import ensemble
 from .figure import QUANTILES, Reproduction, spread
+from .files import simulate
 from .film import Row, film
 from .models import (
     ALL_MODELS,
@@ -30,8 +30,7 @@ from .models import (
     model_case,
     two,
 )
-from .reference import CONSTANT, DAMPING, GAP, MASS, paper_case
-from .runs import simulate
+from .system import CONSTANT, DAMPING, GAP, MASS, ensemble, paper_case
 
 Array = NDArray[np.float64]
 

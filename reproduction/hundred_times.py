@@ -14,10 +14,9 @@ from matplotlib.lines import Line2D
 from rattlebox import Case, JacksonGreen, Run, Tsuji, restitution_of_alpha
 from rattlebox.plots import FAINT, INK, SERIES_MARKERS, SERIES_STYLES, StyledFigure, label, pen
 
-from .ensemble import band, ensemble, near
 from .figure import QUANTILES, Reproduction, spread
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, SHORT, STEEL, two
-from .reference import ALPHA, CONSTANT, START, paper_case
+from .system import ALPHA, CONSTANT, START, band, ensemble, near, paper_case
 
 PRINTED = 1030e6  # yield stress of the paper [Pa]
 YIELD_STRESSES = [80e6, 100e6, 120e6, 150e6, 200e6, 300e6, 400e6, 500e6, 700e6, 850e6, PRINTED, 1.2e9, 1.5e9]

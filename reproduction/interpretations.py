@@ -14,11 +14,24 @@ from matplotlib.axes import Axes
 from rattlebox import Case, JacksonGreen, Run, Sphere, Tsuji, contact_pairs, materials, restitution_of_alpha
 from rattlebox.plots import FAINT, INK, SERIES_MARKERS, StyledFigure, pen
 
-from .ensemble import band, ensemble, near
 from .figure import Reproduction
+from .files import simulate
 from .models import COLOURS, CONSTANT_E, RIGID, STEEL, STIFF, two
-from .reference import ALPHA, CONSTANT, GAP, MASS, PLASTIC, PLASTIC_RIGID, RADIUS, START, Contact, paper_case
-from .runs import simulate
+from .system import (
+    ALPHA,
+    CONSTANT,
+    GAP,
+    MASS,
+    PLASTIC,
+    PLASTIC_RIGID,
+    RADIUS,
+    START,
+    Contact,
+    band,
+    ensemble,
+    near,
+    paper_case,
+)
 
 _CAVITY, _SIZE = 67.14e-3, 33.17e-3  # printed length of the cavity and size of the ball [m]
 _RADII = {"radius": _SIZE, "diameter": _SIZE / 2}

@@ -17,13 +17,12 @@ from rattlebox import Case, Run
 from rattlebox.analysis import lyapunov_exponent
 from rattlebox.plots import FAINT, INK, SERIES_MARKERS, SERIES_STYLES, StyledFigure, pen
 
-from .ensemble import band, near
 from .figure import QUANTILES, Reproduction
+from .files import simulate, simulate_many
 from .harmonic import State, harmonic_case, paper_two_impacts
 from .judge import Estimate, exact
 from .models import COLOURS, MODELS, SHORT, two
-from .reference import DAMPING, GAP, MASS, START, STIFFNESS, paper_case
-from .runs import simulate, simulate_many
+from .system import DAMPING, GAP, MASS, START, STIFFNESS, band, near, paper_case
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from rattlebox import Case, JacksonGreen, Pair, Run, Tsuji, contact_pairs
 from rattlebox.plots import SERIES_COLOURS, SERIES_STYLES
 
-from .ensemble import ensemble, near
-from .reference import CONSTANT, PLASTIC, PLASTIC_RIGID, START, paper_case
+from .system import CONSTANT, PLASTIC, PLASTIC_RIGID, START, ensemble, near, paper_case
 
 CONSTANT_E, STEEL, RIGID = "constant restitution", "elasto-plastic, steel wall", "elasto-plastic, rigid wall"
 STIFF = "elasto-plastic, rigid wall, also in stiffness"

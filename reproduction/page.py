@@ -14,38 +14,27 @@ from typing import Any, NamedTuple, get_args
 
 from markupsafe import Markup, escape
 
-from .judge import CLAIMS, RESAMPLES, Claim, Verdict, fit
-from .matrix import MARKS, best_fit, place, row
+from .files import Files
+from .judge import CLAIMS, MARKS, RESAMPLES, Claim, Verdict, best_fit, fit, place, row
 from .models import COLOURS, SHORT
-from .runs import Files
 
 GENERATOR = '<meta name="generator" content="Rattlebox">'  # Mark by which pages of this program are recognised
 PAPER = "Energy Dissipation in Particle-based Impact Damper Systems: Investigation based on Elasto-plastic impact model"
-
-
 FIRST = "figure_01"  # Figure that opens the page, with the system
+_GROUPS = {"Figures of the paper": r"\d", "Interpretations, ensembles and gap": "R", "Extensions": "A"}
 
 
-class Column(NamedTuple):
-    """Name, unit and description of a column of a table."""
-
-    name: str
-    units: str
-    meaning: str
-
-
-@dataclass(frozen=True)
-class Table:
+class Table(NamedTuple):
     """CSV file; its path is relative to the page."""
 
     path: str
     rows: int
-    columns: tuple[Column, ...]
+    columns: tuple[tuple[str, str, str], ...]  # Name, unit and meaning of each
 
 
 @dataclass(frozen=True)
 class FigureFiles:
-    """Figure that was computed, drawn and written; paths are relative to the page."""
+    """Figure that was computed, drawn and written."""
 
     number: str
     title: str
@@ -55,8 +44,6 @@ class FigureFiles:
     lessons: tuple[str, ...]
     film: str
     picture: str
-    svg: str
-    png: str
     tables: tuple[Table, ...]
     cases: Mapping[str, Files]
     computing: float
@@ -83,7 +70,7 @@ def render(
 
     pairs = sorted(((claim, figure) for figure in figures for claim in figure.claims), key=lambda x: place(x[0].where))
     claims = [claim for claim, _ in pairs]
-    anchors = {number: one for one in figures for number in (one.number, *_parts(one.number))}
+    anchors = {number: one for one in figures for number in (one.number, *one.number.split(", "))}
     rows = [(row(claim), anchors.get(claim.see, figure)) for claim, figure in pairs]
     counts = Counter(each.verdict for each, _ in rows)
     loader = FileSystemLoader(Path(__file__).with_name("templates"))
@@ -97,11 +84,10 @@ def render(
         figures=figures,
         missing=missing,
         table=table,
-        groups=(
-            ("Figures of the paper", [f for f in figures if f.number[0].isdigit() and f.name != FIRST]),
-            ("Interpretations, ensembles and gap", [f for f in figures if f.number.startswith("R")]),
-            ("Extensions", [f for f in figures if f.number.startswith("A")]),
-        ),
+        groups=[
+            (heading, [f for f in figures if re.match(first, f.number) and f.name != FIRST])
+            for heading, first in _GROUPS.items()
+        ],
         first=[f for f in figures if f.name == FIRST],
         rows=rows,
         unprinted=sum(each.verdict == "reproduced" and not each.claim.printed for each, _ in rows),
@@ -126,11 +112,6 @@ def render(
     )
 
 
-def _parts(number: str) -> list[str]:
-    """Return the single numbers of a figure, such as "7d" and "7e" for "7d, 7e"."""
-    return number.split(", ")
-
-
 def _power(found: re.Match[str]) -> str:
     """Return 4e+02 as 400 and 4e-09 as a power of ten."""
     exponent = int(found[2])
@@ -150,33 +131,18 @@ _TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
 
 
 def typeset(text: str) -> Markup:
-    """Return text as HTML with typeset powers of ten, subscripts, exponents, minus signs and units that stay with a number.
-
-    Parameters
-    ----------
-    text
-        Text such as "V_c is 4e-09 m/s" or "N/m^1.5".
-    """
+    """Return text such as "V_c is 4e-09 m/s" or "N/m^1.5" as HTML; units stay with their number."""
     html = str(escape(text))
     for pattern, printed in _TYPESET:
         html = re.sub(pattern, printed, html)
     return Markup(html)
 
 
-class Quantity(NamedTuple):
-    """Row of the table of parameters."""
-
-    name: str
-    symbol: str
-    value: str
-    unit: str
-
-
-def system() -> tuple[Quantity, ...]:
-    """Return the parameters of the paper's system."""
+def system() -> list[tuple[str, str, str, str]]:
+    """Return name, symbol, value and unit of the parameters of the paper's system."""
     from rattlebox import HalfSine, JacksonGreen, contact_pairs, restitution_of_alpha
 
-    from .reference import ALPHA, DAMPING, GAP, MASS, PULSE, RADIUS, STIFFNESS, paper_case
+    from .system import ALPHA, DAMPING, GAP, MASS, PULSE, RADIUS, STIFFNESS, paper_case
 
     case = paper_case()
     pair, pulse = contact_pairs(case, 0)[0], case.loads[0]
@@ -206,6 +172,4 @@ def system() -> tuple[Quantity, ...]:
         "load": pulse.amplitude,
         "pulse": 1e3 * PULSE,
     }
-    return tuple(
-        Quantity(name, symbol, form.format_map(values), unit) for name, symbol, form, unit in CLAIMS["parameters"]
-    )
+    return [(name, symbol, form.format_map(values), unit) for name, symbol, form, unit in CLAIMS["parameters"]]

@@ -15,18 +15,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .figure import WORDS, Reproduction
-from .matrix import documentation
-from .page import GENERATOR, Column, FigureFiles, Table, render
-from .runs import record_cases, write_runs
-from .tables import write_tables
+from .files import record_cases, write_runs, write_tables
+from .judge import documentation
+from .page import GENERATOR, FigureFiles, Table, render
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FIGURES = tuple(key for key in WORDS if key != "columns")  # modules of the figures, in the order of the page
-
-_FIGURE_FOLDER, _CASE_FOLDER = "figures", "cases"
-TABLE = f"{_FIGURE_FOLDER}/figure_claims.md"  # Matrix of the claims for the documentation
+TABLE = "figures/figure_claims.md"  # Matrix of the claims for the documentation
 
 Progress = Callable[[int, int, str], None]
 """Function of the number of finished figures, their total and the name of the last one."""
@@ -50,14 +47,11 @@ def write_report(
         if progress is not None:
             progress(len(made), len(modules), f"figure {figure.number}")
     figures = [made[module] for module in modules]
-    page = folder / "index.html"
-    claims = [claim for figure in figures for claim in figure.claims]
-    _write(folder / TABLE, documentation(claims))
+    _write(folder / TABLE, documentation([claim for figure in figures for claim in figure.claims]))
     missing = [load_figure(module).number for module in FIGURES if module not in modules]
-    text = render(
-        figures, table=TABLE, missing=missing, cores=cores(), workers=workers, seconds=time.perf_counter() - began
-    )
-    _write(page, text)
+    took = time.perf_counter() - began
+    page = folder / "index.html"
+    _write(page, render(figures, table=TABLE, missing=missing, cores=cores(), workers=workers, seconds=took))
     return page
 
 
@@ -74,12 +68,11 @@ def choose(only: Sequence[str]) -> tuple[str, ...]:
     numbers = {module: load_figure(module).number for module in FIGURES}
     wanted: set[str] = set()
     for text in only:
-        found = {module for module, number in numbers.items() if _covers(number, text.strip())}
-        if not found:
-            raise ValueError(
-                f"--only {text}: unknown figure; the figures are {', '.join(numbers.values())}, and 'paper'"
-            )
-        wanted |= found
+        chosen = {module for module, number in numbers.items() if _includes(number, text.strip().lower())}
+        if not chosen:
+            names = ", ".join(numbers.values())
+            raise ValueError(f"--only {text}: unknown figure; the figures are {names}, and 'paper'")
+        wanted |= chosen
     return tuple(module for module in FIGURES if module in wanted or not only)
 
 
@@ -90,20 +83,12 @@ def load_figure(module: str) -> Reproduction:
     return figure
 
 
-def _covers(number: str, wanted: str) -> bool:
-    """Return whether a figure, such as "7d, e" or "10", includes a requested one, such as "7", "7e", "10a" or "paper"."""
+def _includes(number: str, wanted: str) -> bool:
+    """Return whether a figure, such as "7d, 7e" or "10", includes a requested one, such as "7", "7e", "10a" or "paper"."""
     if wanted == "paper":
         return not number.startswith("A")
-    whole, parts = _parts(number)
-    wanted_whole, wanted_parts = _parts(wanted)
-    return whole == wanted_whole and (not parts or wanted_parts <= parts)
-
-
-def _parts(number: str) -> tuple[str, set[str]]:
-    whole = re.match(r"[A-Za-z]?\d+", number)
-    if whole is None:
-        return number, set()
-    return whole[0].upper(), set(re.findall(r"[a-z]", number[whole.end() :].lower()))
+    parts = number.lower().split(", ")
+    return wanted in parts or wanted in [re.sub(r"[a-z]+$", "", part) for part in parts] or wanted[:-1] in parts
 
 
 def _prepare_folder(folder: Path) -> Path:
@@ -114,13 +99,12 @@ def _prepare_folder(folder: Path) -> Path:
     if folder.is_dir() and any(folder.iterdir()):
         earlier = page.read_text(encoding="utf-8", errors="replace") if page.is_file() else ""
         if GENERATOR not in earlier:
-            raise FileExistsError(
-                errno.EEXIST, "contains other files; choose a new folder, or that of an earlier report", str(folder)
-            )
+            complaint = "contains other files; choose a new folder, or that of an earlier report"
+            raise FileExistsError(errno.EEXIST, complaint, str(folder))
         # Only files that the earlier page links to are removed; others belong to the user.
-        for name in re.findall(rf'href="((?:{_FIGURE_FOLDER}|{_CASE_FOLDER})/figure_[\w.]+)"', earlier):
+        for name in re.findall(r'href="((?:figures|cases)/figure_[\w.]+)"', earlier):
             (folder / name).unlink(missing_ok=True)
-    for name in (_FIGURE_FOLDER, _CASE_FOLDER):
+    for name in ("figures", "cases"):
         (folder / name).mkdir(parents=True, exist_ok=True)
     _write(page, f"<!doctype html>{GENERATOR}<title>Report</title><p>This report is not finished.")
     return folder
@@ -146,9 +130,8 @@ def _compute_all(modules: Sequence[str], folder: Path, workers: int) -> Iterator
     # Ctrl-C ends them at once and without messages.
     on_ctrl_c = (signal.SIGINT, signal.SIG_DFL)
     with ProcessPoolExecutor(min(workers, len(modules)), get_context("spawn"), signal.signal, on_ctrl_c) as pool:
-        running = {
-            pool.submit(_compute, module, folder): module for module in reversed(modules)
-        }  # the last take longest
+        # The last ones take longest.
+        running = {pool.submit(_compute, module, folder): module for module in reversed(modules)}
         try:
             for done in as_completed(running):
                 yield running[done], done.result()
@@ -165,9 +148,8 @@ def _compute(module: str, folder: Path) -> FigureFiles:
         with record_cases() as runs:
             data = figure.data()
         computed = time.perf_counter()
-        png, svg = _draw(figure, data, folder / _FIGURE_FOLDER)
+        picture = _draw(figure, data, folder / "figures")
         drawn = time.perf_counter()
-        tables = write_tables(data, folder / _FIGURE_FOLDER, figure.name)
         return FigureFiles(
             number=figure.number,
             title=figure.title,
@@ -176,11 +158,12 @@ def _compute(module: str, folder: Path) -> FigureFiles:
             claims=tuple(figure.claims(data)),
             lessons=tuple(figure.lessons(data)),
             film=figure.film(data),
-            picture=_data_url(svg.read_text(encoding="utf-8")),
-            svg=svg.relative_to(folder).as_posix(),
-            png=png.relative_to(folder).as_posix(),
-            tables=tuple(_table(path.relative_to(folder), table) for path, table in tables.items()),
-            cases=write_runs(figure.cases(), runs, folder, _CASE_FOLDER, figure.name),
+            picture=picture,
+            tables=tuple(
+                Table(f"figures/{path.name}", max(v.size for v in table.variables.values()), _columns(table))
+                for path, table in write_tables(data, folder / "figures", figure.name).items()
+            ),
+            cases=write_runs(figure.cases(), runs, folder, "cases", figure.name),
             computing=computed - began,
             drawing=drawn - computed,
         )
@@ -189,40 +172,29 @@ def _compute(module: str, folder: Path) -> FigureFiles:
         raise
 
 
-def _draw(figure: Reproduction, data: xr.Dataset, folder: Path) -> tuple[Path, Path]:
-    """Draw a figure and write it as PNG and SVG."""
+def _columns(table: xr.Dataset) -> tuple[tuple[str, str, str], ...]:
+    """Return name, unit and meaning of the columns of a table."""
+    names = [str(name) for name in (*table.dims, *table.data_vars)]
+    return tuple((name, *(table[name].attrs.get(key, "") for key in ("units", "long_name"))) for name in names)
+
+
+def _draw(figure: Reproduction, data: xr.Dataset, folder: Path) -> str:
+    """Draw a figure and write it as PNG and SVG; return it as the value of an HTML attribute in double quotes."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     from rattlebox.plots import figure_style
 
     drawing = figure.draw(data)
-    png, svg = folder / f"{figure.name}.png", folder / f"{figure.name}.svg"
-    drawing.savefig(png, dpi=200)
+    drawing.savefig(folder / f"{figure.name}.png", dpi=200)
+    svg = folder / f"{figure.name}.svg"
     # Outlined letters look the same on every machine; ids are the same in every run.
     with figure_style("page"), mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": figure.name}):
         Figure.savefig(drawing, svg, metadata={"Date": None}, dpi=140)
     # Hundredths of a point are invisible, and further digits would make the page half as large again.
-    text = re.sub(
-        r'(?<= d=")[^"]+', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path[0]), svg.read_text(encoding="utf-8")
-    )
+    text = svg.read_text(encoding="utf-8")
+    text = re.sub(r'(?<= d=")[^"]+', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path[0]), text)
     svg.write_text(text, encoding="utf-8")
-    return png, svg
-
-
-def _data_url(svg: str) -> str:
-    """Return a drawing as the value of an HTML attribute in double quotes, a quarter shorter than in base64."""
-    text = " ".join(svg.replace('"', "'").split())
+    # Escaped text is a quarter shorter than base64.
+    text = " ".join(text.replace('"', "'").split())
     return "data:image/svg+xml," + text.replace("%", "%25").replace("#", "%23").replace("&", "&amp;")
-
-
-def _table(path: Path, table: xr.Dataset) -> Table:
-    """Return the description of a CSV file."""
-    return Table(
-        path=path.as_posix(),
-        rows=max(variable.size for variable in table.variables.values()),
-        columns=tuple(
-            Column(str(name), table[name].attrs.get("units", ""), table[name].attrs.get("long_name", ""))
-            for name in (*table.dims, *table.data_vars)
-        ),
-    )

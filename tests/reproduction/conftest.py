@@ -11,8 +11,8 @@ import xarray as xr
 
 from rattlebox import Case
 from reproduction.figure import Reproduction
+from reproduction.files import record_cases
 from reproduction.report import FIGURES, load_figure
-from reproduction.runs import record_cases
 
 HEAVY = {"contacts_per_cycle", "bifurcation", "chattering", "lyapunov", "evidence", "gap_study", "figure_07de"}
 """Modules whose data take several seconds."""

@@ -7,7 +7,7 @@ from rattlebox import Newton, simulate
 from reproduction import bifurcation
 from reproduction.harmonic import State, harmonic_case
 from reproduction.models import CONSTANT_E
-from reproduction.reference import GAP
+from reproduction.system import GAP
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import pytest
 from reproduction import chattering
 from reproduction.judge import verdict
 from reproduction.models import CONSTANT_E, RIGID
-from reproduction.reference import GAP
+from reproduction.system import GAP
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,9 @@ import pytest
 
 from rattlebox import simulate
 from reproduction import contacts_per_cycle
-from reproduction.harmonic import harmonic_case
+from reproduction.harmonic import harmonic_case, two_impacts
 from reproduction.judge import verdict
-from reproduction.reference import DAMPING, GAP, MASS, STIFFNESS
-from reproduction.two_impacts import two_impacts
+from reproduction.system import DAMPING, GAP, MASS, STIFFNESS
 
 FEW = np.array([8.0, 21.0, 22.0, 23.0])
 

@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from reproduction.judge import CLAIMS, verdict
-from reproduction.matrix import documentation, place, row
+from reproduction.judge import CLAIMS, documentation, place, row, verdict
 from reproduction.report import FIGURES, load_figure
 
 PAGE = Path(__file__).parents[2] / "docs/validation/paper_table.md"

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reproduction.ensemble import band, ensemble, near
-from reproduction.reference import GAP, START, paper_case
+from reproduction.system import GAP, START, band, ensemble, near, paper_case
 
 
 @pytest.mark.parametrize("start", START.values())

@@ -5,10 +5,9 @@ import pytest
 
 import rattlebox as rb
 from reproduction import evidence
-from reproduction.ensemble import near
 from reproduction.judge import verdict
 from reproduction.models import ALL_MODELS, CONSTANT_E, RIGID, STEEL, STIFF, model_case
-from reproduction.reference import START
+from reproduction.system import START, near
 
 VERDICTS = [
     "reproduced",  # fast impacts with low restitution

@@ -5,7 +5,7 @@ import pytest
 import rattlebox as rb
 from reproduction import figure_07de
 from reproduction.judge import verdict
-from reproduction.reference import DAMPING, MASS, PLASTIC_RIGID, paper_case
+from reproduction.system import DAMPING, MASS, PLASTIC_RIGID, paper_case
 
 PULSE_WORK = 0.2532  # J, of 5000 N
 

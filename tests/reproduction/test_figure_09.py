@@ -8,7 +8,7 @@ import rattlebox as rb
 from reproduction import figure_09a
 from reproduction.judge import verdict
 from reproduction.models import CONSTANT_E, RIGID, STEEL
-from reproduction.reference import GAP, PLASTIC, paper_case
+from reproduction.system import GAP, PLASTIC, paper_case
 
 
 @pytest.fixture

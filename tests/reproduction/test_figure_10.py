@@ -8,7 +8,7 @@ import rattlebox as rb
 from reproduction import figure_10
 from reproduction.judge import verdict
 from reproduction.models import CONSTANT_E, STEEL
-from reproduction.reference import DAMPING, MASS, PULSE, STIFFNESS
+from reproduction.system import DAMPING, MASS, PULSE, STIFFNESS
 
 BIN = 2 * np.pi / 10.0
 

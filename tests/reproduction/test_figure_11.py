@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from reproduction.models import CONSTANT_E
-from reproduction.reference import DAMPING, MASS, STIFFNESS
+from reproduction.system import DAMPING, MASS, STIFFNESS
 
 
 @pytest.fixture

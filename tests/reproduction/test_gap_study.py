@@ -8,7 +8,7 @@ import pytest
 
 from reproduction import gap_study
 from reproduction.models import CONSTANT_E, RIGID, STEEL
-from reproduction.reference import DAMPING, GAP, MASS
+from reproduction.system import DAMPING, GAP, MASS
 
 
 @pytest.fixture(scope="module")

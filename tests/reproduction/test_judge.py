@@ -15,16 +15,19 @@ from reproduction.judge import (
     WALLS,
     Claim,
     Estimate,
+    best_fit,
     cells_of,
+    criterion,
+    documentation,
     estimate,
     exact,
     fit,
     grade,
+    row,
     single_runs_differ,
     verdict,
     where_it_holds,
 )
-from reproduction.matrix import best_fit, criterion, documentation, row
 from reproduction.models import CONSTANT_E, RIGID, STEEL, STIFF
 
 

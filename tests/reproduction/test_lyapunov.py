@@ -7,7 +7,7 @@ from rattlebox import simulate
 from reproduction import lyapunov
 from reproduction.judge import verdict
 from reproduction.models import CONSTANT_E, RIGID
-from reproduction.reference import CONSTANT, PLASTIC_RIGID, paper_case
+from reproduction.system import CONSTANT, PLASTIC_RIGID, paper_case
 
 
 @pytest.fixture(scope="module")

@@ -14,11 +14,10 @@ import pytest
 import xarray as xr
 
 from reproduction import write_report
-from reproduction.judge import SYSTEM, Claim, exact
-from reproduction.matrix import place
+from reproduction.files import write_tables
+from reproduction.judge import SYSTEM, Claim, exact, place
 from reproduction.page import GENERATOR, FigureFiles, render, system, typeset
 from reproduction.report import FIGURES, choose, load_figure
-from reproduction.tables import write_tables
 
 FIGURE = "2"
 
@@ -256,9 +255,7 @@ def test_page_escapes_and_counts():
         Claim(f"x < {k} & y", "section 1", "<b>", {SYSTEM: exact(value)}, accept=(0.5, 2), scope="system", note="z > 1")
         for k, value in enumerate(values)
     )
-    made = FigureFiles(
-        "A9", "<i>", "figure_A9", "a < b", claims, ("**c** < d",), "", "data:,", "a.svg", "a.png", (), {}, 1.0, 2.0
-    )
+    made = FigureFiles("A9", "<i>", "figure_A9", "a < b", claims, ("**c** < d",), "", "data:,", (), {}, 1.0, 2.0)
     text = render([made], table="t.md", cores=3, workers=2, seconds=4.25)
     Page(text)
     assert GENERATOR in text
@@ -293,7 +290,7 @@ def test_numbers_and_symbols_are_typeset(text, html):
 
 def test_parameters_of_the_system():
     """The table of parameters contains the mass, the frequencies and the speeds of first yield."""
-    values = {(line.name, line.symbol): float(line.value) for line in system()}
+    values = {(name, symbol): float(value) for name, symbol, value, _ in system()}
     assert values["Mass of the ball", "m"] == pytest.approx(1.200037, abs=1e-6)
     assert values["Natural frequency, ball riding along", "√(K/(M+m))"] == pytest.approx(61.4295, abs=1e-4)
     assert values["Speed of first yield, steel wall", "V_c"] == pytest.approx(0.1694607, abs=1e-5)

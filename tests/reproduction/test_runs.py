@@ -5,8 +5,8 @@ import pytest
 import rattlebox as rb
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.study_file import read_study
-from reproduction.reference import PLASTIC, paper_case
-from reproduction.runs import grouped, record_cases, simulate, write_runs
+from reproduction.files import grouped, record_cases, simulate, write_runs
+from reproduction.system import PLASTIC, paper_case
 
 
 def stated(case):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reproduction.tables import write_tables
+from reproduction.files import write_tables
 
 AWKWARD = np.array([0.1 + 0.2, 1 / 3, 5e-324, -0.0, np.nan, np.inf, 1.7976931348623157e308, 123456789.123456789])
 

@@ -5,7 +5,7 @@ from math import pi
 import pytest
 
 import rattlebox as rb
-from reproduction.two_impacts import two_impacts
+from reproduction.harmonic import two_impacts
 
 TABLE = {
     (0.05, 0.25, 30): (13.02694, 0.923),

@@ -1,12 +1,19 @@
-"""The reference paper's system: a steel ball in a cavity on a sprung mass, hit by a short pulse."""
+"""The reference paper's system, a ball in a cavity on a sprung mass hit by a short pulse: its cases and ensembles."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
-import rattlebox as rb
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+import rattlebox as rb
+from rattlebox import Case, Run
+
+from .files import simulate_many
+
+Array = NDArray[np.float64]
 Contact = rb.Tsuji | rb.Linear | rb.Thornton
 Ending = Literal["zero_overlap", "zero_force"]
 
@@ -45,7 +52,7 @@ def paper_case(
     wall: Literal["rigid"] | None = None,
     ball: bool = True,
     name: str = "",
-) -> rb.Case:
+) -> Case:
     """Return the paper's case."""
     case = rb.reference_case(
         contact,
@@ -63,3 +70,23 @@ def paper_case(
     if not ball:
         changes["dampers"] = ()
     return case.replaced(changes) if changes else case
+
+
+def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float = 1e-6) -> list[Run]:
+    """Simulate a case from many nearby start positions."""
+    if members < 1:
+        raise ValueError(f"members is {members}, but an ensemble needs at least 1")
+    # A quarter step off centre: no two starts coincide when offsets are mirrored at a wall.
+    steps = (np.arange(members) + 0.25) / members
+    return simulate_many([make_case(float(offset)) for offset in reach * (2 * steps - 1)])
+
+
+def near(start: float, offset: float) -> float:
+    """Return the reduced start position displaced by an offset, mirrored at the walls."""
+    place = start + offset / GAP
+    return place if abs(place) <= 1 else float(np.copysign(2.0, place)) - place
+
+
+def band(values: ArrayLike, axis: int = 0) -> Array:
+    """Return the 10 %, 50 % and 90 % quantiles of an ensemble, (3, ...); NaN wherever a member is NaN."""
+    return np.asarray(np.quantile(np.asarray(values, dtype=float), (0.1, 0.5, 0.9), axis=axis))
