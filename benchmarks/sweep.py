@@ -151,7 +151,7 @@ def scipy(count: int = 100_000, members: int = 3) -> Iterator[tuple[str, str]]:
 
 
 def peer(start: float) -> float:
-    """Simulate the reference case with SciPy, with an event at each contact begin and end; return the loss in contacts."""
+    """Simulate the reference case with SciPy, with an event at each contact start and end; return the loss in contacts."""
     from scipy.integrate import solve_ivp
 
     case = rb.reference_case()

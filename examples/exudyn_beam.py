@@ -78,11 +78,11 @@ def coupled(damped=True, step=STEP):
     def before_step(system, end):
         """Apply the force of the last step in the step that ends at a time."""
         nonlocal force
-        begin = system.systemData.GetTime()
-        if begin > damper.time:  # not so if Exudyn repeats a step
+        now = system.systemData.GetTime()
+        if now > damper.time:  # not so if Exudyn repeats a step
             velocity = system.GetNodeOutput(nodes[-1], exu.OutputVariableType.Velocity)[1]
-            force = damper.advance(begin, velocity=(velocity, 0, 0)).force[0]
-            times.append(begin)
+            force = damper.advance(now, velocity=(velocity, 0, 0)).force[0]
+            times.append(now)
             path.append(system.GetNodeOutput(nodes[-1], exu.OutputVariableType.Displacement)[1])
         push = PUSH if end < PUSHED + step / 2 else 0.0
         system.SetLoadParameter(load, "loadVector", [0, push + force * damped, 0])

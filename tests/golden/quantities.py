@@ -114,7 +114,7 @@ def was_stopped(run: Any) -> bool:
 def predictable(found: Mapping[str, NDArray[Any]], impacts: int) -> Quantities:
     """Return the part of the quantities that does not depend on rounding.
 
-    That is the part up to a number of impacts, without the durations of contacts that begin at rest, whose begin is
+    That is the part up to a number of impacts, without the durations of contacts that begin at rest, whose start is
     ill-conditioned. Of the particles one in five is included, to store less.
     """
     kept = dict(found)

@@ -16,7 +16,7 @@ def data(computed):
 
 
 def test_simulated_impacts_give_the_exact_restitution(data):
-    """Impacts at damping ratios 0.1, 0.3, 0.5 and 0.9 lose what the exact solution says."""
+    """Impacts at damping ratios 0.1, 0.3, 0.5 and 0.9 have the loss of the exact solution."""
     met = [1 - data.simulated_missed.sel(tried=ratio * sqrt(5)) for ratio in (0.1, 0.3, 0.5, 0.9)]
     np.testing.assert_allclose(met, (0.7292476, 0.3723261, 0.1630335, 0.0015238), atol=6e-8)
 

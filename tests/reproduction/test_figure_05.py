@@ -36,6 +36,6 @@ def test_impacts_stay_slow(data):
 
 
 def test_claim_follows_the_data(data):
-    """That slow impacts lose nothing follows from the law, unless the data say otherwise."""
+    """The claim that slow impacts lose nothing follows from the law, and fails with changed data."""
     assert verdict(FIGURE.claims(data)[0]) == "follows from the equations"
     assert verdict(FIGURE.claims(data.assign(restitution=0.99 * data.restitution))[0]) == "not reproducible"

@@ -14,7 +14,7 @@ def data(computed):
 
 
 def test_speeds_after_hits(data):
-    """From ten times the elastic limit the simulated ball slows down as the law says."""
+    """From ten times the elastic limit the simulated ball slows down by the law."""
     hits = (1, 2, 5, 10, 20, 50, 100)
     expected = (8.282785, 7.019261, 4.725903, 3.028556, 1.853870, 1.164212, 1.026469)
     np.testing.assert_allclose(data.simulated.sel(hit=list(hits)), expected, atol=6e-7)
@@ -49,7 +49,7 @@ def test_motion_is_not_chaotic(data):
 
 
 def test_verdicts_follow_the_data(data):
-    """A ball that loses speed in the elastic zone would turn the verdict on the misprint round."""
+    """A ball that lost speed in the elastic zone would reverse the verdict on the misprint."""
     assert [verdict(claim) for claim in FIGURE.claims(data)] == [
         "follows from the equations",
         "misprint",

@@ -55,7 +55,7 @@ def test_shares_of_the_centred_ball(losses, model, share, scatter):
 
 
 def test_losses_only_grow(losses):
-    """No model gives lost energy back."""
+    """In no model does the energy lost in impacts decrease."""
     assert (losses.single.diff("time") >= 0).all()
 
 

@@ -41,7 +41,7 @@ def test_the_wall_changes_nothing(data: xr.Dataset) -> None:
 
 
 def test_ball_stays_in_its_cavity(data: xr.Dataset) -> None:
-    """The ball goes no further than the walls and their indentation of micrometres."""
+    """The ball stays within the walls and their indentation of micrometres."""
     assert float(np.abs(data.position).max()) < GAP + 5e-6
 
 

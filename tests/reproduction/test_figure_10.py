@@ -57,14 +57,14 @@ def test_band_of_the_steel_wall_is_the_rattle(data: xr.Dataset) -> None:
 
 
 def test_band_holds_the_median(data: xr.Dataset) -> None:
-    """Nine tenths are nowhere below the median, nor one tenth above it."""
+    """The 90 % quantile is nowhere below the median, and the 10 % quantile nowhere above it."""
     for name in ("ball", "structure", "near"):
         low, median, high = data[name].transpose("quantile", ...)
         assert bool((low <= median).all() and (median <= high).all())
 
 
 def test_verdicts_follow_the_data(data: xr.Dataset) -> None:
-    """The peak and its approximate frequency are confirmed, until the data say otherwise."""
+    """The peak and its approximate frequency are confirmed by the data, and not by changed data."""
     assert [verdict(claim) for claim in figure_10.FIGURE.claims(data)] == [
         "reproduced",
         "reproduced",

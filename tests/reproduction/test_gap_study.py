@@ -22,7 +22,7 @@ def data():
 
 
 def test_bare_and_attached_structures_settle_as_they_must(data):
-    """Both settle when exp(-C t/2M) has fallen to the level, to half a period; the attached ball makes it later."""
+    """Settling times without the ball and with an attached one are those of exp(-C t/2M), to half a period."""
     weight = gap_study._attached().structure.mass / MASS
     for name, ratio in (("settled_bare", 1.0), ("settled_attached", weight)):
         # The pulse gives P/M, and M + m swings with P/sqrt(K (M + m)).

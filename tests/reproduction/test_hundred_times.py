@@ -14,7 +14,7 @@ def data(computed):
 
 @pytest.mark.parametrize(("model", "expected"), [(STEEL, 0.0032 / 0.054), (RIGID, 0.069 / 0.054)])
 def test_printed_yield_stress_gives_the_known_ratio(data, model, expected):
-    """With the printed yield stress the losses in 10 s compare as they are known to."""
+    """With the printed yield stress the ratios of the losses in 10 s have their stored values."""
     ratio = data.ratio.sel(measure="total", model=model, yield_stress=1030e6, quantile=0.5)
     assert float(ratio) == pytest.approx(expected, rel=0.05)
 

@@ -14,7 +14,7 @@ def data(computed):
 
 
 def test_size_of_the_ball(data):
-    """As a radius the printed size gives 6 % of the structure's mass and 0.8 mm of clearance, as a diameter neither."""
+    """The printed size gives 6 % of the structure's mass and 0.8 mm of clearance as a radius, and neither as a diameter."""
     assert float(data.mass_share.sel(size="radius")) * 20 == pytest.approx(1.200037, abs=6e-7)
     np.testing.assert_allclose(data.clearance, [0.8e-3, 33.97e-3], rtol=1e-12)
     assert float(data.impacts.sel(size="diameter", start=1).max()) == 0
@@ -41,7 +41,7 @@ def test_numbers_of_the_contact(data):
     ],
 )
 def test_losses_of_the_main_interpretations(data, reading, expected):
-    """The known shares, given to their last digit, lie in the band of each case."""
+    """The stored shares lie in the band of each case, to their last digit."""
     low, _, high = data.share.sel(reading=reading).transpose("level", "start").values
     last_digit = 1e-3 if max(expected) > 0.01 else 1e-4
     assert np.all(low - last_digit <= expected)

@@ -72,7 +72,7 @@ def test_grade(low, value, high, expected):
     ],
 )
 def test_verdict_depends_on_the_stated_wall(values, expected, restriction):
-    """A claim is reproduced if it holds with the rigid wall, whatever the others say."""
+    """A claim is reproduced if it holds with the rigid wall, also if it fails with the other walls."""
     one = claim(walls(*values))
     assert (verdict(one), where_it_holds(one)) == (expected, restriction)
 

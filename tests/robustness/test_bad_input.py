@@ -9,30 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.struck import CASE_FILE
 
 import rattlebox as rb
 from rattlebox.model.base import vocabulary
 from rattlebox.model.synonyms import MEANT
 
-GOOD = """\
-duration = "5 s"
-
-[structure]
-kind = "sdof"
-mass = "20 kg"
-stiffness = "80 kN/m"
-damping = "25.3 N s/m"
-
-[load]
-kind = "half_sine"
-amplitude = "5 kN"
-duration = "1 ms"
-
-[damper]
-gap = "0.4 mm"
-ball = { radius = "33.17 mm", material = "steel" }
-contact = { kind = "tsuji", restitution = 0.9 }
-"""
+GOOD = 'duration = "5 s"\n' + CASE_FILE
 
 SCREEN = 24
 """Lines of a small terminal."""
@@ -194,7 +177,7 @@ def test_record_with_times_that_do_not_increase(times: list[float]) -> None:
 
 
 def test_record_that_ends_before_the_run() -> None:
-    """A record shorter than the run is error_of with both times."""
+    """A record shorter than the run is refused with both times."""
     with pytest.raises(rb.CaseError, match=r"0 s to 1 s, the run 0 to 2 s"):
         rb.Case(
             structure=rb.SDOF(mass=1.0, stiffness=1.0),

@@ -7,29 +7,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from support.struck import CASE_FILE
 
 import rattlebox as rb
 from rattlebox.cli.main import main
 
-GOOD = """\
-duration = "0.2 s"
-
-[structure]
-kind = "sdof"
-mass = "20 kg"
-stiffness = "80 kN/m"
-damping = "25.3 N s/m"
-
-[load]
-kind = "half_sine"
-amplitude = "5 kN"
-duration = "1 ms"
-
-[damper]
-gap = "0.4 mm"
-ball = { radius = "33.17 mm", material = "steel" }
-contact = { kind = "tsuji", restitution = 0.9 }
-"""
+GOOD = 'duration = "0.2 s"\n' + CASE_FILE
 LOAD = 'kind = "half_sine"\namplitude = "5 kN"\nduration = "1 ms"\n'
 LAW = "restitution = 0.9"
 MODES = 'duration = 1\n[structure]\nkind = "modal"\nfrequencies = [1, 2]\n'
@@ -333,7 +316,7 @@ def test_message_of_a_mistake(mistake: str, answer: Run) -> None:
 
 
 def test_several_mistakes_fit_one_screen(answer: Run) -> None:
-    """Of many mistakes the first are listed and the others counted."""
+    """The first of many mistakes are listed, and the others are counted."""
     spoilt = changed(
         "20 kg", "-1 kg", "80 kN/m", "8 kg", "0.4 mm", "-1 mm", "33.17 mm", "0 mm", "steel", "x", "0.9", "9"
     )

@@ -100,7 +100,7 @@ def flipped(whole: bytes, place: int, bit: int) -> bytes:
 @pytest.mark.parametrize("flips", [50, pytest.param(400, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", FILES)
 def test_a_flipped_bit_is_detected_or_harmless(name: str, flips: int, folder: Path, tmp_path: Path) -> None:
-    """Bits are flipped anywhere in a file: in its structure, attributes, short arrays and numbers."""
+    """The flipped bits are spread over the structure, attributes, short arrays and numbers of a file."""
     whole, path = (folder / name).read_bytes(), tmp_path / name
     exact = content(folder / name)
     generator = np.random.default_rng(11)

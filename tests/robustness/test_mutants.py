@@ -25,14 +25,14 @@ def test_mutants(tmp_path: Path, name: str) -> None:
     """A mutant is read, or refused with the name of the file and advice, in two seconds at most."""
     good = GOOD[name]
     for number in range(MUTANTS):
-        begin = time.process_time()
+        start = time.process_time()
         try:
             read_file(tmp_path, good, mutant(good.content, number))
         except rb.RattleboxError as error:
             message = str(error)
         else:
             message = ""
-        assert time.process_time() - begin < LIMIT, f"mutant {number}"
+        assert time.process_time() - start < LIMIT, f"mutant {number}"
         assert not message or (good.name in message and "try: " in message), f"mutant {number}: {message[:300]}"
         assert len(message) < 5000, f"mutant {number}"
 
@@ -40,7 +40,7 @@ def test_mutants(tmp_path: Path, name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["Ansys result", "Ansys matrices"])
 def test_mutants_of_binary_files(tmp_path: Path, name: str) -> None:
-    """A mutant of a file of Ansys never ends this process, whatever it does to the child process that reads it."""
+    """A mutant of an Ansys file never ends this process, also if it crashes the child process that reads it."""
     for number in range(14):
         message = GOOD[name].name
         try:

@@ -32,14 +32,14 @@ FORCE = ("1 kN", "2 kN")
 def refused(call: Callable[[], object]) -> str:
     """Return the message of a call that is refused, and check that it took neither time nor memory."""
     tracemalloc.start()
-    begin = time.process_time()
+    start = time.process_time()
     try:
         with pytest.raises(rb.RattleboxError) as error:
             call()
         assert tracemalloc.get_traced_memory()[1] < 1e8
     finally:
         tracemalloc.stop()
-    assert time.process_time() - begin < 10
+    assert time.process_time() - start < 10
     assert "\n  try: " in str(error.value)
     return str(error.value)
 
@@ -61,7 +61,7 @@ def test_plans_of_too_many_variants(axes: Callable[[], object]) -> None:
 
 
 def test_study_file_of_too_many_variants(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same in a study file ends with exit code 2."""
+    """A study file with such a plan ends with exit code 2."""
     monkeypatch.chdir(tmp_path)
     rb.reference_case(duration=0.01).to_file("case.toml")
     axis = '{ from = "0.1 mm", to = "1 mm", count = 20_000_000_000 }'
@@ -106,7 +106,7 @@ def test_long_random_signals(duration: str, top: str) -> None:
 )
 def test_texts_that_took_minutes(text: str) -> None:
     """Long keys, deep nesting and thousands of unknown fields are refused in less than seconds."""
-    begin = time.process_time()
+    start = time.process_time()
     with pytest.raises(rb.CaseError):
         rb.Case.from_toml(text)
-    assert time.process_time() - begin < 2
+    assert time.process_time() - start < 2

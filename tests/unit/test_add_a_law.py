@@ -209,7 +209,7 @@ def rebound(mass: float, stiffness: float, loss: float) -> tuple[float, float]:
 @needs_compiler
 @pytest.mark.slow  # compiles the whole core
 def test_the_laws_of_the_page_run_in_both_engines(copy: Path) -> None:
-    """Built for one instruction set, they rebound as SciPy's integration of their equations says, also with friction."""
+    """Built for one instruction set, they rebound as in SciPy's integration of their equations, also with friction."""
     level = "v1" if sys.platform != "darwin" and os.uname().machine in ("x86_64", "amd64") else "native"
     build = [
         *("-S", ".", "-B", "build", "-G", "Ninja", f"-DCMAKE_MAKE_PROGRAM={Path(ninja.BIN_DIR) / 'ninja'}"),

@@ -18,10 +18,10 @@ using rattlebox::WaitTimes;
 
 int main() {
     const auto at = [](int ms) { return WaitTimes::Time(std::chrono::milliseconds(1000 + ms)); };
-    int worker, begin, end, now;
+    int worker, start, end, now;
     WaitTimes waits(2, at(0));
-    while (std::scanf("%d %d %d %d", &worker, &begin, &end, &now) == 4) {
-        waits.add(worker, at(begin), at(end));
+    while (std::scanf("%d %d %d %d", &worker, &start, &end, &now) == 4) {
+        waits.add(worker, at(start), at(end));
         std::printf("%d", waits.dominate(at(now)));
     }
 }
@@ -29,7 +29,7 @@ int main() {
 
 
 def dominates(folder: Path, *waits: tuple[int, int, int, int]) -> str:
-    """Return digits: whether waits dominate after each of `waits`, (worker, begin, end, time of the question) [ms]."""
+    """Return digits: whether waits dominate after each of `waits`, (worker, start, end, time of the question) [ms]."""
     assert COMPILER, "a C++ compiler is needed, as for building Rattlebox"
     source, program = folder / "waits.cpp", folder / "waits"
     source.write_text(PROGRAM, encoding="utf-8")

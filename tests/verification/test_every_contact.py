@@ -111,15 +111,15 @@ def log_differences(a: Any, seen: Counter[str]) -> Iterator[str]:
         for contact, (value, rate) in enumerate(zip(*gaps(a, damper), strict=True)):
             free = np.ones(a.time.size - 1, bool)
             for i in np.flatnonzero((log.damper == damper) & (log.contact == contact)):
-                begin, stop = (int(k) for k in np.searchsorted(a.time, [log.time[i], min(end[i], a.time[-1])]))
+                first, stop = (int(k) for k in np.searchsorted(a.time, [log.time[i], min(end[i], a.time[-1])]))
                 speed = log.approach_speed[i]
-                if a.time[begin] != log.time[i]:
+                if a.time[first] != log.time[i]:
                     yield f"{damper}/{contact}: no touch at {log.time[i]}"
                 # Contacts from rest are logged an instant later, after a negligible motion.
                 deep, fast = (max(blur, 1e-5 * log.peak_overlap[i]), 1e-4) if speed == 0 else (blur, 1e-7)
-                if not abs(value[begin]) <= deep or not abs(rate[begin] + speed) <= fast:
-                    yield f"{damper}/{contact}: logged at {log.time[i]}, gap {value[begin]}, rate {rate[begin]}"
-                inside = value[begin + 1 : stop]
+                if not abs(value[first]) <= deep or not abs(rate[first] + speed) <= fast:
+                    yield f"{damper}/{contact}: logged at {log.time[i]}, gap {value[first]}, rate {rate[first]}"
+                inside = value[first + 1 : stop]
                 if inside.size and inside.max() > blur:
                     yield f"{damper}/{contact}: open within the contact of {log.time[i]}"
                 seen["contacts"] += 1
@@ -129,7 +129,7 @@ def log_differences(a: Any, seen: Counter[str]) -> Iterator[str]:
                 seen["from rest"] += bool(speed == 0)
                 # After a release the bodies recover, and the surfaces separate slightly later.
                 parted = np.flatnonzero(value[stop:] >= 0)
-                free[begin - (begin > 0 and speed == 0) : stop + (int(parted[0]) if parted.size else a.time.size)] = (
+                free[first - (first > 0 and speed == 0) : stop + (int(parted[0]) if parted.size else a.time.size)] = (
                     False
                 )
             deepest = lowest(a.time, value, rate)

@@ -387,7 +387,7 @@ def test_a_missing_resource_is_an_error(tmp_path: Path) -> None:
 def test_libraries_for_other_systems_are_added_on_request(
     fmi: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """They are where importers look for them, and the page of the FMU says that they were never run."""
+    """The binaries are in the folders of the FMI standard, and the page of the FMU states that they were never run."""
     files = {system: tmp_path / f"other.{end}" for system, end in (("aarch64-linux", "so"), ("x86_64-windows", "dll"))}
     for file in files.values():
         file.write_bytes(b"library")

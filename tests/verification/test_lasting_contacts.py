@@ -51,7 +51,7 @@ def lying(contact: Any, duration: float, structure: Any = None, rate: str = "100
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_ball_at_rest_costs_nothing(law: str) -> None:
-    """An hour at rest takes as many steps as a minute, because no test ran a resting ball for longer than a second."""
+    """An hour at rest takes as many steps as a minute; no earlier test ran a resting ball for longer than a second."""
     minute, hour = (lying(LAWS[law], duration, rate="0.1 Hz") for duration in (60.0, 3600.0))
     assert minute.ok and hour.ok
     assert hour.counts["contact_steps"] == minute.counts["contact_steps"] < 30_000

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support import impact_cases, impact_lines
+from support import impact_cases, known_impacts
 
 import rattlebox as rb
 
@@ -26,7 +26,7 @@ STARTS = (0.0, -1.0, 1.0)
 def test_ledger_of_the_reference_case_closes(law: str, force: float, start: float) -> None:
     """Work, losses and energy balance to 1e-10 of the work at every output time of five seconds."""
     contact, wall = LAWS[law]
-    run = impact_lines.simulate(impact_cases.reference_case(start=start, force=force, contact=contact(), wall=wall))
+    run = known_impacts.simulate(impact_cases.reference_case(start=start, force=force, contact=contact(), wall=wall))
     assert run.arrays.load_work[-1] > 0
     assert run.energy_residual <= 1e-10
 
@@ -35,14 +35,14 @@ def test_ledger_of_the_reference_case_closes(law: str, force: float, start: floa
 def test_impact_log_adds_up_to_the_loss(law: str) -> None:
     """The losses of the single impacts sum to the impact loss of the ledger."""
     contact, wall = LAWS[law]
-    a = impact_lines.simulate(impact_cases.reference_case(contact=contact(), wall=wall, duration=2.0)).arrays
+    a = known_impacts.simulate(impact_cases.reference_case(contact=contact(), wall=wall, duration=2.0)).arrays
     lost = a.normal_loss[-1, 0] + a.plastic_loss[-1, 0]
     assert a.impacts.energy_lost.sum() == pytest.approx(lost, abs=1e-11 * a.load_work[-1])
 
 
 def test_small_pulse_never_moves_the_ball() -> None:
     """At 100 N the structure of the centred case never reaches the ball, which does not move."""
-    a = impact_lines.simulate(impact_cases.reference_case(force=100.0, duration=0.1)).arrays
+    a = known_impacts.simulate(impact_cases.reference_case(force=100.0, duration=0.1)).arrays
     assert len(a.impacts) == 0
     # The impulse without damping would give 0.0503 mm; the pulse lasts a hundredth of a period.
     rate, zeta = math.sqrt(80e3 / 20), 25.3 / (2 * math.sqrt(20 * 80e3))
@@ -55,7 +55,7 @@ def test_small_pulse_never_moves_the_ball() -> None:
 
 def test_ledger_of_a_row_of_balls_closes() -> None:
     """Five unequal balls in a row on three modes balance to 1e-8 of the work."""
-    run = impact_lines.simulate(impact_cases.five_balls())
+    run = known_impacts.simulate(impact_cases.five_balls())
     assert len(run.arrays.impacts) > 100
     assert set(run.arrays.impacts.contact) == set(range(6))
     assert run.energy_residual <= 1e-8
@@ -63,7 +63,7 @@ def test_ledger_of_a_row_of_balls_closes() -> None:
 
 def test_row_of_balls_stays_in_order() -> None:
     """Balls of a crowded row never pass through each other or a wall: no overlap exceeds the largest one of the log."""
-    run = impact_lines.simulate(impact_cases.five_balls())
+    run = known_impacts.simulate(impact_cases.five_balls())
     a = run.arrays
     place = a.relative_position - a.ball_centre
     half = 0.5 * a.clearance[0]
@@ -78,7 +78,7 @@ def test_hard_rows_collapse_and_stick(balls: int) -> None:
     rng = np.random.default_rng(balls)
     for _ in range(8):
         case = impact_cases.hard_row(rng, balls)
-        run = impact_lines.simulate(case)
+        run = known_impacts.simulate(case)
         assert run.status == "finished"
         assert run.energy_residual <= 1e-10
         place = run.arrays.relative_position - run.arrays.ball_centre
@@ -94,7 +94,7 @@ def test_hard_balls_in_several_cavities_come_to_rest_on_each_other() -> None:
     """Random hard dampers on one structure, with and without gravity, stick and finish, and balance to 1e-10."""
     rng = np.random.default_rng(1)
     for _ in range(24):
-        run = impact_lines.simulate(impact_cases.hard_dampers(rng))
+        run = known_impacts.simulate(impact_cases.hard_dampers(rng))
         assert run.status == "finished"
         assert run.energy_residual <= 1e-10
 
@@ -103,7 +103,7 @@ def test_hard_balls_in_several_cavities_come_to_rest_on_each_other() -> None:
 @pytest.mark.parametrize("e", [0.0, 0.3, 0.5, 0.8])
 def test_a_pile_of_hard_balls_comes_to_rest(balls: int, e: float) -> None:
     """Balls that fall on each other on the floor of a fixed cavity all end at rest on it."""
-    run = impact_lines.simulate(impact_cases.pile(balls, e))
+    run = known_impacts.simulate(impact_cases.pile(balls, e))
     assert run.status == "finished"
     assert np.abs(run.arrays.ball_velocity[-1]).max() < 1e-9
 
@@ -117,7 +117,7 @@ def test_momentum_of_a_free_system_is_conserved(method: str) -> None:
         duration=2.0,
         method=rb.Newton(restitution=0.95) if method == "newton" else rb.EventDriven(),
     )
-    a = impact_lines.simulate(case).arrays
+    a = known_impacts.simulate(case).arrays
     momentum = 2.0 * a.velocity[:, 0] + 0.7 * a.ball_velocity[:, 0]
     assert len(a.impacts) > 10
     assert momentum == pytest.approx(0.6, rel=1e-13)
@@ -136,6 +136,6 @@ def test_base_work_closes() -> None:
         base=rb.Harmonic(amplitude=2.0, frequency=10.0),
         duration=2.0,
     )
-    run = impact_lines.simulate(case)
+    run = known_impacts.simulate(case)
     assert len(run.arrays.impacts) > 10
     assert run.energy_residual <= 1e-10

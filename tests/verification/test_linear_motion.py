@@ -51,10 +51,10 @@ def wave(amplitude: float, omega: float, angle: float) -> tuple[Array, Array]:
     return turning, amplitude * np.array([math.sin(angle), math.cos(angle)])
 
 
-def steady(begin: float, *, amplitude: float, frequency: float, phase: float) -> tuple[Array, Array]:
+def steady(start: float, *, amplitude: float, frequency: float, phase: float) -> tuple[Array, Array]:
     """Return a harmonic that begins at a time."""
     omega = 2 * math.pi * frequency
-    return wave(amplitude, omega, omega * begin + phase)
+    return wave(amplitude, omega, omega * start + phase)
 
 
 def added(one: tuple[Array, Array], other: tuple[Array, Array]) -> tuple[Array, Array]:
@@ -65,7 +65,7 @@ def added(one: tuple[Array, Array], other: tuple[Array, Array]) -> tuple[Array, 
 
 
 def pieces(load: str) -> list[Piece]:
-    """Return the load as pieces: begin, end, and the generator and start of states whose first one is the force."""
+    """Return the load as pieces: start, end, and the generator and start of states whose first one is the force."""
     if load == "record":
         t, f = RECORD
         slope = np.diff(f) / np.diff(t)
@@ -87,16 +87,16 @@ def exact(stiffness: float, damping: float, load: str, x: float, v: float) -> Ar
     """Return displacement and velocity at TIMES, (T, 2)."""
     result = np.zeros((TIMES.size, 2))
     state = np.array([x, v])
-    for begin, end, generator, force in pieces(load):
+    for start, end, generator, force in pieces(load):
         n = 2 + force.size
         system = np.zeros((n, n))
         system[0, 1] = 1.0
         system[1, :3] = -stiffness / MASS, -damping / MASS, 1 / MASS
         system[2:, 2:] = generator
         whole = np.concatenate([state, force])
-        for k in np.flatnonzero((begin <= TIMES) & (end >= TIMES)):
-            result[k] = (expm(system * (TIMES[k] - begin)) @ whole)[:2]
-        state = (expm(system * (end - begin)) @ whole)[:2]
+        for k in np.flatnonzero((start <= TIMES) & (end >= TIMES)):
+            result[k] = (expm(system * (TIMES[k] - start)) @ whole)[:2]
+        state = (expm(system * (end - start)) @ whole)[:2]
     return result
 
 

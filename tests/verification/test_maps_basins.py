@@ -22,7 +22,7 @@ def state(orbit: shaken.TableOrbit, since: float) -> tuple[float, float]:
 def test_bouncing_balls_coexist() -> None:
     """Rest on the table and the orbits that bounce every cycle and every second cycle coexist, and are found to 1e-8."""
     case = impact_cases.table(shaken.table_orbit(RESTITUTION, GAMMA, 1), 1)
-    begin = case.structure.motion[0].phase
+    phase = case.structure.motion[0].phase
     gap = impact_cases.TABLE_GAP
     starts = {
         "damper.start": np.linspace(0, 12, 7) / gap - 1,
@@ -33,7 +33,7 @@ def test_bouncing_balls_coexist() -> None:
         orbit = shaken.table_orbit(RESTITUTION, GAMMA, cycles)
         expected = (maps.orbit_period == cycles) & np.isclose(maps.orbit_impacts_per_cycle, 1 / cycles)
         result = maps.isel(orbit=np.flatnonzero(expected)).squeeze("orbit")  # one and no more
-        strobes = [state(orbit, (begin - orbit.phase) % (2 * math.pi) + 2 * math.pi * k) for k in range(cycles)]
+        strobes = [state(orbit, (phase - orbit.phase) % (2 * math.pi) + 2 * math.pi * k) for k in range(cycles)]
         heights = result.orbit_relative_position.values[:cycles, 0] + gap
         rates = result.orbit_relative_velocity.values[:cycles, 0]
         ours = sorted(zip(heights.tolist(), rates.tolist(), strict=True))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support import impact_cases
 from support.exact import oscillator
-from support.study_lines import PEAK, SAMPLES, UNSTABLE, followed, growth, orbit
+from support.known_maps import PEAK, SAMPLES, UNSTABLE, followed, growth, orbit
 
 import rattlebox as rb
 

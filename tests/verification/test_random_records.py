@@ -31,11 +31,9 @@ def test_the_density_is_the_one_asked_for() -> None:
     frequency, coefficient, _ = coefficients(rb.Random(PSD, 40.0, 4000.0, seed=1), fine=4)
     power = 2 * np.abs(coefficient) ** 2
     for band in range(3):
-        begin, end = (LOW + (band + end) * (HIGH - LOW) / 3 for end in (0, 1))
+        low, end = (LOW + (band + end) * (HIGH - LOW) / 3 for end in (0, 1))
         # The sum of 26 400 squares of complex Gaussian numbers: 0.6 % of scatter.
-        assert power[(frequency >= begin) & (frequency < end)].sum() / (end - begin) == pytest.approx(
-            DENSITY, rel=0.015
-        )
+        assert power[(frequency >= low) & (frequency < end)].sum() / (end - low) == pytest.approx(DENSITY, rel=0.015)
 
 
 @pytest.mark.parametrize("rate", RATES)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support import impact_cases, impact_lines
+from support import impact_cases, known_impacts
 
 REFERENCE: dict[str, Any] = json.loads((Path(__file__).parent / "data" / "w1_centre.json").read_text())
 HORIZON = REFERENCE["horizon_double_z_1e_9m"]
@@ -16,7 +16,7 @@ SAMPLES = np.array([row for row in REFERENCE["samples"] if row[0] <= HORIZON])
 @pytest.fixture(scope="module")
 def run() -> Any:
     """Return the run up to the time to which double precision is accurate."""
-    return impact_lines.simulate(impact_cases.reference_case(duration=HORIZON + 0.05, times=SAMPLES[:, 0], mass=1.2))
+    return known_impacts.simulate(impact_cases.reference_case(duration=HORIZON + 0.05, times=SAMPLES[:, 0], mass=1.2))
 
 
 def test_first_thirty_impacts_come_at_the_reference_times(run: Any) -> None:

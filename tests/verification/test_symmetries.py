@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support import impact_cases, impact_lines
+from support import impact_cases, known_impacts
 
 import rattlebox as rb
 
@@ -37,7 +37,7 @@ def row(sign: float = 1.0, order: int = 1) -> Any:
 
 def test_mirrored_case_is_the_mirrored_run() -> None:
     """With reversed start and pulse the motion changes its sign bit for bit."""
-    a, b = impact_lines.simulate(short()).arrays, impact_lines.simulate(short(-1.0)).arrays
+    a, b = known_impacts.simulate(short()).arrays, known_impacts.simulate(short(-1.0)).arrays
     assert np.array_equal(a.displacement, -b.displacement)
     assert np.array_equal(a.ball_position, -b.ball_position)
     assert np.array_equal(a.impacts.time, b.impacts.time)
@@ -46,7 +46,7 @@ def test_mirrored_case_is_the_mirrored_run() -> None:
 
 def test_row_counted_from_the_other_end_is_the_mirrored_run() -> None:
     """A row in reverse order under the reverse pulse moves as the mirror image, up to rounding."""
-    a, b = impact_lines.simulate(row()).arrays, impact_lines.simulate(row(-1.0, -1)).arrays
+    a, b = known_impacts.simulate(row()).arrays, known_impacts.simulate(row(-1.0, -1)).arrays
     assert len(a.impacts) > 5
     early = a.impacts.time < 0.1
     assert a.impacts.time[early] == pytest.approx(b.impacts.time[early], rel=1e-8)
@@ -76,8 +76,8 @@ def test_rescaled_units_give_the_rescaled_run(exact: bool) -> None:
             output=rb.Output(times=list(np.linspace(0, 0.4, 41) * time)),
         )
 
-    a = impact_lines.simulate(scaled(1, 1, 1, 1)).arrays
-    b = impact_lines.simulate(scaled(length, mass, time, force)).arrays
+    a = known_impacts.simulate(scaled(1, 1, 1, 1)).arrays
+    b = known_impacts.simulate(scaled(length, mass, time, force)).arrays
     assert len(a.impacts) == len(b.impacts) > 10
     assert b.impacts.time[:30] / time == pytest.approx(a.impacts.time[:30], rel=1e-9)
     assert np.abs(b.displacement / length - a.displacement).max() <= 1e-8 * np.abs(a.displacement).max()
@@ -85,15 +85,15 @@ def test_rescaled_units_give_the_rescaled_run(exact: bool) -> None:
 
 def test_run_split_in_a_flight_is_the_whole_run() -> None:
     """A run ended in a flight and continued from its last state agrees with the uninterrupted one."""
-    log = impact_lines.simulate(impact_cases.reference_case(duration=0.3, times=[0.0])).arrays.impacts
+    log = known_impacts.simulate(impact_cases.reference_case(duration=0.3, times=[0.0])).arrays.impacts
     middles = 0.5 * (log.time[:-1] + log.duration[:-1] + log.time[1:])
-    whole = impact_lines.simulate(impact_cases.reference_case(duration=0.3, times=middles)).arrays
+    whole = known_impacts.simulate(impact_cases.reference_case(duration=0.3, times=middles)).arrays
     # A flight that has the ball near the place where the cavity is at rest, as a start asks for.
     near = np.abs(whole.ball_position[1:-1, 0]) < 0.39e-3
     number = int(np.nonzero(near[4:])[0][0]) + 4
     split = float(middles[number])
-    first = impact_lines.simulate(impact_cases.reference_case(duration=split, times=[0.0])).arrays
-    second = impact_lines.simulate(
+    first = known_impacts.simulate(impact_cases.reference_case(duration=split, times=[0.0])).arrays
+    second = known_impacts.simulate(
         rb.Case(
             structure=rb.SDOF(
                 mass=20.0,
@@ -120,8 +120,8 @@ def test_run_split_in_a_flight_is_the_whole_run() -> None:
 
 def test_output_times_do_not_change_the_run() -> None:
     """The bits of the impacts do not depend on the output."""
-    few = impact_lines.simulate(impact_cases.reference_case(duration=1.0, times=[0.0])).arrays.impacts
-    many = impact_lines.simulate(
+    few = known_impacts.simulate(impact_cases.reference_case(duration=1.0, times=[0.0])).arrays.impacts
+    many = known_impacts.simulate(
         impact_cases.reference_case(duration=1.0, times=np.linspace(0, 1, 5001))
     ).arrays.impacts
     assert few == many

@@ -245,6 +245,6 @@ def test_power_laws_that_are_not_determined_are_refused(values: dict[str, Any], 
     ],
 )
 def test_curves_that_make_no_sense_are_refused(values: dict[str, Any]) -> None:
-    """Lengths, order, begin, common end of both curves, and generation of energy are checked."""
+    """Lengths, order, start, common end of both curves, and generation of energy are checked."""
     with pytest.raises(rb.CaseError):
         rb.TabulatedNormal(**values)

@@ -81,13 +81,13 @@ class _Variable:
             size, kind = kind >> 16, kind & 0xFFFF
             if size > 4:
                 raise ValueError("a small element is too large")
-            begin, self._place = self._place + 4, self._place + 8
+            start, self._place = self._place + 4, self._place + 8
         else:
-            begin = self._place + 8
-            self._place = begin + size + -size % 8 * (kind != _MATRIX)
-        if begin + size > len(self._content):
+            start = self._place + 8
+            self._place = start + size + -size % 8 * (kind != _MATRIX)
+        if start + size > len(self._content):
             raise ValueError("an element is cut off")
-        return kind, self._content[begin : begin + size]
+        return kind, self._content[start : start + size]
 
     def _text(self) -> bytes:
         kind, text = self._element()
@@ -203,13 +203,13 @@ def _check_level_4(content: bytes) -> None:
             raise ValueError("it has no header of a MAT file")
         if length < 1:
             raise ValueError("a variable has no name")
-        begin = place + 20 + length
-        place = begin + rows * columns * size * (1 + imaginary)
+        start = place + 20 + length
+        place = start + rows * columns * size * (1 + imaginary)
         if place > len(content):
             raise ValueError("the file is cut off")
         if sort == 2:
             _check_sparse_4(
-                content[begin:place], rows, columns, f"{order}{['f8', 'f4', 'i4', 'i2', 'u2', 'u1'][precision]}"
+                content[start:place], rows, columns, f"{order}{['f8', 'f4', 'i4', 'i2', 'u2', 'u1'][precision]}"
             )
 
 

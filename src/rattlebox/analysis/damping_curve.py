@@ -75,7 +75,7 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     Returns
     -------
     xarray.Dataset
-        `damping_ratio`, `frequency` [Hz], and the times `begin` and `end` of each band [s], over `amplitude`. They are NaN
+        `damping_ratio`, `frequency` [Hz], and the times `start` and `end` of each band [s], over `amplitude`. They are NaN
         if the decay does not fall through the whole band or passes it in less than half a cycle, and if it enters the band
         in the first three cycles or leaves it in the last three: the envelope is not known there, and in the first cycles
         the decay sets particles at rest in motion.
@@ -116,7 +116,7 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     # The smallest envelope so far, since particles may return energy to the structure for a while.
     logarithm = np.minimum.accumulate(decay.log_amplitude)
     lower, upper = (np.log(edges) for edges in band_edges(levels))
-    ratio, frequency, begins, ends = np.full((4, levels.size), np.nan)
+    ratio, frequency, starts, ends = np.full((4, levels.size), np.nan)
     for k in range(levels.size):
         if not logarithm[-1] < lower[k] < upper[k] <= logarithm[0]:
             continue
@@ -127,13 +127,13 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
         delta = (upper[k] - lower[k]) / turn
         ratio[k] = delta / math.sqrt(1 + delta**2)
         frequency[k] = turn / (2 * math.pi * (t_low - t_high))
-        begins[k], ends[k] = t_high, t_low
+        starts[k], ends[k] = t_high, t_low
     axis = ("amplitude", levels, {"units": units_of(values), "long_name": "amplitude"})
     return xarray.Dataset(
         {
             "damping_ratio": labelled("damping_ratio", ratio, "1", "damping ratio", amplitude=axis),
             "frequency": labelled("frequency", frequency, "Hz", "frequency of the decay", amplitude=axis),
-            "begin": labelled("begin", begins, "s", "time at which the band is entered", amplitude=axis),
+            "start": labelled("start", starts, "s", "time at which the band is entered", amplitude=axis),
             "end": labelled("end", ends, "s", "time at which the band is left", amplitude=axis),
         }
     )

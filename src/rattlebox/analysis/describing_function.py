@@ -412,9 +412,9 @@ def _solve_one(system: _System, levels: FloatArray) -> _UnorderedSolutions:
         places.append(np.stack([np.full(rows.size, number), rows, cells, over[rows, cells + 1]]))
     level_of, rows, cells, rises = np.concatenate(places, axis=1)
     low, high, level = grid[cells], grid[cells + 1], np.log(levels)[level_of]
-    begin, end = curve[rows, cells] - level, curve[rows, cells + 1] - level
+    left, right = curve[rows, cells] - level, curve[rows, cells + 1] - level
     # Newton's method, which bisects where it would leave the interval.
-    root = low - begin / (end - begin) * (high - low)
+    root = low - left / (right - left) * (high - low)
     for _ in range(_BISECTIONS):
         mass, slope = system.mass(rows, root)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -497,9 +497,9 @@ def _solve_several(system: _System, levels: FloatArray) -> _UnorderedSolutions:
         lost[number] = at_end
         beyond = path[..., -1] >= level
         steps, rows = np.nonzero(beyond[1:] != beyond[:-1])
-        begin, end = path[steps, rows], path[steps + 1, rows]
-        part = (level - begin[:, -1]) / (end[:, -1] - begin[:, -1])
-        points = _at_level(branch, begin + part[:, None] * (end - begin), rows, level)
+        first, last = path[steps, rows], path[steps + 1, rows]
+        part = (level - first[:, -1]) / (last[:, -1] - first[:, -1])
+        points = _at_level(branch, first + part[:, None] * (last - first), rows, level)
         logs = branch.log_amplitudes(points, rows)
         smallest = np.where(logs < logs.max(axis=1, keepdims=True) + math.log(NEGLIGIBLE), np.inf, logs).min(axis=1)
         motion = branch.motion(points) * (branch.scale[rows] * levels[number])[:, None]

@@ -122,14 +122,14 @@ def impacts_per_cycle(impact_times: ArrayLike, period: float, *, start: float, e
     """
     times = finite("impact_times", impact_times, 0)
     period = positive("period", period, "s")
-    begin, stop = finite("start and end", [start, end])
+    first, last = finite("start and end", [start, end])
     slack = 1e-9
-    cycles = int(np.floor((stop - begin) / period + slack))
+    cycles = int(np.floor((last - first) / period + slack))
     if cycles < 1:
         raise ValueError(f"no whole cycle of {period:g} s fits between start = {start:g} s and end = {end:g} s")
-    cycle = np.floor((times - begin) / period + slack)
+    cycle = np.floor((times - first) / period + slack)
     counts = np.bincount(cycle[(cycle >= 0) & (cycle < cycles)].astype(int), minlength=cycles)
-    starts = begin + period * np.arange(cycles)
+    starts = first + period * np.arange(cycles)
     return labelled(
         "impacts",
         counts,

@@ -112,9 +112,9 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
     cycles = math.floor((times[-1] - max(after, times[0])) * frequency + 1e-9)
     if cycles < 1:
         raise ValueError(f"no whole cycle of {frequency:g} Hz lies after {after:g} s; the run ends at {times[-1]:g} s")
-    begin = times[-1] - cycles / frequency
+    start = times[-1] - cycles / frequency
     mass = float(particle_mass[number])
-    samples = np.count_nonzero(times > begin + 1e-9 / frequency)
+    samples = np.count_nonzero(times > start + 1e-9 / frequency)
     if samples < MIN_SAMPLES * cycles:
         raise ValueError(
             f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {MIN_SAMPLES}"
@@ -122,8 +122,8 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
         )
     velocity = arrays.base_velocity + arrays.cavity_velocity[:, number]
     momentum = arrays.momentum[:, number] + mass * arrays.base_velocity
-    omega, span = 2 * np.pi * frequency, times[-1] - begin
-    weights = trapezoid_weights(times, begin)
+    omega, span = 2 * np.pi * frequency, times[-1] - start
+    weights = trapezoid_weights(times, start)
     v = first_harmonic(times, velocity, weights, frequency)
     size = float(np.linalg.norm(v))
     about = velocity - weights @ velocity / span
@@ -139,7 +139,7 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
     middle = 0.5 * (times[1:] + times[:-1])
     # The weight is constant, so the change of momentum gives the first harmonic of the force.
     mean_force = np.diff(momentum, axis=0) / step[:, None]
-    inside = steps_inside(times, begin)
+    inside = steps_inside(times, start)
     force = first_harmonic(middle, mean_force, inside, frequency, gain=np.sinc(frequency * step))
     power = complex(force.conjugate() @ v) / 2
     carried = first_harmonic(times, momentum, weights, frequency)

@@ -71,14 +71,14 @@ def step_of(time: FloatArray) -> float:
     return float(time[-1] - time[0]) / (time.size - 1)
 
 
-def steps_inside(time: FloatArray, begin: float) -> FloatArray:
-    """Return the length of the part of each sampling interval after `begin`, (N - 1,) [s]."""
-    return np.clip(time[1:] - begin, 0.0, np.diff(time))
+def steps_inside(time: FloatArray, start: float) -> FloatArray:
+    """Return the length of the part of each sampling interval after `start`, (N - 1,) [s]."""
+    return np.clip(time[1:] - start, 0.0, np.diff(time))
 
 
-def trapezoid_weights(time: FloatArray, begin: float) -> FloatArray:
-    """Return the weights of samples in the integral from `begin` on by the trapezoidal rule, (N,) [s]."""
-    inside = steps_inside(time, begin)
+def trapezoid_weights(time: FloatArray, start: float) -> FloatArray:
+    """Return the weights of samples in the integral from `start` on by the trapezoidal rule, (N,) [s]."""
+    inside = steps_inside(time, start)
     of_earlier = 0.5 * inside**2 / np.diff(time)
     weights = np.zeros(time.size)
     weights[:-1] += of_earlier

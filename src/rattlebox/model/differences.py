@@ -45,6 +45,6 @@ def _shown(value: Any) -> str:
 
 def _cut(text: str, common: int) -> str:
     """Return the part of a text around its first difference from another one, after `common` equal characters."""
-    begin = max(0, min(common - 12, len(text) - 37)) if len(text) > 40 else 0
-    end = len(text) if len(text) <= begin + 40 else begin + 37
-    return "..." * (begin > 0) + text[begin:end] + "..." * (end < len(text))
+    start = max(0, min(common - 12, len(text) - 37)) if len(text) > 40 else 0
+    end = len(text) if len(text) <= start + 40 else start + 37
+    return "..." * (start > 0) + text[start:end] + "..." * (end < len(text))

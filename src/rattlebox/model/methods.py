@@ -211,7 +211,7 @@ class Output(Part):
     """Times at which motion and energies are recorded, always with 0 and the end. They do not affect the run.
 
     The default times resolve the motion for figures: evenly spaced, 2001 of them or 20 in each period of the fastest mode or
-    harmonic (up to 100 001); 20 in each pulse; and, in runs of up to 200 000 events, begin, deepest overlap and end of every
+    harmonic (up to 100 001); 20 in each pulse; and, in runs of up to 200 000 events, start, deepest overlap and end of every
     contact and the middle of the flights before and after it. Spectra need evenly spaced times, set by a rate.
 
     Parameters

@@ -50,7 +50,7 @@ class HalfSine(Shock):
     amplitude
         Peak value, with its unit.
     duration, start
-        Length D and begin of the pulse [s].
+        Length D and start of the pulse [s].
 
     Notes
     -----
@@ -98,7 +98,7 @@ class Sawtooth(Shock, Polyline):
     amplitude
         Peak value, with its unit.
     duration, start
-        Length D and begin of the pulse [s].
+        Length D and start of the pulse [s].
     peak
         "terminal", at the end, or "initial", at the beginning; the pulse has a jump there.
 
@@ -133,7 +133,7 @@ class Trapezoid(Shock, Polyline):
     amplitude
         Constant value, with its unit.
     duration, start
-        Length D and begin of the pulse [s].
+        Length D and start of the pulse [s].
     rise, fall
         Length of the rise and of the fall [s]; 0 is a jump. The default of the rise is a tenth of the duration, that of the
         fall is the rise.

@@ -48,10 +48,10 @@ def free_decay(arrays: RunArrays, amplitude: float | None = None, point: str | N
     for values in (arrays.load, arrays.base_acceleration.reshape(time.size, -1)):
         if values.size:
             acting |= (np.abs(values) > 1e-3 * np.abs(values).max()).any(axis=1)
-    begin = int(np.flatnonzero(acting)[-1]) + 1 if acting.any() else 0
-    if begin > 0.9 * time.size or time.size - begin < 8 or not (omega > 0).any():
+    start = int(np.flatnonzero(acting)[-1]) + 1 if acting.any() else 0
+    if start > 0.9 * time.size or time.size - start < 8 or not (omega > 0).any():
         return None
-    time, q, p = time[begin:], arrays.modal_displacement[begin:], arrays.modal_velocity[begin:]
+    time, q, p = time[start:], arrays.modal_displacement[start:], arrays.modal_velocity[start:]
     late = time >= time[-1] - 0.25 * (time[-1] - time[0])
     energy = np.where(omega > 0, 0.5 * (p**2 + (omega * (q - q[late].mean(axis=0))) ** 2), 0.0)
     top = energy.max(axis=0)

@@ -108,14 +108,14 @@ def is_snapshots(path: Path) -> bool:
     import h5py  # type: ignore[import-untyped]
 
     with path.open("rb") as file:
-        begin = file.read(_HEAD)
-    if not begin.startswith(_SIGNATURE):
+        head = file.read(_HEAD)
+    if not head.startswith(_SIGNATURE):
         return False
     try:
         with h5py.File(path, "r", locking=False) as content:
             return "rattlebox_format" in content.attrs and ROOT in content
     except HDF5_ERRORS:  # the file is damaged
-        return b"rattlebox_format" in begin
+        return b"rattlebox_format" in head
 
 
 register_format(".vtkhdf", is_snapshots)

@@ -216,8 +216,8 @@ def damping_curve_cases(
     levels, about, cases = _prepared(case, amplitudes, way, mode, point, packings)
     if way == "shaking":
         return _shaken_variants(cases, about, levels, cycles or CYCLES)[0]
-    begin = _MARGIN * float(band_edges(levels)[1][-1])
-    return [_initial_velocity(each, about, begin) for each in cases]
+    amplitude = _MARGIN * float(band_edges(levels)[1][-1])
+    return [_initial_velocity(each, about, amplitude) for each in cases]
 
 
 def _prepared(
@@ -348,14 +348,14 @@ def ratios_of_decays(
         Amplitudes [m].
     """
     highest = float(band_edges(levels)[1][-1])
-    begin = _MARGIN * highest
+    amplitude = _MARGIN * highest
     for _ in range(_TRIALS):
-        variants = [_initial_velocity(case, mode, begin) for case in cases]
+        variants = [_initial_velocity(case, mode, amplitude) for case in cases]
         rows = evaluate(variants, partial(_decay, mode=mode, levels=levels, way=way))
         reached = min(row.largest for row in rows)
         if not 0 < reached < highest:
             break
-        begin *= 1.1 * highest / reached
+        amplitude *= 1.1 * highest / reached
     for number, row in enumerate(rows):
         remarks.add(row, number)
     values = np.array([row.values for row in rows])
@@ -457,8 +457,8 @@ def _energy_ratios(
     gained = run.ledger.particles + (arrays.contact_energy + arrays.gravity_energy).sum(axis=1)
     lost = np.interp(decay.time, *mean_over_period(time, run.ledger.losses + gained, 1 / mode.frequency))
     loss = np.concatenate([[0.0], np.cumsum(np.diff(lost) * (share[1:] + share[:-1]) / 2)])
-    begin, end = bands.begin.values, bands.end.values
-    both = [np.interp(end, decay.time, x) - np.interp(begin, decay.time, x) for x in (loss, decay.phase)]
+    start, end = bands.start.values, bands.end.values
+    both = [np.interp(end, decay.time, x) - np.interp(start, decay.time, x) for x in (loss, decay.phase)]
     # The mean over a cycle of a loss that falls with E is larger than the loss in its middle.
     turn = 2 * math.pi * bands.damping_ratio.values
     excess = np.divide(np.sinh(turn), turn, out=np.ones_like(turn), where=turn > 0)

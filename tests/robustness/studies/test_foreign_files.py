@@ -62,7 +62,7 @@ def user_files(tmp_path: Path) -> Iterator[Callable[..., dict[Path, str]]]:
 
 
 def test_folder_of_a_user_is_refused(tmp_path: Path, user_files: Any) -> None:
-    """A folder with foreign files is refused, whatever their names are."""
+    """A folder with foreign files of any name is refused."""
     for number, names in enumerate(
         [
             ("thesis/ch1.tex", "progress/plan.txt"),

@@ -113,7 +113,7 @@ def test_store_of_another_study_is_refused(tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_many_differences_fit_one_screen(tmp_path: Path) -> None:
-    """Of many differences the first are listed and the others counted."""
+    """The first of many differences are listed, and the others are counted."""
     store = tmp_path / "study.zarr"
     study(store)
     with pytest.raises(rb.StoreError, match="and 12 more\n"):

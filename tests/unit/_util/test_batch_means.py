@@ -73,7 +73,7 @@ def test_a_mode_observed_for_long_has_an_interval(damping, cycles):
 def test_coverage_for_all_damping_ratios_and_lengths():
     """For damping from 0.1 to 5 % and windows of 50 to 2000 cycles at least 90 % of the intervals hold the mean.
 
-    At the limit of what is given, a part in fifty of the series or less, single intervals are too narrow: they are counted
+    Where one series in fifty or fewer has an interval, single intervals are too narrow: they are counted
     against all series.
     """
     for damping in (0.001, 0.002, 0.005, 0.01, 0.02, 0.05):
@@ -96,7 +96,7 @@ def test_coverage_of_correlated_series_of_all_lengths():
 
 
 def test_a_short_or_drifting_series_has_no_interval():
-    """A random walk, a trend and nineteen samples leave the limits open; the mean is still given."""
+    """A random walk, a trend and nineteen samples have a mean, and an interval of NaN."""
     rng = np.random.default_rng(2)
     for series in (
         np.cumsum(rng.normal(size=300)),

@@ -60,7 +60,7 @@ def test_a_library_that_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_a_message_has_its_parts() -> None:
-    """The place comes first, what is wrong below it, then what to try."""
+    """An error is printed with its place first, then the complaint, then the advice."""
     error = rb.DataError("the file is empty", "another file", ["loads", 1, "file"])
     assert str(error) == "loads[1].file\n  the file is empty\n  try: another file"
     assert (error.complaint, error.suggestion, error.place) == (
@@ -96,7 +96,7 @@ def test_the_command_line_prints_errors_without_a_traceback(
 def test_every_class_ends_the_command_alike(
     kind: type[rb.RattleboxError], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Whatever the class, the command prints the message and ends with exit code 2."""
+    """For an error of any class, the command prints the message and ends with exit code 2."""
 
     def fails() -> None:
         raise kind("it is wrong", "something else")

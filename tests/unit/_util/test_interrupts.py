@@ -1,6 +1,6 @@
 """Calls in threads that are ended.
 
-No test saw that a stopped study went on for minutes: its runs were short, and only the engine asked whether to stop.
+No test saw that a stopped study continued for minutes: its runs were short, and only the engine asked whether to stop.
 """
 
 import signal
@@ -26,7 +26,7 @@ evaluate_cases([rb.reference_case(duration=0.01)] * 4, slow, workers=1, progress
 
 
 def test_stop_ends_calls():
-    """Calls in progress end at their next line and return None, later ones do not begin, finished ones are not touched."""
+    """Calls in progress end at their next line and return None; later calls do not start; finished calls are unchanged."""
     calls, started = StoppableCalls(), threading.Semaphore(0)
 
     def loop():
@@ -52,7 +52,7 @@ def test_stop_ends_calls():
 
 
 def test_ctrl_c_ends_the_evaluation_of_runs():
-    """A study whose evaluation of runs lasts for ever ends at Ctrl-C."""
+    """A study whose evaluation of runs never ends stops at Ctrl-C."""
     with subprocess.Popen(
         [sys.executable, "-c", STUDY], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:

@@ -59,7 +59,7 @@ def test_a_bar_appears_after_the_delay(monkeypatch):
 
 
 def test_a_bar_without_any_report(monkeypatch):
-    """While work is prepared, such as particles that settle, a bar says so."""
+    """During preparation, such as the settling of particles, a bar is shown with its name."""
     terminal = make_terminal(monkeypatch)
     with progress_bar(True, "steps", delay=0.0):
         assert "preparing" in drawn(terminal, "preparing")
@@ -99,7 +99,7 @@ def test_no_bar_in_other_threads_inside_bars_and_if_switched_off(monkeypatch):
 
 
 def test_without_rich_nothing_is_drawn(monkeypatch):
-    """A missing rich is no error."""
+    """Without rich, runs finish without a progress bar and without an error."""
     terminal = make_terminal(monkeypatch)
     monkeypatch.setitem(sys.modules, "rich.progress", None)
     with progress_bar(True, "runs", delay=0.0) as report:

@@ -75,7 +75,7 @@ def test_logistic_map_scatters_about_the_exact_exponent():
 
 
 def test_unstable_orbit_of_a_bouncing_ball():
-    """Beyond period doubling, simulated neighbours part at the logarithm of the orbit's known multiplier.
+    """Beyond period doubling, the growth rate of simulated neighbours is the logarithm of the orbit's exact multiplier.
 
     A ball bounces on a table gamma sin t with g = 1, once a cycle. The map from bounce to bounce has determinant e^2 and
     trace 1 + e^2 - (1 + e)^2 gamma sin(phase of the impact).

@@ -59,7 +59,7 @@ def test_coulomb_friction():
 
 
 def test_amplitudes_that_the_decay_does_not_pass_are_nan():
-    """Above the start, below the end, and in the first two cycles nothing is given."""
+    """The curve is NaN above the start, below the end, and in the first two cycles."""
     time = np.arange(0, 3, 1 / 500)
     result = damping_over_amplitude(time, np.exp(-0.02 * W0 * time) * np.cos(W0 * time), [0.005, 0.1, 0.4, 0.9, 2.0])
     assert np.isnan(result.damping_ratio.values).tolist() == [True, False, False, True, True]

@@ -63,7 +63,7 @@ def test_weak_end_does_not_feel_the_strong_start():
 
 
 def test_ends_are_trimmed():
-    """The envelope loses two cycles at each end, the damping ratio three."""
+    """The envelope omits two cycles at each end, the damping ratio three."""
     step, cycle = TIME[1], 0.1
     for result, lost in ((decay_envelope(TIME, free_decay(0.01)), 2), (damping_ratio(TIME, free_decay(0.01)), 3)):
         assert float(result.time[0]) == pytest.approx(lost * cycle, abs=2 * step)
@@ -82,7 +82,7 @@ def test_noise_and_coarse_sampling(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_simulated_oscillator(method):
-    """The free decay of a simulated structure has the damping ratio that was asked for, in its unit."""
+    """The free decay of a simulated structure has the damping ratio of the case, in its unit."""
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass=20.0, stiffness=80e3, damping_ratio=0.02, velocity=0.1),
@@ -112,7 +112,7 @@ def test_bad_decay_is_refused(values, message):
 
 
 def test_bad_method_and_dead_signal_are_refused():
-    """An unknown method and a signal that ends in zeros are refused with what to do."""
+    """An unknown method and a signal that ends in zeros are refused with advice."""
     with pytest.raises(ValueError, match="'hilbert' or 'decrement'"):
         damping_ratio(TIME, free_decay(0.01), method="fit")
     with pytest.raises(ValueError, match=r"zero from 6.* s on"):

@@ -160,3 +160,10 @@ def test_bad_power_is_refused(change, message):
     given = {"force": force, "velocity": velocity, "frequency": 8.0} | change
     with pytest.raises(ValueError, match=message):
         complex_power(time, given["force"], given["velocity"], frequency=given["frequency"])
+
+
+def test_complex_power_without_the_frequency():
+    """`complex_power` raises if the velocity has no component at the frequency."""
+    time = np.linspace(0.0, 1.0, 2001)
+    with pytest.raises(ValueError, match=r"velocity .* 10 Hz"):
+        complex_power(time, np.cos(40 * np.pi * time), np.sin(40 * np.pi * time), frequency=10.0)

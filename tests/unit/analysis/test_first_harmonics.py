@@ -42,7 +42,7 @@ def test_weights_integrate_straight_lines_from_between_two_samples() -> None:
 
 @pytest.mark.parametrize("samples", [8.0, 8.37, 20.0, 20.7])
 def test_a_ball_at_rest_in_its_cavity_has_its_own_mass(samples: float) -> None:
-    """The effective mass of a ball that rides along is its mass, both ways, whatever the number of samples a cycle."""
+    """The effective mass of a ball that rides along is its mass by both measures, for any number of samples a cycle."""
     run = rb.simulate(resting_ball(rate=samples * FREQUENCY))
     result = shaken_cavity(run, frequency=FREQUENCY, after=0.2)
     mass = run.arrays.particle_mass[0]

@@ -136,6 +136,6 @@ def test_miles():
     ],
 )
 def test_bad_input(call, word):
-    """The message names what does not fit."""
+    """The message names the argument that does not fit."""
     with pytest.raises(ValueError, match=word):
         call()

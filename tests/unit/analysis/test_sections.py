@@ -28,7 +28,7 @@ def subharmonic(order, share=0.3, samples=40):
 
 @pytest.mark.parametrize(("order", "points"), [(1, 1), (2, 2), (3, 3)])
 def test_motion_that_repeats_every_n_periods_shows_n_points(order, points):
-    """The section of a motion of period 1, 2 or 3 has as many points."""
+    """The section of a motion of period 1, 2 or 3 has 1, 2 or 3 points."""
     section = poincare_section(subharmonic(order), PERIOD)
     assert section.sizes["time"] == 21
     places = np.round(np.stack([section.position, section.velocity / OMEGA]), 9) + 0.0
@@ -71,7 +71,7 @@ def test_steady_state_of_a_simulated_oscillator_is_one_point():
 
 
 def test_strobes_on_first_and_last_time_count():
-    """Strobes at the first and the last sample are included, whatever the rounding."""
+    """Strobes at the first and the last sample are included, also if rounding puts them outside."""
     time = np.linspace(0.3, 0.3 + 7 * PERIOD, 71)
     section = poincare_section(run_of(time, np.sin(OMEGA * time), OMEGA * np.cos(OMEGA * time)), PERIOD)
     assert section.sizes["time"] == 8

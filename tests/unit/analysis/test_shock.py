@@ -46,7 +46,7 @@ def test_default_frequencies():
 
 
 def test_limits():
-    """A stiff oscillator follows the base, a soft one keeps still: acceleration 1, displacement that of the base."""
+    """A stiff oscillator has the acceleration of the base; a soft one swings freely after the velocity step of the pulse."""
     time, pulse = half_sine(0.011, 50_000.0, 0.05)
     result = shock_response_spectrum(time, pulse, [0.02, 4000.0], damping_ratio=0.05)
     assert float(result.positive[1]) == pytest.approx(1.0, rel=2e-3)
@@ -95,7 +95,7 @@ def test_direction():
     ],
 )
 def test_bad_input(options, word):
-    """What does not fit is named."""
+    """The message names the argument that does not fit."""
     time = np.arange(100) / 1000.0
     with pytest.raises(ValueError, match=word):
         shock_response_spectrum(time, np.sin(time), **options)

@@ -32,7 +32,7 @@ def test_value_is_changed_in_case_and_text(draft):
 
 
 def test_errors_are_found_by_their_field(draft):
-    """Errors have the path of their field, and the case is back when they are mended."""
+    """Errors have the path of their field; after the correction the draft has a case again."""
     draft.set_value(("damper", "gap"), "-0.4 mm")
     draft.set_value(("structure", "stiffness"), "80 kN/s")
     assert draft.case is None

@@ -95,7 +95,7 @@ def test_tricks_with_paths_are_refused(path):
 
 
 def test_large_bodies_are_refused():
-    """A body that says that it is too large is refused, and one in parts is cut."""
+    """A request body whose stated length is too large is refused, and a chunked one is cut at the limit."""
     assert status(headers=[("content-length", str(MOST_BYTES + 1))]) == 413
     assert status(headers=[("content-length", "1e9")]) == 400
     assert status(body=[b"x" * 1_000_000] * 3) is None

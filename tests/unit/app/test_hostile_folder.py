@@ -136,7 +136,7 @@ def test_script_is_valid_python_with_the_case(text):
 
 @pytest.mark.parametrize("error", [MemoryError, RecursionError, OverflowError, ZeroDivisionError])
 def test_no_error_of_a_case_leaves_the_draft(error, tmp_path, monkeypatch):
-    """Whatever a case raises, the page has a message, and no case of an earlier text."""
+    """If a case raises any error, the page shows its message and drops the case of an earlier text."""
     draft = Draft(tmp_path)
     assert draft.case
 
@@ -160,7 +160,7 @@ def test_random_load_without_end(tmp_path):
 
 
 def test_case_names_a_pipe(tmp_path):
-    """A case that names a pipe in the folder is refused and does not wait for the pipe."""
+    """A case that names a pipe in the folder is refused without waiting for a writer."""
     os.mkfifo(tmp_path / "load.csv")
     draft = Draft(tmp_path)
     draft.set_text(
@@ -172,7 +172,7 @@ def test_case_names_a_pipe(tmp_path):
 
 @pytest.mark.parametrize("read", [rb.load, rb.Snapshots])
 def test_results_are_not_read_from_pipes(read, tmp_path):
-    """Reading a pipe with the name of a result is refused and does not wait for somebody to write to it."""
+    """A pipe with the name of a result is refused without waiting for a writer."""
     os.mkfifo(tmp_path / "run.nc")
     with pytest.raises(rb.DataError, match="pipe"):
         read(tmp_path / "run.nc")

@@ -18,7 +18,7 @@ def test_best_gap_of_a_row():
 
 
 def test_impacts_are_chaotic_and_averages_are_not():
-    """Between neighbouring starts the number of impacts jumps, and the RMS displacement hardly changes."""
+    """Between neighbouring starts the number of impacts jumps, while the RMS displacement changes little."""
     case = rb.Case.from_toml(template("steel_ball"))
     study = rb.sweep(case, {"damper.start": rb.linspace(-0.1, 0.1, 21)}, ["impacts", "rms"], progress=False)
     assert np.ptp(study.impacts.values) > 20

@@ -63,7 +63,7 @@ def test_case_is_computed_run_and_mapped(tmp_path):
 
 
 def test_errors_are_beside_their_field(tmp_path):
-    """A wrong value is shown at its input, in the words of the library, and goes away."""
+    """The message of a wrong value is shown at its input, as in the library, until the value is mended."""
 
     async def visit():
         async with opened(tmp_path) as (page, user, _):

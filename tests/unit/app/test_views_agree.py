@@ -296,7 +296,7 @@ def test_two_pages_save_two_runs(tmp_path):
 
 
 def test_file_that_takes_the_name_of_a_run_stays(tmp_path):
-    """A run whose file name somebody takes while it computes is stored with another name, with its case and snapshots."""
+    """A run whose file name is taken by another process is stored under another name, with its case and snapshots."""
     run = rb.simulate(rb.reference_case(duration=0.05))
     assert results.new_name(tmp_path, "run", "typed") == "run-001"
     (tmp_path / "run-001.nc").write_text("mine")

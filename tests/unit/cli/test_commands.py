@@ -160,7 +160,7 @@ def test_schema_that_cannot_be_written(tmp_path: Path, run_cli: RunCli) -> None:
 
 
 def test_pack_does_not_overwrite_its_case(tmp_path: Path, run_cli: RunCli) -> None:
-    """The case file stays, and a folder that does not exist is named."""
+    """The case file is not changed, and the message names the missing folder."""
     case = tmp_path / "case.toml"
     rb.reference_case(duration=0.1).to_file(case)
     before = case.read_bytes()

@@ -11,7 +11,7 @@ import rattlebox as rb
     [([-1.0, 1.0], [0.0, 2.0]), ([-1.0, 0.0, 1.0], [3.0, 1.0, -2.0]), ([-2.0, -0.3, 0.4, 1.0], [1.0, -4.0, 2.0, 0.5])],
 )
 def test_records_that_begin_before_the_run(times: list[float], values: list[float]) -> None:
-    """A base is at rest at 0 whatever its record held before, and then moves as its acceleration says, integrated twice."""
+    """A base starts at rest at 0, also if its record begins earlier, and then moves by its acceleration integrated twice."""
     fine = np.linspace(0.0, 1.0, 200_001)
     displacement, velocity, acceleration = rb.Record(times=times, values=values, unit="m/s^2").motion(fine)
     np.testing.assert_allclose(acceleration, np.interp(fine, times, values), atol=1e-12)

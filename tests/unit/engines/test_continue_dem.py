@@ -67,7 +67,7 @@ def test_another_frequency_continues_without_a_jump() -> None:
 
 
 def test_diagnostics_count_from_the_begin() -> None:
-    """Extremes of a run are its own: the speed of impacts falls when the load ends and the balls come to rest."""
+    """Extremes of a continued run exclude the run before: the speed of impacts falls when the load ends."""
     first, end = continue_dem(case(3), None, threads=1)
     still: dict[str, Any] = {
         "structure": rb.SDOF(mass="1 kg", frequency="30 Hz", damping_ratio=1.0),

@@ -298,7 +298,7 @@ def test_particles_inserted_at_random_do_not_overlap(filled: float) -> None:
 
 
 def test_an_overfull_cavity_is_refused() -> None:
-    """If there is no room, insertion raises an error."""
+    """Insertion into a full cavity raises an error."""
     with pytest.raises(rb.CaseError, match="would fill 71 % of the cavity, cannot be inserted at random"):
         push_apart(CUBE, np.zeros((100, 3)) + np.linspace(0, 1e-3, 300).reshape(100, 3), np.full(100, 4.77e-3), 2e-3)
 

@@ -55,8 +55,8 @@ def test_a_start_in_a_wall_is_refused_wherever_the_structure_is(start: Any) -> N
 def test_a_run_continues_from_its_relative_position() -> None:
     """A run that starts from the end of another one, with its relative position, has the same impacts."""
     whole = rb.simulate(case(0.0, 0.4).replaced({"duration": 0.45}))
-    begin = rb.simulate(case(0.0, 0.4).replaced({"duration": 0.21}))
-    end = begin.motion.isel(time=-1)
+    first = rb.simulate(case(0.0, 0.4).replaced({"duration": 0.21}))
+    end = first.motion.isel(time=-1)
     time = float(end.time)
     rest = rb.simulate(
         case(float(end.displacement[0]), f"{float(end.relative_position[0])!r} m").replaced(

@@ -127,7 +127,7 @@ def test_far_too_many_are_refused_at_once(packing: Any, amount: dict[str, Any]) 
     )
     for size in sizes:
         tracemalloc.start()
-        begin = time.perf_counter()
+        start = time.perf_counter()
         with pytest.raises(rb.CaseError, match="do not fit"):
             rb.ParticleDamper(
                 particles=rb.Particles(material="steel", **size, **amount),
@@ -135,7 +135,7 @@ def test_far_too_many_are_refused_at_once(packing: Any, amount: dict[str, Any]) 
                 contact=rb.Tsuji(restitution=0.6),
                 packing=packing,
             )
-        took = time.perf_counter() - begin
+        took = time.perf_counter() - start
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert took < 2
@@ -154,7 +154,7 @@ def test_more_than_memory_holds_is_refused_before_it_is_made(monkeypatch: pytest
 
 
 def test_a_fill_ratio_of_a_damper_is_one_of_its_particles() -> None:
-    """Amounts and sizes asked of the damper are suggested where they belong, in cases and along axes."""
+    """For amounts and sizes set on the damper, the message suggests the path of its particles, in cases and axes."""
     usual: dict[str, Any] = {"cavity": CAVITIES["can"], "contact": rb.Tsuji(restitution=0.6)}
     steel = rb.Particles(material="steel", diameter="8 mm", count=20)
     for name in ("fill_ratio", "count", "diameter"):

@@ -1,4 +1,4 @@
-"""Which times are recorded when nobody has chosen any."""
+"""Default times of the output."""
 
 from pathlib import Path
 from typing import Any
@@ -18,19 +18,19 @@ def example(name: str, **changes: Any) -> rb.Case:
 
 @pytest.mark.parametrize("method", [rb.EventDriven(), rb.Newton()], ids=lambda m: m.kind)
 def test_flights_are_drawn_from_wall_to_wall(method: Any) -> None:
-    """The default output holds begin and end of every contact, at the wall, with the velocities of the log."""
+    """The default output holds start and end of every contact, at the wall, with the velocities of the log."""
     a = rb.simulate(example("steel_ball_jackson_green.toml", method=method)).arrays
     log, half = a.impacts, a.clearance[0] / 2
     side = np.where(log.contact == 0, -1.0, 1.0)
-    begin = np.searchsorted(a.time, log.time)
-    assert np.array_equal(a.time[begin], log.time)
-    assert side * a.relative_position[begin, 0] == pytest.approx(half, rel=1e-9)
-    assert side * a.relative_velocity[begin, 0] == pytest.approx(log.approach_speed, rel=1e-6, abs=1e-9)
+    start = np.searchsorted(a.time, log.time)
+    assert np.array_equal(a.time[start], log.time)
+    assert side * a.relative_position[start, 0] == pytest.approx(half, rel=1e-9)
+    assert side * a.relative_velocity[start, 0] == pytest.approx(log.approach_speed, rel=1e-6, abs=1e-9)
     opened = np.nextafter(log.time + log.duration, np.inf)
     end = np.searchsorted(a.time, opened)
     assert -side * a.relative_velocity[end, 0] == pytest.approx(log.separation_speed, rel=1e-6, abs=1e-9)
     if method.kind == "event_driven":  # the sample at the deepest overlap
-        inside = [np.max(side[k] * a.relative_position[begin[k] : end[k], 0] - half) for k in range(log.time.size)]
+        inside = [np.max(side[k] * a.relative_position[start[k] : end[k], 0] - half) for k in range(log.time.size)]
         assert inside == pytest.approx(log.peak_overlap, rel=1e-6)
 
 
@@ -127,3 +127,8 @@ def test_run_of_very_many_events_is_sampled_evenly(monkeypatch: pytest.MonkeyPat
     for module in ("prepare.pack", "engines.simulate"):
         monkeypatch.setattr(f"rattlebox.{module}.MAX_EVENTS", 10)
     assert np.array_equal(rb.simulate(case).arrays.time, case.sample_times())
+
+
+def test_number_of_snapshots_from_numpy() -> None:
+    """NumPy integers are accepted as a number of snapshots."""
+    assert rb.Output(snapshots=np.int64(20)).snapshots == 20

@@ -1,4 +1,4 @@
-"""Variants packed by broadcasting are those packed one by one, to the last bit."""
+"""Variants packed by broadcasting have the same bits as variants packed one by one."""
 
 from __future__ import annotations
 
@@ -215,7 +215,7 @@ def objects(*values: Any) -> np.ndarray:
     ],
 )
 def test_numbers(case: rb.Case, path: str, values: np.ndarray) -> None:
-    """A number that varies along an axis, alone or on a grid with gravity, gives the very bits of single cases."""
+    """A number that varies along an axis, alone or on a grid with gravity, gives the same bits as single cases."""
     check(case, {path: values})
     last = "damper" if len(case.dampers) == 1 else "dampers[1]"
     if path != "damper.gravity":
@@ -332,7 +332,7 @@ def test_no_axes() -> None:
     ],
 )
 def test_what_does_not_fit(path: str, values: list[Any], parts: list[str]) -> None:
-    """Variants that are no cases, or no cases of one kind, are refused with the variant or the path."""
+    """Objects that are not cases, and cases of different kinds, are refused with their index or the path."""
     column = np.array(values) if all(isinstance(value, (int, float)) for value in values) else objects(*values)
     with pytest.raises(rb.CaseError) as caught:
         pack_batch(YIELDING, {path: column}, column.shape)
@@ -397,3 +397,9 @@ def test_the_same_axis_may_be_a_view() -> None:
     packed = pack_batch(YIELDING, {"damper.gap": gap}, (3, 4))
     assert np.array_equal(packed.dampers[0].clearance, 2 * gap)
     assert packing.pack(YIELDING).dampers[0].clearance == 8e-4
+
+
+def test_cases_from_a_generator() -> None:
+    """`simulate_many` accepts any iterable of cases."""
+    runs = rb.simulate_many(rb.reference_case(duration=0.01 * k) for k in (1, 2))
+    assert [run.arrays.time[-1] for run in runs] == [0.01, 0.02]

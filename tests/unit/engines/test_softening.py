@@ -155,7 +155,7 @@ def test_the_resonance_falls_with_softening() -> None:
     ("amplitude", "frequency", "limit"), [(49, 400, "the loss"), (15, 160, "the loss"), (30, 20, "overlaps")]
 )
 def test_auto_takes_the_largest_within_its_bounds(amplitude: float, frequency: float, limit: str) -> None:
-    """It runs as that number does, says so, and has no warning."""
+    """A run with the automatic softening equals one with its value, notes the value, and has no warning."""
     run = rb.simulate(small(amplitude, frequency, "auto"))
     chosen = run.diagnostics["softening"]
     assert chosen > 1
@@ -175,14 +175,14 @@ def test_auto_takes_the_largest_within_its_bounds(amplitude: float, frequency: f
     ],
 )
 def test_auto_is_one_where_nothing_can_be_promised(changes: dict[str, Any]) -> None:
-    """For beds that stay on the floor, and without weight."""
+    """The automatic softening is 1, with a note, for beds that stay on the floor and without gravity."""
     run = rb.simulate(small(**{"amplitude": 30.0, "frequency": 100, "softening": "auto", "cycles": 2, **changes}))
     assert run.diagnostics["softening"] == 1
     assert any(note.startswith("softening 1: ") for note in run.notes)
 
 
 def test_auto_on_a_structure_looks_at_its_modes() -> None:
-    """The higher their frequency, the less."""
+    """The automatic softening is lower if the modes of the structure have higher frequencies."""
 
     def softening(stiffness: float) -> float:
         structure = rb.SDOF(mass="1 kg", stiffness=stiffness, velocity="0.3 m/s")
@@ -267,7 +267,7 @@ def rolling_balls(softening: float, **changes: Any) -> rb.Run:
 
 
 def test_a_rolling_ball_does_not_lose_more_with_softening() -> None:
-    """Its contact endures, its loss is the same within 1 % at softening 1 and 200, and there is no warning.
+    """The contact of a resting ball lasts; its loss agrees within 1 % at softening 1 and 200, and there is no warning.
 
     No test saw the warning of a rolling ball: the tests of enduring contacts had beds at rest only.
     """

@@ -18,7 +18,7 @@ OTHERS_NEVER = {"step_too_small": "event_driven", "no_rebound": "two_step"}
 @pytest.mark.parametrize("method", LACKS)
 @pytest.mark.parametrize("status", Status)
 def test_advice_fits_the_method(status: Status, method: str) -> None:
-    """A run that failed says what to try, and neither to use the method it used nor to set what that method lacks."""
+    """The status of a failed run has advice that names neither the method in use nor fields that this method lacks."""
     name, message = describe(status, 0.5, "damper (trailing wall)", 0.1, method)
     happened = MESSAGES[status].format(time=0.5, contact="damper (trailing wall)", value=0.1)
     assert message.startswith(happened)
@@ -41,7 +41,7 @@ def test_advice_fits_the_method(status: Status, method: str) -> None:
     ids=lambda law: law.kind,
 )
 def test_dashpot_does_not_stop_a_ball(law: rb.JacksonGreen | rb.Tabulated, method: rb.Newton, status: str) -> None:
-    """A law that takes all of an impact's energy ends a run with soft contacts, which says so; hard impacts can do it."""
+    """A law with restitution 0 ends a run with soft contacts with a status; hard impacts accept it."""
     run = rb.simulate(
         rb.Case(
             structure=rb.Fixed(),

@@ -48,7 +48,7 @@ def test_spellings(cause: Any, reason: str) -> None:
 
 
 def test_other_parts_keep_their_advice() -> None:
-    """A shape of a beam is no shape of a particle, and a similar name of a field remains the advice."""
+    """A shape of a beam is not advised for a particle; the message advises a field with a similar name."""
     with pytest.raises(rb.CaseError, match="did you mean 'shapes'"):
         rb.Modal(frequencies=["10 Hz"], shape=[1.0])
     with pytest.raises(rb.CaseError, match="known: bending_stiffness"):

@@ -223,7 +223,7 @@ def test_variables_without_a_record(
     ],
 )
 def test_names_among_other_lines_above_the_data(tmp_path: Path, text: str) -> None:
-    """The line of column names is recognised below titles and above units; lines of text and numbers are no data."""
+    """The line of column names is recognised below titles and above units; lines of text and numbers are not data."""
     (tmp_path / "push.csv").write_text(text)
     record = rb.Record(file=tmp_path / "push.csv", columns=("t", "a"))
     assert points(record) == ((0, 1), (1, 2))
@@ -276,7 +276,7 @@ UNITS_ABOVE = {
 
 @pytest.mark.parametrize("above", UNITS_ABOVE, ids=str)
 def test_units_above_columns_are_applied(tmp_path: Path, above: str) -> None:
-    """Times and values have the units in the header; text that is no unit is part of the name."""
+    """Times and values have the units in the header; other text belongs to the name."""
     (tmp_path / "push.csv").write_text(f"{above}\n0,1\n2,3\n", encoding="utf-8")
     slower, scale, unit = UNITS_ABOVE[above]
     record = rb.Record(file=tmp_path / "push.csv")

@@ -64,7 +64,7 @@ def test_laws_of_a_pair_override_the_mean() -> None:
 
 
 def test_no_friction_is_a_coefficient_of_zero() -> None:
-    """The mean of no friction and a law is that law with the mean coefficient."""
+    """The mean of a law and no friction is that law with half of its coefficient."""
     own = [rb.PairLaws(between=("soft", "soft"), friction=rb.Mindlin(0.4, damping=0.5))]
     made = damper(friction=None, rolling=None, pairs=own, mixing="arithmetic")
     assert entry(made, "hard", "soft").friction == rb.Mindlin(0.2, damping=0.5)

@@ -242,7 +242,7 @@ def test_random_record_has_its_density() -> None:
 
 @pytest.mark.parametrize(("duration", "rate"), [(0.333, 1000), (0.3, 1000), (0.07, 1000), (0.29, 1000), (1 / 3, 3000)])
 def test_random_record_covers_its_duration(duration: float, rate: float) -> None:
-    """A random record ends at its duration or at the first sample after it, whatever the rounding."""
+    """A random record ends at its duration or at the first sample after it, for any rounding of the step."""
     record = rb.Random([(10.0, 1.0), (50.0, 1.0)], duration, rate)
     assert len(record.times) == 1 + math.ceil(round(duration * rate, 9))
     rb.Case(structure=rb.SDOF(mass=1.0, stiffness=1.0), load=record, duration=duration)
@@ -402,7 +402,7 @@ def test_library_agrees_with_its_sources() -> None:
 
 
 def test_a_ball_with_measured_mass_and_contact_time() -> None:
-    """A ball with a given mass and contact time has them whatever the modulus of its material."""
+    """A ball with a given mass and contact time has them for any modulus of its material."""
     for material in ("steel", "nylon"):
         ball = rb.Sphere(diameter="24 mm", material=material, mass="36 g")
         damper = rb.ImpactDamper(
@@ -452,3 +452,9 @@ def test_seeds_beyond_64_bits_are_refused(seed: int) -> None:
         rb.Case(**options, seed=seed)
     limit = "must be at least 0" if seed < 0 else "must be at most 9.22337e+18"
     assert str(caught.value).splitlines() == [f"Case: seed = {seed}", f"  {limit}"]
+
+
+def test_the_library_of_materials_is_a_copy() -> None:
+    """Changing the returned dictionary does not change the library."""
+    rb.materials().pop("steel")
+    assert rb.Sphere(radius="1 mm", material="steel").material.density == 7850

@@ -76,7 +76,7 @@ TWO = rb.Case(
 def test_a_path_is_found(
     case: rb.Case, path: str, place: paths.Place, value: object, unit: str | None, short: str | None
 ) -> None:
-    """A path leads to one place, with its value and unit, and the place is spelt as briefly as it can be."""
+    """A path leads to one field, with its value and unit, and the field has its shortest path."""
     assert paths.place_of(case, path) == place
     assert paths.get(case, path) == (pytest.approx(value) if isinstance(value, float) else value)
     assert paths.unit_of(case, path) == unit
@@ -113,7 +113,7 @@ def test_numbers_of_restitution_have_no_unit() -> None:
     ],
 )
 def test_a_path_that_leads_nowhere(case: rb.Case, path: str, parts: list[str]) -> None:
-    """A wrong path is refused with what is wrong and what is near."""
+    """A wrong path is refused with the reason and similar paths."""
     with pytest.raises(rb.CaseError) as caught:
         paths.place_of(case, path)
     for part in parts:
@@ -156,7 +156,7 @@ def test_a_value_is_replaced(path: str, value: object, seen: object) -> None:
     ],
 )
 def test_a_value_replaces_its_alternative(case: rb.Case, path: str, value: object, gone: str) -> None:
-    """What says the same thing in another way is dropped."""
+    """A replaced field removes other fields that state the same quantity."""
     assert paths.get(paths.replaced(case, {path: value}), gone) is None
 
 

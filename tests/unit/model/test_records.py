@@ -1,4 +1,4 @@
-"""Records of other programs: scale, units in any place of the text, counts in the first line, samples row by row, begin."""
+"""Records of other programs: scale, units in any place of the text, counts in the first line, samples row by row, start."""
 
 from __future__ import annotations
 
@@ -186,7 +186,7 @@ def test_units_that_are_not_clear_are_refused(tmp_path: Path, head: str, words: 
     "head", ["EPICENTER 39.939N 77.339E DEPTH 9 KM", "mass 5 kg, stroke 10 mm", "Station Height(m) 34", "made in a lab"]
 )
 def test_units_of_other_things_are_no_units_of_the_values(tmp_path: Path, head: str) -> None:
-    """Coordinates, depths and strokes are no units of the values; the note does not deny that there are units."""
+    """Units of coordinates, depths and strokes are not used for the values; the note does not deny that they exist."""
     (tmp_path / "a.txt").write_text(table(head, 1.0))
     (note,) = plausibility_notes(case(rb.Record.from_file(tmp_path / "a.txt")))
     assert "m/s^2 is assumed" in note and "no unit that is recognised" in note and "states no unit" not in note
@@ -209,7 +209,7 @@ COUNTED = {
 
 @pytest.mark.parametrize("head", COUNTED)
 def test_a_number_of_samples_is_no_data(tmp_path: Path, head: str) -> None:
-    """A first line with the number of samples, or that and the time step, is no data, and is noted.
+    """A first line with the number of samples, with or without the time step, is not read as data, and is noted.
 
     The first line of each table in tests was data or text.
     """
@@ -226,7 +226,7 @@ def test_a_number_of_samples_is_no_data(tmp_path: Path, head: str) -> None:
 
 
 def test_a_number_of_samples_that_does_not_fit(tmp_path: Path) -> None:
-    """A number of samples of which the file has others is refused or noted, and is data in no case."""
+    """A stated number of samples that differs from the rows is refused or noted, and is never read as data."""
     (tmp_path / "a.txt").write_text("900\n" + "\n".join(f"{a!r}" for a in SHAKE.tolist()))
     with pytest.raises(rb.DataError, match="900 is no number of samples, of which 203 follow"):
         rb.Record.from_file(tmp_path / "a.txt", dt=STEP)
@@ -282,7 +282,7 @@ def test_velocities_are_refused(tmp_path: Path, head: str) -> None:
 
 @pytest.mark.parametrize("first", ["203.5 0.0125", "3 0.7", "-203 0.0125", "0 0.1"])
 def test_other_first_lines_are_data(tmp_path: Path, first: str) -> None:
-    """Numbers that are no number of samples remain the first row."""
+    """A first line that is not a number of samples is read as the first row."""
     (tmp_path / "a.txt").write_text(f"{first}\n400 1.0\n500 2.0\n600 3.5\n")
     record = rb.Record.from_file(tmp_path / "a.txt", unit="N")
     assert len(record.times) == 4
@@ -292,7 +292,7 @@ def test_other_first_lines_are_data(tmp_path: Path, first: str) -> None:
 @pytest.mark.parametrize("count", [203, 200, 240, 41])
 @pytest.mark.parametrize("head", ["", "MOTION OF A TABLE\n", "one two three four five six seven eight\n"])
 def test_samples_row_by_row_are_never_thinned(tmp_path: Path, width: int, count: int, head: str) -> None:
-    """Samples that go on from row to row are read whole, or refused with advice that reads them whole.
+    """Samples that continue from row to row are read completely, or refused with advice that reads them completely.
 
     The tables of tests had a column for each quantity, and the advice of no message was followed.
     """
@@ -343,20 +343,20 @@ def test_a_step_that_contradicts_the_first_column_is_noted(tmp_path: Path) -> No
     assert any("dt is 0.02 s, but the first column rises evenly by 0.0125" in note for note in record.notes())
 
 
-@pytest.mark.parametrize("begin", [-0.5, 0.0125, 9.4])
-def test_a_record_that_does_not_begin_at_zero(tmp_path: Path, begin: float) -> None:
-    """Points before 0 s are left out with a note, a later begin is refused with advice, and `time_zero` controls both."""
-    np.savetxt(tmp_path / "a.txt", np.column_stack([TIMES + begin, SHAKE]), fmt="%.16e")
+@pytest.mark.parametrize("start", [-0.5, 0.0125, 9.4])
+def test_a_record_that_does_not_begin_at_zero(tmp_path: Path, start: float) -> None:
+    """Points before 0 s are left out with a note, a later start is refused with advice, and `time_zero` controls both."""
+    np.savetxt(tmp_path / "a.txt", np.column_stack([TIMES + start, SHAKE]), fmt="%.16e")
     first = rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", time_zero="first")
     np.testing.assert_allclose(first.evaluate(TIMES), SHAKE, rtol=1e-9, atol=1e-9)
     assert any("is shifted" in note for note in first.notes())
     again = rb.Case.from_toml(case(first).to_toml())
     assert again == case(first) and again.replaced({"base.scale": 1.0}) == case(first)
-    later = rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", time_zero=f"{begin + 1} s")
+    later = rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2", time_zero=f"{start + 1} s")
     np.testing.assert_allclose(later.evaluate([0.1]), np.interp(1.1, TIMES, SHAKE), rtol=1e-9)
     assert any("80 points before" in note for note in later.notes())
     as_it_is = rb.Record.from_file(tmp_path / "a.txt", unit="m/s^2")
-    if begin > 0:
+    if start > 0:
         with pytest.raises(rb.CaseError, match='try: time_zero = "first"'):
             case(as_it_is)
     else:
@@ -407,7 +407,7 @@ def test_advice_for_displacements_is_right() -> None:
 
 
 def test_a_ton_is_refused() -> None:
-    """A ton is another mass in each country; the advised units are read as what they are."""
+    """A ton differs between countries and is refused; the advised units are read with their exact masses."""
     for text in ("20 ton", "20 tons", "2 Ton", "2 kton"):
         with pytest.raises(rb.CaseError, match=r'"\d+ t" or "\d+ short_ton" or "\d+ long_ton"') as error:
             rb.SDOF(mass=text, stiffness=1)

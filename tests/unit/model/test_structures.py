@@ -234,7 +234,7 @@ def rates(modes: ModalModel) -> Any:
 
 
 def test_damping_ratios_of_matrices() -> None:
-    """One ratio serves for all modes, a list for each, Rayleigh's for its two constants; two kinds are refused."""
+    """Damping is one ratio for all modes, a list of ratios, or Rayleigh's two constants; two of these are refused."""
     given: dict[str, Any] = {"M": [[2, 0], [0, 1]], "K": [[3e4, -1e4], [-1e4, 1e4]], "points": {"tip": 1}}
     np.testing.assert_allclose(rates(rb.Matrices(**given, damping_ratio=0.02).modes()), 0.02, rtol=1e-14)
     np.testing.assert_allclose(

@@ -57,7 +57,7 @@ def test_units_of_time(tmp_path: Path, unit: str, factor: float) -> None:
 
 
 def test_unknown_units_of_time_are_refused(tmp_path: Path) -> None:
-    """Times in an unknown unit are refused with what to write."""
+    """Times in an unknown unit are refused with advice."""
     with pytest.raises(rb.DataError, match=r'fortnight.* is not a unit of time.*\n  try: .*"time \(s\)"'):
         rb.Record(file=written(tmp_path, "t (fortnight),x (N)"))
 
@@ -142,7 +142,7 @@ def test_units_of_densities(given: dict[str, Any], factor: float, unit: str | No
     ],
 )
 def test_wrong_units_of_densities(psd: Any, options: dict[str, Any], message: str) -> None:
-    """Units that are none of a density, or contradict each other, are refused with what to write."""
+    """Units of other dimensions than a density, and units that contradict each other, are refused with advice."""
     with pytest.raises(rb.CaseError, match=message):
         rb.Random(psd, 1.0, **options)
 

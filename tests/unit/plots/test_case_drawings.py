@@ -192,6 +192,6 @@ def test_run_draws_its_case(tmp_path: Path) -> None:
 
 
 def test_other_objects_are_refused() -> None:
-    """Only cases are drawn."""
+    """An object that is not a case is refused."""
     with pytest.raises(TypeError, match="a case is needed"):
         rb.plot_case("case.toml")  # type: ignore[arg-type]

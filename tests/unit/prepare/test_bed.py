@@ -146,7 +146,7 @@ def test_a_bed_has_the_stated_volume(form: str, packing: str, fill: float) -> No
 
 
 def test_more_friction_needs_fewer_particles_for_the_same_bed() -> None:
-    """A settled bed is the looser the more friction; a compacted one has at least as many particles."""
+    """More friction gives a looser settled bed; a compacted bed has at least as many particles."""
     counts = [damper(packing=rb.Settled(), friction=friction).contents.radius.size for friction in (0.1, 0.3, 1)]
     assert counts[0] > counts[1] > counts[2]
     assert damper(friction=1).contents.radius.size > counts[2]
@@ -283,7 +283,7 @@ def test_the_summary_lists_both_fills(tmp_path: Any) -> None:
 
 
 def test_a_bed_of_another_volume_is_noted() -> None:
-    """Without friction a full bed sinks, and the run says so."""
+    """A full bed without friction sinks, and the run has a note."""
     smooth = damper(bed_fill=1, friction=None)
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=smooth, duration="0.1 ms"))
     assert any("not 100 %" in note and "more of them" in note for note in run.notes)
@@ -416,7 +416,7 @@ def test_a_full_bed_is_loose_and_a_block_is_locked() -> None:
 
 
 def test_a_full_bed_below_its_weight_has_no_warning() -> None:
-    """Below 1 g the bed rests, whatever its fill; without gravity it is loose at any level."""
+    """Below 1 g a bed of any fill rests; without gravity it is loose at any level."""
     assert not any("is loose" in note for note in shaken_can(0.5).notes)
     space = shaken_can(0.5, gravity=(0, 0, 0))
     assert any("is loose" in note and "without gravity" in note for note in space.notes)

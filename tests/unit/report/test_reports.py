@@ -267,7 +267,7 @@ def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, m
 
 @pytest.mark.parametrize("name", ["frequency_response", "lyapunov of pairs", "loss_map", "sensitivity with options"])
 def test_a_study_from_a_netcdf_file_has_the_same_script(name: str, tmp_path: Path) -> None:
-    """Attributes that come back from a file as NumPy numbers are written as plain ones."""
+    """Attributes that a file returns as NumPy numbers are written as plain numbers."""
     result_of(name).to_netcdf(tmp_path / "study.nc")
     with xr.open_dataset(tmp_path / "study.nc") as stored:
         again = Page(rb.write_report(stored.load(), tmp_path / "report.html"))
@@ -397,7 +397,7 @@ def test_only_unchanged_reports_are_replaced(tmp_path: Path) -> None:
     [("report.pdf", "HTML"), ("run.nc", "run.save"), ("missing/report.html", "no folder")],
 )
 def test_bad_names_are_refused(name: str, words: str, tmp_path: Path) -> None:
-    """The name of another kind of file, or in a missing folder, is an error before anything is drawn."""
+    """A file name with another suffix, or in a missing folder, is refused before anything is drawn."""
     with pytest.raises(rb.DataError, match=words):
         result_of("run").report(tmp_path / name)
     assert list(tmp_path.iterdir()) == []
@@ -405,7 +405,7 @@ def test_bad_names_are_refused(name: str, words: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("result", [3, "out", {}, {"a": 3}, [1]])
 def test_other_objects_have_no_report(result: Any, tmp_path: Path) -> None:
-    """What is not a result is an error that lists what is."""
+    """An object that is not a result is refused with the list of results."""
     with pytest.raises(rb.CaseError, match=r"rb\.compare"):
         rb.write_report(result, tmp_path / "report.html")
 
@@ -419,7 +419,7 @@ def test_dataset_without_its_case(tmp_path: Path) -> None:
 
 
 def test_run_whose_case_names_a_missing_file(tmp_path: Path) -> None:
-    """A run whose case can no longer be read has a report, which states that."""
+    """The report of a run whose case can no longer be read states this."""
     record = tmp_path / "pulse.csv"
     record.write_text("t (s),F (N)\n0,0\n0.01,5\n0.02,0\n1,0\n")
     rb.simulate(case(load=rb.Record(file=str(record)))).save(tmp_path / "run.nc")

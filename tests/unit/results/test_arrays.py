@@ -1,4 +1,4 @@
-"""The arrays are what they say: shapes, types, labels, equality."""
+"""Arrays of results: shapes, types, labels, equality."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_times_must_increase(time: list[float]) -> None:
 
 
 def test_wrong_kind_of_number_is_refused() -> None:
-    """Fractions cannot stand for the index of a damper."""
+    """Fractions are refused as indices of dampers."""
     with pytest.raises(TypeError, match="ball_damper"):
         RunArrays(time=np.zeros(1), dampers=("d",), balls=("d/1",), ball_damper=np.array([0.5]))
 
@@ -95,7 +95,7 @@ def test_runs_travel_between_processes(two_dampers: Run) -> None:
 
 
 def test_how_a_run_was_computed_does_not_count(run: Run) -> None:
-    """Runs differ by their case, counts and results, not by when, where, how fast and in how much memory they came to be."""
+    """Runs differ by their case, counts and results, not by date, machine, computing time and memory."""
     counts = {**run.counts, "memory_bytes": 1000}
     elsewhere = replace(run.provenance, version="9.9", created="2031-01-01", platform="elsewhere")
     assert replace(run, counts=counts, wall_time=5.0, provenance=elsewhere) == run
@@ -186,3 +186,11 @@ def test_contacts_have_names(two_dampers: Run) -> None:
         "ball 2 - ball 3",
         "leading wall",
     )
+
+
+def test_impacts_stay_read_only_when_copied() -> None:
+    """The log of impacts is read-only, also after pickling."""
+    run = pickle.loads(pickle.dumps(rb.simulate(rb.reference_case(duration=0.1))))
+    assert run.arrays.impacts.time.size > 0
+    with pytest.raises(ValueError, match="read-only"):
+        run.arrays.impacts.time[0] = 9.0

@@ -233,7 +233,7 @@ def test_damaged_files_are_refused(run: Run, tmp_path: Path) -> None:
 
 
 def test_a_file_without_permission_to_read(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The error for an unreadable file has the reason that the operating system gives."""
+    """The error for an unreadable file has the reason of the operating system."""
     path = run.save(tmp_path / "run.nc")
 
     def forbidden(self: Path, *_: object) -> None:
@@ -338,3 +338,13 @@ def test_csv_needs_a_folder(run: Run, tmp_path: Path) -> None:
     with pytest.raises(rb.DataError, match="notes is a file; "):
         run.to_csv(tmp_path / "notes")
     assert (tmp_path / "notes").read_text() == "mine"
+
+
+def test_saving_through_a_link_writes_its_target(tmp_path: Path) -> None:
+    """A run that is saved under the name of a symbolic link is written to the target of the link."""
+    (tmp_path / "kept.nc").touch()
+    (tmp_path / "latest.nc").symlink_to(tmp_path / "kept.nc")
+    run = rb.simulate(rb.reference_case(duration=0.01))
+    run.save(tmp_path / "latest.nc")
+    assert (tmp_path / "latest.nc").is_symlink()
+    assert rb.load(tmp_path / "kept.nc").arrays == run.arrays

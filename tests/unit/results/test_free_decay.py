@@ -47,7 +47,7 @@ def test_a_decay_about_a_displaced_equilibrium() -> None:
 
 
 def test_after_a_load() -> None:
-    """The decay begins when the load has ended; of steady motion there is none."""
+    """The decay begins when the load has ended; a steady motion has no decay."""
     structure = rb.Beam(length="0.4 m", width="30 mm", height="20 mm", material="steel", damping_ratio=0.01)
     pulse = rb.HalfSine(amplitude="100 N", duration="2 ms", point="tip")
     struck = decay(structure=structure, load=pulse)

@@ -40,7 +40,7 @@ def test_quantities(value: float, unit: str, text: str) -> None:
 
 
 def test_prefix_of_a_chosen_least() -> None:
-    """With a least of a tenth, 0.4 mm stays in millimetres."""
+    """If numbers from 0.1 are allowed, 0.4 mm is written in millimetres."""
     assert prefix(4e-4, 0.1) == (1e-3, "m")
     assert prefix(4e-4) == (1e-6, "µ")
     assert digits(2.0, 2) == "2.0"

@@ -13,14 +13,14 @@ from rattlebox.studies.calibration.restitution import impacts_of
 BALL = rb.Sphere(diameter="3 mm", material="glass")
 
 
-def bounces(e: Any, first: float = 0.4, count: int = 7, begin: float = 0.1) -> np.ndarray:
+def bounces(e: Any, first: float = 0.4, count: int = 7, start: float = 0.1) -> np.ndarray:
     """Return times of contacts with a restitution, or one for each contact."""
     flights = first * np.concatenate([[1.0], np.cumprod(np.broadcast_to(e, (count - 2,)))])
-    return begin + np.concatenate([[0.0], np.cumsum(flights)])
+    return start + np.concatenate([[0.0], np.cumsum(flights)])
 
 
 def test_restitution_of_a_drop_is_the_root_of_the_heights() -> None:
-    """Heights without scatter give the exact value; the interval has no width and a warning says so."""
+    """Heights without scatter give the exact value; the interval has no width, with a warning."""
     result = rb.calibrate(rb.Drops(height=["1 m", "1 m"], rebound=["64 cm", "640 mm"]))
     assert result.value.item() == pytest.approx(0.8, rel=1e-12)
     assert result.upper.item() - result.lower.item() < 1e-12
@@ -30,8 +30,8 @@ def test_restitution_of_a_drop_is_the_root_of_the_heights() -> None:
 
 def test_restitution_of_bounces_is_the_ratio_of_flights() -> None:
     """Times of contacts of a constant restitution give it, from any first time."""
-    for begin in (-3.0, 0.0, 12.0):
-        result = rb.calibrate(rb.BounceTimes(bounces(0.73, begin=begin)))
+    for start in (-3.0, 0.0, 12.0):
+        result = rb.calibrate(rb.BounceTimes(bounces(0.73, start=start)))
         assert result.value.item() == pytest.approx(0.73, rel=1e-9)
     drops = [(1e3 * bounces(0.73, count=count), "ms") for count in (5, 7)]
     assert rb.calibrate(rb.BounceTimes(drops)).value.item() == pytest.approx(0.73, rel=1e-9)
@@ -150,7 +150,7 @@ def test_a_missed_contact_is_found() -> None:
 
 
 def test_values_without_units_are_noted() -> None:
-    """Numbers without units are SI, which a note says; a drop from 300 m is doubtful."""
+    """Numbers without units are read as SI, with a note; a drop from 300 m gives a warning."""
     result = rb.calibrate(rb.Drops(height=300, rebound=[192, 189, 194]))
     text = " ".join(result.warnings)
     assert "height has no unit, m is assumed: the largest is 300 m" in text and "check the unit" in text

@@ -40,7 +40,7 @@ def test_a_change_is_found_where_the_bed_stays_on_the_floor() -> None:
 
 
 def test_the_measure_that_is_taken_by_default_shows_the_change() -> None:
-    """The share of the energy does not: on a shaker it is near 1 whatever is lost."""
+    """The share of the energy does not show it: on a shaker it is near 1 for any loss."""
     result = rb.check_softening(case(5, 160, packing=rb.Settled(seed=5)), packings=4, progress=False)
     assert bool(result.impact_loss_changed[0]) and not bool(result.impact_loss_kept[0])
 

@@ -41,7 +41,7 @@ LIMITS = {
 
 @pytest.mark.parametrize("limit", sorted(LIMITS))
 def test_the_step_of_the_run_is_halved(limit: str) -> None:
-    """Whatever limits the step, the second row is computed with half of it, and the first with the step of the run."""
+    """For each limit of the step, the first row has the step of the run and the second row half of it."""
     given = LIMITS[limit].replaced({"duration": "5 ms"})
     result = rb.check_step(given, packings=2, progress=False)
     steps = result.step.values

@@ -22,7 +22,7 @@ def case(**options: Any) -> rb.Case:
 
 
 def test_compare_simulates_cases_and_takes_runs() -> None:
-    """Reductions are those of the values; a run that was simulated before gives the same column."""
+    """Reductions are those of the values; an earlier run of the same case gives the same column."""
     tuned = case(tuned_mass=rb.TunedMass.den_hartog(STRUCTURE, mass="1 kg"))
     result = rb.compare({"bare": case(), "tuned": tuned, "again": rb.simulate(tuned)})
     bare, one, again = (result.values[name] for name in ("bare", "tuned", "again"))

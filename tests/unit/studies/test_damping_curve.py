@@ -90,7 +90,7 @@ def test_strong_damping(way: Any, ratio: float) -> None:
 
 
 def test_a_fast_decay_is_warned_of() -> None:
-    """Where the ratio changes within half a cycle, the curve says that steady vibration differs."""
+    """A ratio that changes within half a cycle is flagged, since steady vibration differs there."""
     case = ball_case().model_copy(update={"structure": rb.SDOF(mass=1, frequency=50, damping_ratio=0.001)})
     result = rb.damping_curve(case, [2.4e-4, 3e-4])
     assert any("half a cycle" in warning for warning in result.attrs["warnings"])
@@ -210,7 +210,7 @@ def test_a_mode_is_told_from_others_that_impacts_excite() -> None:
 
 
 def test_a_heavy_damper_that_changes_the_motion_is_warned_of() -> None:
-    """A tuned mass as heavy as the structure shifts the frequency, which the curve says."""
+    """A tuned mass as heavy as the structure shifts the frequency, and the curve has a note."""
     structure = rb.SDOF(mass=3, frequency=50, damping_ratio=0.005)
     tuned = rb.TunedMass(mass=3, frequency=50, damping_ratio=0.02)
     result = rb.damping_curve(rb.Case(structure=structure, tuned_mass=tuned, duration="2 s"), LEVELS, packings=1)

@@ -19,6 +19,7 @@ import pytest
 import tomli_w
 import xarray as xr
 from support.command import rattlebox
+from support.struck import struck
 
 import rattlebox as rb
 from rattlebox._util.quantities import quantity
@@ -30,19 +31,6 @@ from rattlebox.studies.study_file import study_from_toml
 EXAMPLE = Path(__file__).parents[3] / "examples" / "design.py"
 GAP, RADIUS = "damper.gap", "damper.ball.radius"
 BOUNDS: dict[str, Any] = {GAP: ("0.1 mm", "2 mm"), RADIUS: ("10 mm", "40 mm")}
-
-
-def struck(**changes: Any) -> rb.Case:
-    """Return an impact damper under a pulse."""
-    parts: dict[str, Any] = {
-        "structure": rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping="25.3 N s/m"),
-        "damper": rb.ImpactDamper(
-            ball=rb.Sphere(radius="30 mm", material="steel"), gap="0.4 mm", contact=rb.Tsuji(restitution=0.6)
-        ),
-        "load": rb.HalfSine(amplitude="5 kN", duration="1 ms"),
-        "duration": "2 s",
-    }
-    return rb.Case(**(parts | changes))
 
 
 def without_times(result: xr.Dataset) -> xr.Dataset:

@@ -231,7 +231,7 @@ def test_a_budget_that_does_not_suffice_is_refused(options: Any, monkeypatch: py
 
 
 def test_a_search_ends_at_its_budget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A search stops at its budget with the finished trials, says so, and the same call continues."""
+    """A search that reaches its budget returns the finished trials with a note, and the same call continues."""
 
     def slow(run: rb.Run) -> float:
         time.sleep(0.1)

@@ -155,7 +155,7 @@ def test_the_interval_of_a_ratio():
 
 
 def test_a_linear_motion_has_an_interval_only_in_long_windows():
-    """A window of less than five cycles over the damping ratio gives no interval of a linear motion, however it turns out.
+    """A window of less than five cycles over the damping ratio never gives an interval for a linear motion.
 
     The motions of the other tests were observed for long, and a short series may look uncorrelated by chance. A ball that
     never touches a wall changes nothing; a run and a sweep have the same limit.

@@ -29,7 +29,7 @@ def groups(strobes, apart=1e-2):
 
 @pytest.mark.parametrize("turns", [8, 16, 32, 48])
 def test_a_slow_spiral_has_no_period_of_its_turns(turns):
-    """Of 800 spirals into a point none has a period above one, whatever their angle, factor and size.
+    """None of 800 spirals into a point, with random angles, factors and sizes, has a period above one.
 
     The smallest number of cycles with a difference below the tolerance was taken for the period, which is the number in
     which a small spiral turns round; tests had orbits with noise, but none that still contracted.

@@ -173,7 +173,7 @@ def test_a_stopped_sweep_resumes_within_it(tmp_path: Path) -> None:
 
 
 def test_a_damaged_state_costs_time_only(tmp_path: Path) -> None:
-    """If the last state is damaged, the sweep continues from the one before; without any, from its begin."""
+    """If the last state is damaged, the sweep continues from the one before; without any, from its start."""
     case, hertz = box(), [28.0, 29.0, 30.0, 31.0]
     through = rb.frequency_response(case, hertz, direction="up", **QUICK)
     for damaged in (1, 2):

@@ -10,25 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from support.struck import struck
 
 import rattlebox as rb
 from rattlebox.studies.kinds.sensitivity import _indices
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "sensitivity.py"
 BOUNDS: dict[str, Any] = {"damper.gap": ("0.2 mm", "1 mm"), "load.amplitude": ("4 kN", "6 kN")}
-
-
-def struck(**changes: Any) -> rb.Case:
-    """Return an impact damper under a pulse."""
-    parts: dict[str, Any] = {
-        "structure": rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping="25.3 N s/m"),
-        "damper": rb.ImpactDamper(
-            ball=rb.Sphere(radius="30 mm", material="steel"), gap="0.4 mm", contact=rb.Tsuji(restitution=0.6)
-        ),
-        "load": rb.HalfSine(amplitude="5 kN", duration="1 ms"),
-        "duration": "1 s",
-    }
-    return rb.Case(**(parts | changes))
 
 
 def test_mean_and_variance_are_those_of_the_runs() -> None:

@@ -54,7 +54,7 @@ def curve(cycles: tuple[int, int] | None) -> xarray.Dataset:
 
 
 def test_a_bed_that_settles_adds_no_damping() -> None:
-    """The energy of the fall does not count, whatever the window; early windows have a flag and a warning."""
+    """The energy of the fall does not count in any window; early windows have a flag and a warning."""
     early = curve((3, 10))
     assert not early.steady.any() and early.lower.isnull().all() and "unsteady" in early.attrs["exceeded"]
     assert any("the motion is not steady" in text and "cycles to skip" in text for text in early.attrs["warnings"])
@@ -103,7 +103,7 @@ def test_samples_beside_the_ends_of_cycles_change_little() -> None:
 
 
 def test_a_shaken_cavity_warns_of_a_bed_that_falls() -> None:
-    """`shaken_cavity` gives the work in both ways, warns, and its flag says that the motion is not steady."""
+    """`shaken_cavity` gives the work in both ways, with a warning and the flag of unsteady motion."""
     run = shaken(bed(), 0.2, 12)
     with pytest.warns(UserWarning, match="not steady"):
         found = rb.analysis.shaken_cavity(run, frequency=HERTZ, after=2 / HERTZ)
@@ -113,7 +113,7 @@ def test_a_shaken_cavity_warns_of_a_bed_that_falls() -> None:
 
 
 def test_maps_and_designs_flag_motions_that_are_not_steady() -> None:
-    """Loss maps and designs have the flag "unsteady" where a bed still falls, and a line of text says so."""
+    """Loss maps and designs have the flag "unsteady" where a bed still falls, and a note."""
     motion = rb.Harmonic(amplitude="2 m/s^2", frequency=HERTZ, direction="z")
     case = rb.Case(structure=rb.Shaker(motion=motion), damper=bed(), duration="1 s")
     early, late = (rb.loss_map(case, ["2 m/s^2"], [HERTZ], cycles=cycles, progress=False) for cycles in ((3, 10), None))

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from support import dem_cases
 from support.dem_cases import Ball
-from support.dem_lines import ALUMINA, OBLIQUE_E, OBLIQUE_FRICTION, OBLIQUE_SPEED, oblique_impact, oblique_law
 from support.exact import oblique, printed
+from support.known_particles import ALUMINA, OBLIQUE_E, OBLIQUE_FRICTION, OBLIQUE_SPEED, oblique_impact, oblique_law
 
 import rattlebox as rb
 from rattlebox import alpha_of_restitution

@@ -58,9 +58,9 @@ def read_ground_motion(path: Path) -> GroundMotion:
             lines = path.read_text(encoding="latin-1").splitlines()
         except OSError as error:
             raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
-        begin, count, step = 0, "", ""
+        above, count, step = 0, "", ""
         for line in lines[:_HEADER]:
-            begin += 1
+            above += 1
             old = _OLD_HEADER.match(line)
             count, step = (old[1], old[2]) if old else (_first_group(_COUNT, line), _first_group(_STEP, line))
             if count and step:
@@ -70,7 +70,7 @@ def read_ground_motion(path: Path) -> GroundMotion:
                 f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT; an AT2 file needs both",
                 'the ending .csv or .txt, and dt = "0.01 s" for one column of numbers',
             )
-        header = "\n".join(lines[:begin])
+        header = "\n".join(lines[:above])
         other = _OTHER_QUANTITY.search(header)
         if other and not re.search(r"\baccel", header, re.I):
             raise DataError(
@@ -78,12 +78,12 @@ def read_ground_motion(path: Path) -> GroundMotion:
             )
         if not (_is_positive(step) and len(count) < _DIGITS):
             raise DataError(
-                f"{path}, line {begin}: the time step is {step} s and the number of samples {count[:_DIGITS]}; both must be"
+                f"{path}, line {above}: the time step is {step} s and the number of samples {count[:_DIGITS]}; both must be"
                 " positive and finite",
                 _WHOLE,
             )
         values = []
-        for number, line in enumerate(lines[begin:], start=begin + 1):
+        for number, line in enumerate(lines[above:], start=above + 1):
             try:
                 values += [float(word) for word in line.split()]
             except ValueError:
@@ -102,7 +102,7 @@ def read_ground_motion(path: Path) -> GroundMotion:
             raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite", _WHOLE)
         unit = _UNIT.search(header)
         return GroundMotion(
-            float(step), samples, unit[1].strip(".,()") if unit else "", tuple(enumerate(lines[:begin], start=1))
+            float(step), samples, unit[1].strip(".,()") if unit else "", tuple(enumerate(lines[:above], start=1))
         )
 
 

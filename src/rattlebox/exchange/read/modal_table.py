@@ -88,8 +88,8 @@ def _cells(path: Path, number: int, line: str, mark: str) -> list[str]:
 def _name_and_unit(heading: str) -> tuple[str, str]:
     """Return the name of a column and the unit in brackets at its end, "" if there is none."""
     text = heading.strip()
-    begin = max(text.rfind("("), text.rfind("[")) if text.endswith((")", "]")) else -1
-    return (text[:begin].rstrip(), text[begin + 1 : -1]) if begin >= 0 else (text, "")
+    bracket = max(text.rfind("("), text.rfind("[")) if text.endswith((")", "]")) else -1
+    return (text[:bracket].rstrip(), text[bracket + 1 : -1]) if bracket >= 0 else (text, "")
 
 
 def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: FloatArray) -> ModesInFile:

@@ -12,7 +12,7 @@ import rattlebox as rb
 
 from . import impact_cases
 from .exact import masri_caughey, printed, shaken
-from .impact_lines import Line
+from .known_impacts import Comparison
 
 Array = NDArray[np.float64]
 Key = tuple[float, float, float]
@@ -86,18 +86,18 @@ def two_impacts_threshold(restitution: float) -> float:
     return lost(down[::-1], two[::-1])
 
 
-def thresholds() -> Iterator[Line]:
+def thresholds() -> Iterator[Comparison]:
     """Yield thresholds found by bifurcation diagrams, to 1e-3."""
     for e, n in printed.VIBRATING_TABLE:
         begin, double = shaken.table_bounds(e, n)
         result = table_thresholds(e, n)
         name = f"bifurcation: vibrating table, e {e}, {n} cycle{'s' * (n > 1)}"
-        yield Line("maps", f"{name}: begins", begin, result[0], 1e-3 / begin)
-        yield Line("maps", f"{name}: doubles", double, result[1], 1e-3 / double)
+        yield Comparison("maps", f"{name}: begins", begin, result[0], 1e-3 / begin)
+        yield Comparison("maps", f"{name}: doubles", double, result[1], 1e-3 / double)
     for e in printed.SLOW_MANIFOLD_THRESHOLD:
         exact = shaken.threshold(e)
         name = f"bifurcation: shaken cavity, e {e}: two impacts a cycle begin"
-        yield Line("maps", name, exact, two_impacts_threshold(e), 1e-3 / exact)
+        yield Comparison("maps", name, exact, two_impacts_threshold(e), 1e-3 / exact)
 
 
 # ---- frequency responses
@@ -140,43 +140,45 @@ def _named(key: Key) -> str:
     return "Masri-Caughey, mass ratio {}, e {}, clearance {:g}".format(*key)
 
 
-def responses() -> Iterator[Line]:
+def responses() -> Iterator[Comparison]:
     """Yield amplitudes of impact dampers, found by frequency responses."""
     for key in STABLE:
         ours, exact = followed(key, np.linspace(1.0, 1.04, 9), "up", 200)
         worst = int(np.argmax(np.abs(ours / exact - 1)))
         for number in sorted({0, worst}):
             name = f"frequency_response: {_named(key)}, frequency {1 + 0.005 * number:g}: peak"
-            yield Line("maps", name, float(exact[number]), float(ours[number]), PEAK)
+            yield Comparison("maps", name, float(exact[number]), float(ours[number]), PEAK)
 
 
-def limits() -> Iterator[Line]:
+def limits() -> Iterator[Comparison]:
     """Yield limits of the stability of impact dampers, found by frequency responses."""
     for key, end, step, skip in LIMITS:
         limit, result = stability_limit(key, end, step, skip)
         side = "upper" if end > 1 else "lower"
-        yield Line("maps", f"frequency_response: {_named(key)}: {side} limit of stability", limit, result, 1.5 * step)
+        yield Comparison(
+            "maps", f"frequency_response: {_named(key)}: {side} limit of stability", limit, result, 1.5 * step
+        )
 
 
 # ---- exponents and designs
 
 
-def exponents() -> Iterator[Line]:
+def exponents() -> Iterator[Comparison]:
     """Yield multipliers of periodic motions, and that of an undamped free oscillator, from Lyapunov exponents."""
     for key in STABLE:
         exact = orbit(key, 1.0)
         result = rb.lyapunov(impact_cases.impact_damper(exact, 1.0), cycles=(40, 400), progress=False)
         # The distance of neighbours, 1e-7, is not zero, and rounding is 1e-9 of it.
         multiplier = math.exp(float(result.exponent) * exact.half_period)
-        yield Line("maps", f"lyapunov: {_named(key)}: multiplier", math.exp(growth(key, 1.0)), multiplier, 1e-7)
+        yield Comparison("maps", f"lyapunov: {_named(key)}: multiplier", math.exp(growth(key, 1.0)), multiplier, 1e-7)
     case = rb.Case(structure=rb.SDOF(mass=2.0, stiffness=800.0, damping_ratio=0.0, displacement=0.01), duration=60.0)
     result = rb.lyapunov(case, steps=400, progress=False)
     # Rounding of the state is 1e-9 of the distance of neighbours, in each of 400 steps of 0.15 s.
     multiplier = math.exp(float(result.exponent) * 2 * math.pi / 20)
-    yield Line("maps", "lyapunov: undamped free oscillator: multiplier of a period", 1.0, multiplier, 1e-8 / 0.15)
+    yield Comparison("maps", "lyapunov: undamped free oscillator: multiplier of a period", 1.0, multiplier, 1e-8 / 0.15)
 
 
-def designs() -> Iterator[Line]:
+def designs() -> Iterator[Comparison]:
     """Yield the best clearance of collect-and-collide, pi times the amplitude, and its loss, found by a search."""
     for seed in (0, 1):
         result = rb.design(
@@ -191,8 +193,8 @@ def designs() -> Iterator[Line]:
         best = rb.Case.from_toml(result.case.item()).dampers[0]
         # The loss is flat at its top: 1e-5 of it is some 4e-3 of the clearance.
         name = f"design: collect and collide, seed {seed}"
-        yield Line("maps", f"{name}: best clearance over amplitude", math.pi, 2 * best.gap, 5e-3)
-        yield Line("maps", f"{name}: energy a cycle", 4.0, float(result.reduced_loss.max()), 1e-5)
+        yield Comparison("maps", f"{name}: best clearance over amplitude", math.pi, 2 * best.gap, 5e-3)
+        yield Comparison("maps", f"{name}: energy a cycle", 4.0, float(result.reduced_loss.max()), 1e-5)
 
 
-ALL: tuple[Callable[[], Iterator[Line]], ...] = (thresholds, responses, limits, exponents, designs)
+ALL: tuple[Callable[[], Iterator[Comparison]], ...] = (thresholds, responses, limits, exponents, designs)

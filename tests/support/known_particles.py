@@ -15,7 +15,7 @@ from rattlebox.analysis import shaken_cavity
 from . import dem_cases
 from .dem_cases import Ball
 from .exact import dashpot, oblique, printed, restitution_laws, shaken
-from .impact_lines import Line
+from .known_impacts import Comparison
 
 FINE = 2000
 """Time steps per contact."""
@@ -55,7 +55,7 @@ def elastic_impact(ball: Ball, plane: bool, speed: float) -> tuple[float, float,
     return max(forces), dem.counts().largest_overlap[0] * ball.radius, left - 5.5 * dt
 
 
-def elastic_impacts() -> Iterator[Line]:
+def elastic_impacts() -> Iterator[Comparison]:
     """Yield force, overlap and time of elastic impacts, against Hertz."""
     for name, (ball, plane, speed) in IMPACTS.items():
         other = None if plane else ball
@@ -67,10 +67,10 @@ def elastic_impacts() -> Iterator[Line]:
             ("force", "overlap", "contact time"), exact, elastic_impact(ball, plane, speed), strict=True
         ):
             # Verlet: the square of the step, (pi / 2000)^2 / 2, or less.
-            yield Line("dem", f"{name}: {what}", a, b, 2e-6)
+            yield Comparison("dem", f"{name}: {what}", a, b, 2e-6)
 
 
-def prescribed_restitution() -> Iterator[Line]:
+def prescribed_restitution() -> Iterator[Comparison]:
     """Yield the restitution of impacts with a prescribed restitution."""
     ball = Ball(0.01)
     time = dem_cases.contact_time(ball, None, 1.0)
@@ -81,7 +81,7 @@ def prescribed_restitution() -> Iterator[Line]:
             got = dem_cases.rebound(dem_cases.run(case))
             # Orders and factors: see test_normal.
             allowed = 2.4 * FINE**-2 if ending == "zero_force" else 0.38 * FINE**-1.25
-            yield Line("dem", f"e = {e} prescribed, {ending.replace('_', ' ')}", e, got, allowed / e)
+            yield Comparison("dem", f"e = {e} prescribed, {ending.replace('_', ' ')}", e, got, allowed / e)
 
 
 def contact_end(case: Any, ball: Ball, ending: str, about: float) -> float:
@@ -102,7 +102,7 @@ def contact_end(case: Any, ball: Ball, ending: str, about: float) -> float:
     return float(dem.state().time - case.method.dt * (1 - least / (before - least)))
 
 
-def damped() -> Iterator[Line]:
+def damped() -> Iterator[Comparison]:
     """Yield contact times of Tsuji's law, and a restitution close to zero."""
     ball = Ball(0.01)
     elastic = dem_cases.contact_time(ball, None, 1.0)
@@ -115,15 +115,17 @@ def damped() -> Iterator[Line]:
             time = contact_end(case, ball, ending, 0.99 * exact) - 5.5 * elastic / FINE
             # Order 2; factors measured with steps of 1/500 to 1/4000: up to 7.2, and 2.6 if the end follows from the flight.
             allowed = (8.0 if ending == "zero_force" else 3.2) * FINE**-2
-            yield Line("dem", f"zeta = {zeta}, {ending.replace('_', ' ')}: contact time", exact, time, allowed)
+            yield Comparison("dem", f"zeta = {zeta}, {ending.replace('_', ' ')}: contact time", exact, time, allowed)
     law = rb.Tsuji(alpha=0.9 * math.sqrt(5), ending="zero_overlap")
     case = dem_cases.head_on(ball, None, 1.0, dt=elastic / FINE, phase=0.5, lasts=30 * elastic, contact=law)
     exact = dashpot.restitution(0.9, "zero_overlap")
     allowed = 0.38 * FINE**-1.25 / exact
-    yield Line("dem", "zeta = 0.9, zero overlap: restitution", exact, dem_cases.rebound(dem_cases.run(case)), allowed)
+    yield Comparison(
+        "dem", "zeta = 0.9, zero overlap: restitution", exact, dem_cases.rebound(dem_cases.run(case)), allowed
+    )
 
 
-def yielding() -> Iterator[Line]:
+def yielding() -> Iterator[Comparison]:
     """Yield the restitution of contacts that yield."""
     ball, steel = Ball(0.01), rb.materials()["steel"]
     modulus = steel.young / (1 - steel.poisson**2) / 2
@@ -133,7 +135,7 @@ def yielding() -> Iterator[Line]:
         time = dem_cases.contact_time(ball, None, speed)
         case = dem_cases.head_on(ball, None, speed, dt=time / FINE, phase=0.3, lasts=4 * time, contact=rb.Thornton())
         exact = restitution_laws.thornton(ratio)
-        yield Line(
+        yield Comparison(
             "dem",
             f"Thornton, V/V_y = {ratio}: restitution",
             exact,
@@ -182,17 +184,17 @@ def oblique_law(
     return along * down, up * down, -spin * down / ALUMINA.radius
 
 
-def oblique_impacts() -> Iterator[Line]:
+def oblique_impacts() -> Iterator[Comparison]:
     """Yield tangential restitution and spin of test 4 of Chung and Ooi, against closed form and accurate integration."""
     for degrees in (10, 20, 30, 50, 70):
         angle = math.radians(degrees)
         before = OBLIQUE_SPEED * math.sin(angle)
         along, _, spin, _ = oblique_impact(angle, FINE)
         exact = oblique_law(angle, OBLIQUE_E, 1.0, 16000)
-        yield Line(
+        yield Comparison(
             "dem", f"alumina at {degrees} degrees: tangential restitution", exact[0] / before, along / before, 1e-5
         )
-        yield Line("dem", f"alumina at {degrees} degrees: spin", exact[2], spin, 2e-5)
+        yield Comparison("dem", f"alumina at {degrees} degrees: spin", exact[2], spin, 2e-5)
 
 
 def ball_that_falls(e: float, height: float, end: float, dt: float) -> Any:
@@ -246,14 +248,16 @@ def bounce(e: float) -> tuple[float, float, float]:
     return approach, -rate, time
 
 
-def falling_ball() -> Iterator[Line]:
+def falling_ball() -> Iterator[Comparison]:
     """Yield first touch, speeds and contact time of MFiX's falling ball."""
     # Accurate to half a step.
-    yield Line("dem", "ball falling on a linear spring: first touch", math.sqrt(2 * 0.4 / 9.81), first_touch(), 1.8e-5)
+    yield Comparison(
+        "dem", "ball falling on a linear spring: first touch", math.sqrt(2 * 0.4 / 9.81), first_touch(), 1.8e-5
+    )
     for e in (0.6, 0.9):
         for what, a, b in zip(("touches at", "leaves at", "contact time"), bounce(e), falling(e), strict=True):
             # The force of a linear dashpot jumps within a step, which lasts a ten thousandth of the contact.
-            yield Line("dem", f"ball falling on a linear spring, e = {e}: {what}", a, b, 1e-4)
+            yield Comparison("dem", f"ball falling on a linear spring, e = {e}: {what}", a, b, 1e-4)
 
 
 GRAVITY = 9.81
@@ -286,7 +290,7 @@ def along(result: Any) -> tuple[Any, Any]:
     return arrays.centre_of_mass[:, 0, 0] + 0.5, arrays.momentum[:, 0, 0] / arrays.particles.mass[0]
 
 
-def slip_to_roll() -> Iterator[Line]:
+def slip_to_roll() -> Iterator[Comparison]:
     """Yield velocity and time of a ball that slips until it rolls (MFiX's test DEM04)."""
     start, friction = 1.0, 0.2
     result = on_floor(start, 0.0, friction, duration=0.25)
@@ -295,25 +299,25 @@ def slip_to_roll() -> Iterator[Line]:
     # Where the slope, taken between a tenth and nine tenths of the way, meets the end.
     early, late = (float(np.interp(share * (start - rolls), start - speed, result.arrays.time)) for share in (0.1, 0.9))
     # The lever is shorter than the radius by the overlap, 0.03 % of it; the ball swings on the floor at first.
-    yield Line("dem", "ball slips, then rolls: velocity", 5 / 7 * start, rolls, 3e-4)
-    yield Line(
+    yield Comparison("dem", "ball slips, then rolls: velocity", 5 / 7 * start, rolls, 3e-4)
+    yield Comparison(
         "dem", "ball slips, then rolls: time", 2 * start / (7 * friction * GRAVITY), late + (late - early) / 8, 1e-3
     )
 
 
-def rolls_out() -> Iterator[Line]:
+def rolls_out() -> Iterator[Comparison]:
     """Yield the distance that a ball rolls with rolling resistance, and its velocity on a slope."""
     start, resistance = 0.3, 0.05
     brake = 5 / 7 * resistance * GRAVITY
     path, _ = along(on_floor(start, start / 0.02, 0.5, rolling=rb.Rolling(resistance, damping=0.3)))
     # The ball swings on the floor at first, and the spring of the resistance gives way by some micrometres in the end.
-    yield Line("dem", "ball rolls to a stop: path", start**2 / (2 * brake), float(path[-1]), 1e-3)
+    yield Comparison("dem", "ball rolls to a stop: path", start**2 / (2 * brake), float(path[-1]), 1e-3)
     for part in (1.2, 1.5):
         slope = part * resistance
         _, speed = along(on_floor(0.0, 0.0, 0.5, rolling=rb.Rolling(resistance, damping=0.3), slope=slope))
         angle = math.atan(slope)
         exact = 5 / 7 * GRAVITY * (math.sin(angle) - resistance * math.cos(angle))
-        yield Line(
+        yield Comparison(
             "dem", f"ball rolls down a slope of {part} mu_r: acceleration", exact, 2 * (speed[-1] - speed[500]), 5e-3
         )
 
@@ -337,7 +341,7 @@ def shaken_ball(gamma: float, per_contact: int = 400) -> Any:
     return dem_cases.run(case), frequency, amplitude
 
 
-def inelastic_ball() -> Iterator[Line]:
+def inelastic_ball() -> Iterator[Comparison]:
     """Yield the apparent mass of a ball on a shaker, from the force on the cavity, and its loss from the ledger."""
     for gamma in printed.APPARENT_MASS:
         exact = shaken.inelastic_ball(gamma).apparent_mass()
@@ -348,9 +352,9 @@ def inelastic_ball() -> Iterator[Line]:
         power, ledger = (float(loss) / unit for loss in results.loss_per_cycle)
         # What is left of the speed, e = 0.1, bears e^2 = 1 % of the energy.
         name = f"inelastic ball on a shaker, Gamma {gamma}"
-        yield Line("dem", f"{name}: m'", exact[0], float(results.effective_mass[0]) / mass, 2e-3)
-        yield Line("dem", f"{name}: m''", exact[1], power, 1e-2)
-        yield Line("dem", f"{name}: m'' from the ledger", exact[1], ledger, 1e-2)
+        yield Comparison("dem", f"{name}: m'", exact[0], float(results.effective_mass[0]) / mass, 2e-3)
+        yield Comparison("dem", f"{name}: m''", exact[1], power, 1e-2)
+        yield Comparison("dem", f"{name}: m'' from the ledger", exact[1], ledger, 1e-2)
 
 
 FILLED = {
@@ -378,12 +382,14 @@ def settled(name: str) -> tuple[Any, float]:
     return arrays.cavity_force[-1, 0], float(arrays.particles.mass.sum() * GRAVITY)
 
 
-def hydrostatic() -> Iterator[Line]:
+def hydrostatic() -> Iterator[Comparison]:
     """Yield the load of a settled fill on its cavity."""
     for name in FILLED:
         force, weight = settled(name)
         # A bed comes to rest slowly: some tenths of a second after settling a ball may still roll.
-        yield Line("dem", f"two hundred spheres settled in a {name}: load over weight", 1.0, -force[2] / weight, 1e-6)
+        yield Comparison(
+            "dem", f"two hundred spheres settled in a {name}: load over weight", 1.0, -force[2] / weight, 1e-6
+        )
 
 
 LAWS: dict[str, Any] = {
@@ -426,19 +432,21 @@ def one_ball_exactly(law: str) -> tuple[Any, Any, int]:
     return arrays.displacement[:, 0], arrays.ball_position[:, 0], len(arrays.impacts)
 
 
-def in_one_direction() -> Iterator[Line]:
+def in_one_direction() -> Iterator[Comparison]:
     """Yield positions of one ball and its structure after eight impacts or more, against the 1-D engine."""
     for law in LAWS:
         displacement, place, _ = one_ball_exactly(law)
         ours, flown = one_ball(law, 2.5e-8)
         # Order 2: see test_known_solutions.
-        yield Line(
+        yield Comparison(
             "dem", f"{law} ball in one direction, as by the impact engine: structure", displacement[-1], ours[-1], 5e-5
         )
-        yield Line("dem", f"{law} ball in one direction, as by the impact engine: ball", place[-1], flown[-1], 1e-4)
+        yield Comparison(
+            "dem", f"{law} ball in one direction, as by the impact engine: ball", place[-1], flown[-1], 1e-4
+        )
 
 
-ALL: tuple[Callable[[], Iterator[Line]], ...] = (
+ALL: tuple[Callable[[], Iterator[Comparison]], ...] = (
     elastic_impacts,
     prescribed_restitution,
     damped,

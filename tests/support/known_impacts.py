@@ -18,7 +18,7 @@ ENDINGS = ("zero_overlap", "zero_force")
 
 
 @dataclass(frozen=True)
-class Line:
+class Comparison:
     """One comparison: exact value, simulated value and the relative tolerance of the method."""
 
     item: str
@@ -57,7 +57,7 @@ def first_impact(case: Any) -> tuple[float, float, float, float]:
     )
 
 
-def tsuji() -> Iterator[Line]:
+def tsuji() -> Iterator[Comparison]:
     """Yield restitution, contact time and overlap of Tsuji's law against a fixed wall."""
     speed = 0.7
     scale = (impact_cases.MASS / impact_cases.STIFFNESS) ** 0.4 * speed**-0.2
@@ -67,13 +67,13 @@ def tsuji() -> Iterator[Line]:
             time = dashpot.tsuji_contact_time(zeta, ending) * scale
             e, duration, peak, _ = first_impact(impact_cases.single_impact(contact, speed, 1.5 * time))
             name = f"Tsuji, damping ratio {zeta}, ends at {ending.replace('_', ' ')}"
-            yield Line("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
-            yield Line("1", f"{name}: contact time", time, duration, 1e-10)
+            yield Comparison("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
+            yield Comparison("1", f"{name}: contact time", time, duration, 1e-10)
             overlap = dashpot.tsuji_peak_overlap(zeta) * (impact_cases.MASS * speed**2 / impact_cases.STIFFNESS) ** 0.4
-            yield Line("1", f"{name}: largest overlap", overlap, peak, 1e-10)
+            yield Comparison("1", f"{name}: largest overlap", overlap, peak, 1e-10)
 
 
-def linear() -> Iterator[Line]:
+def linear() -> Iterator[Comparison]:
     """Yield restitution and contact time of the linear spring-dashpot against a fixed wall."""
     speed, stiffness = 0.7, 1e7
     rate = math.sqrt(stiffness / impact_cases.MASS)
@@ -83,13 +83,13 @@ def linear() -> Iterator[Line]:
             time = dashpot.linear_contact_time(zeta, ending) / rate
             e, duration, _, force = first_impact(impact_cases.single_impact(contact, speed, 1.5 * time))
             name = f"linear, damping ratio {zeta}, ends at {ending.replace('_', ' ')}"
-            yield Line("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
-            yield Line("1", f"{name}: contact time", time, duration, 1e-10)
+            yield Comparison("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
+            yield Comparison("1", f"{name}: contact time", time, duration, 1e-10)
             top = dashpot.linear_peak_force(zeta) * speed * rate * impact_cases.MASS
-            yield Line("1", f"{name}: largest force", top, force, 1e-10)
+            yield Comparison("1", f"{name}: largest force", top, force, 1e-10)
 
 
-def prescribed_restitution() -> Iterator[Line]:
+def prescribed_restitution() -> Iterator[Comparison]:
     """Yield the restitution of contacts with a prescribed restitution."""
     for e in (0.05, 0.3, 0.8, 0.99117, 1.0):
         for ending in ENDINGS:
@@ -98,7 +98,7 @@ def prescribed_restitution() -> Iterator[Line]:
                 rb.Linear(stiffness=1e7, restitution=e, ending=ending),
             ):
                 got = first_impact(impact_cases.single_impact(contact, 0.3, 1e-3))[0]
-                yield Line(
+                yield Comparison(
                     "1",
                     f"{type(contact).__name__}, e = {e} prescribed, {ending.replace('_', ' ')}",
                     e,
@@ -107,7 +107,7 @@ def prescribed_restitution() -> Iterator[Line]:
                 )
 
 
-def jackson_green() -> Iterator[Line]:
+def jackson_green() -> Iterator[Comparison]:
     """Yield restitution, and speeds of a ball in a fixed cavity after n hits, over the critical speed."""
     strain = impact_cases.YIELD / impact_cases.YOUNG
     critical = restitution_laws.jackson_green_speed(
@@ -118,12 +118,12 @@ def jackson_green() -> Iterator[Line]:
         # At the limit of the law a rounded speed could exceed it.
         case = impact_cases.single_impact(contact, ratio * critical * (1 - 1e-14), 3e-4)
         exact = restitution_laws.jackson_green(ratio, strain)
-        yield Line("2", f"Jackson-Green, V/V_c = {ratio}: restitution", exact, first_impact(case)[0], 1e-10)
+        yield Comparison("2", f"Jackson-Green, V/V_c = {ratio}: restitution", exact, first_impact(case)[0], 1e-10)
     log = simulate(impact_cases.still_cavity(contact, 10 * critical, 0.2)).arrays.impacts
     for hits in printed.JACKSON_GREEN_HITS:
         exact = restitution_laws.jackson_green_after(10, hits, strain)
         # The error of the speed grows with the number of contacts.
-        yield Line(
+        yield Comparison(
             "2",
             f"Jackson-Green, V/V_c after {hits} hits",
             exact,
@@ -132,17 +132,21 @@ def jackson_green() -> Iterator[Line]:
         )
 
 
-def thornton() -> Iterator[Line]:
+def thornton() -> Iterator[Comparison]:
     """Yield restitution of the hysteretic contact."""
     pressure = 1.6 * impact_cases.YIELD
     critical = restitution_laws.thornton_speed(impact_cases.RADIUS, impact_cases.MASS, impact_cases.MODULUS, pressure)
     for ratio in printed.THORNTON:
         case = impact_cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4)
-        yield Line("3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10)
+        yield Comparison(
+            "3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10
+        )
     ratio = 1e8
     tail = first_impact(impact_cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4))[0]
     # The next term of the expansion is of first order in V_y / V.
-    yield Line("3", "Thornton, tail: e (V/V_y)^(1/4) at 1e8", restitution_laws.THORNTON_TAIL, tail * ratio**0.25, 1e-7)
+    yield Comparison(
+        "3", "Thornton, tail: e (V/V_y)^(1/4) at 1e8", restitution_laws.THORNTON_TAIL, tail * ratio**0.25, 1e-7
+    )
 
 
 def stable(key: tuple[float, float, float]) -> masri_caughey.Orbit:
@@ -173,7 +177,7 @@ def damper_multiplier(orbit: masri_caughey.Orbit) -> float:
     return float(max(abs(np.linalg.eigvals(-differences(end, [size] * 4)))))
 
 
-def impact_damper() -> Iterator[Line]:
+def impact_damper() -> Iterator[Comparison]:
     """Yield ball speed and multiplier of the orbits of Masri and Caughey."""
     for key in printed.MASRI_CAUGHEY:
         orbit = stable(key)
@@ -181,12 +185,12 @@ def impact_damper() -> Iterator[Line]:
         exact = max(abs(orbit.multipliers()))
         # Differences of fourth order with steps of a thousandth have truncation and rounding errors of about 1e-11,
         # times the condition number of the eigenvalue.
-        yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
+        yield Comparison("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
         if exact < 1:
             a = simulate(impact_cases.impact_damper(orbit, 40.0)).arrays
-            yield Line("4", f"{name}: approach speed", orbit.approach, a.impacts.approach_speed[-1], 1e-10)
-            yield Line("4", f"{name}: ball velocity w", orbit.speed, a.ball_velocity[-1, 0], 1e-10)
-            yield Line("4", f"{name}: max|x|/50", orbit.largest() / 50, largest_displacement(orbit) / 50, 1e-9)
+            yield Comparison("4", f"{name}: approach speed", orbit.approach, a.impacts.approach_speed[-1], 1e-10)
+            yield Comparison("4", f"{name}: ball velocity w", orbit.speed, a.ball_velocity[-1, 0], 1e-10)
+            yield Comparison("4", f"{name}: max|x|/50", orbit.largest() / 50, largest_displacement(orbit) / 50, 1e-9)
 
 
 def largest_displacement(orbit: masri_caughey.Orbit) -> float:
@@ -241,7 +245,7 @@ def soft_order(law: str) -> float:
     return math.log(error[-2] / error[-1]) / math.log(times[-2] / times[-1])
 
 
-def soft_limit() -> Iterator[Line]:
+def soft_limit() -> Iterator[Comparison]:
     """Yield the approach speed of soft impacts extrapolated to no contact time."""
     orbit = stable(SOFT_KEY)
     for law in SOFT_DAMPERS:
@@ -251,7 +255,7 @@ def soft_limit() -> Iterator[Line]:
             e * math.prod(t / (t - own) for j, t in enumerate(times) if j != i)
             for i, (own, e) in enumerate(zip(times, error, strict=True))
         )
-        yield Line(
+        yield Comparison(
             "4",
             f"{law} contact extrapolated to contact time 0: approach speed",
             orbit.approach,
@@ -260,20 +264,20 @@ def soft_limit() -> Iterator[Line]:
         )
 
 
-def slow_manifold() -> Iterator[Line]:
+def slow_manifold() -> Iterator[Comparison]:
     """Yield ball speeds in a shaken cavity with two impacts a cycle."""
     for e in printed.SLOW_MANIFOLD_THRESHOLD:
         for above in (1.001, 1.5):
             orbit = shaken.two_impacts(e, above * shaken.threshold(e))
             log = simulate(impact_cases.shaken_cavity(orbit, 20.0)).arrays.impacts
-            yield Line(
+            yield Comparison(
                 "5",
                 f"shaken cavity, e {e}, {above} x threshold: approach speed",
                 orbit.approach,
                 log.approach_speed[-1],
                 1e-9,
             )
-        yield Line("5", f"shaken cavity, e {e}: threshold", shaken.threshold(e), shaken_threshold(e), 1e-7)
+        yield Comparison("5", f"shaken cavity, e {e}: threshold", shaken.threshold(e), shaken_threshold(e), 1e-7)
 
 
 def shaken_threshold(e: float) -> float:
@@ -285,13 +289,13 @@ def shaken_threshold(e: float) -> float:
     return float(np.sqrt(start - slope**2 / (4 * curve)))
 
 
-def collect_and_collide() -> Iterator[Line]:
+def collect_and_collide() -> Iterator[Comparison]:
     """Yield energy lost in a cycle by a ball that sticks to the walls."""
     for ratio in printed.COLLECT_AND_COLLIDE:
         log = simulate(impact_cases.sticky_load(ratio, 10.25)).arrays.impacts
         landed = log.energy_lost[log.energy_lost > 1e-6 * log.energy_lost.max()]
         ours = float(landed[-2:].sum() / ratio**2)
-        yield Line(
+        yield Comparison(
             "6",
             f"collect and collide, A/g = {ratio}: energy a cycle",
             shaken.collect_and_collide(ratio),
@@ -321,20 +325,20 @@ def doubling(restitution: float, cycles: int) -> float:
     return float(brentq(flip, 0.95 * middle, 1.05 * middle, xtol=1e-9))
 
 
-def vibrating_table() -> Iterator[Line]:
+def vibrating_table() -> Iterator[Comparison]:
     """Yield impact speed and doubling threshold of a ball on a shaken table."""
     for (e, n), (start, end) in printed.VIBRATING_TABLE.items():
         orbit = shaken.table_orbit(e, 0.5 * (start + end), n)
         log = simulate(impact_cases.table(orbit, 30.0)).arrays.impacts
         name = f"vibrating table, e {e}, {n} cycles"
-        yield Line("7", f"{name}: approach speed", orbit.approach, log.approach_speed[-1], 1e-10)
+        yield Comparison("7", f"{name}: approach speed", orbit.approach, log.approach_speed[-1], 1e-10)
         # The velocity of the table at the impact does not depend on its acceleration; it peaks at the birth of the orbit.
         phase = log.time[-1] + orbit.phase + math.pi * n
-        yield Line("7", f"{name}: begin", shaken.table_bounds(e, n)[0], orbit.gamma * math.cos(phase), 1e-9)
-        yield Line("7", f"{name}: doubling", shaken.table_bounds(e, n)[1], doubling(e, n), 1e-7)
+        yield Comparison("7", f"{name}: start", shaken.table_bounds(e, n)[0], orbit.gamma * math.cos(phase), 1e-9)
+        yield Comparison("7", f"{name}: doubling", shaken.table_bounds(e, n)[1], doubling(e, n), 1e-7)
 
 
-def chatter() -> Iterator[Line]:
+def chatter() -> Iterator[Comparison]:
     """Yield time and path of a ball that chatters to rest."""
     height, e, gravity = 0.5, 0.8, 9.81
     log = simulate(impact_cases.dropped(height, e, gravity, 4.0)).arrays.impacts
@@ -343,8 +347,8 @@ def chatter() -> Iterator[Line]:
     # Bounces below the threshold of sticking are summed as a geometric series.
     rest = float(log.time[bounced][-1] + 2 * speed[-1] / (gravity * (1 - e)))
     path = float(height + (speed**2).sum() / gravity + (speed[-1] * e) ** 2 / gravity / (1 - e * e))
-    yield Line("7", "chatter: time to rest", shaken.chatter_time(height, e, gravity), rest, 1e-9)
-    yield Line("7", "chatter: path", shaken.chatter_path(height, e), path, 1e-9)
+    yield Comparison("7", "chatter: time to rest", shaken.chatter_time(height, e, gravity), rest, 1e-9)
+    yield Comparison("7", "chatter: path", shaken.chatter_path(height, e), path, 1e-9)
 
 
 def apparent_mass(gamma: float) -> tuple[float, float]:
@@ -362,24 +366,24 @@ def apparent_mass(gamma: float) -> tuple[float, float]:
     return -float(sines) / (math.pi * gamma), float(cosines) / (math.pi * gamma)
 
 
-def inelastic_ball() -> Iterator[Line]:
+def inelastic_ball() -> Iterator[Comparison]:
     """Yield the apparent mass of an inelastic ball on a shaker."""
     for gamma in printed.APPARENT_MASS:
         exact, ours = shaken.inelastic_ball(gamma).apparent_mass(), apparent_mass(gamma)
         for name, a, b in zip(("m'", "m''"), exact, ours, strict=True):
-            yield Line("8", f"inelastic ball on a shaker, Gamma {gamma}: {name}", a, b, 1e-9)
+            yield Comparison("8", f"inelastic ball on a shaker, Gamma {gamma}: {name}", a, b, 1e-9)
 
 
-def oscillator_with_stop() -> Iterator[Line]:
+def oscillator_with_stop() -> Iterator[Comparison]:
     """Yield the speed before impact of an oscillator with a stop."""
     for key, shown in printed.IMPACT_OSCILLATOR.items():
         orbit = min(impact_oscillator.orbits(*key), key=lambda o: abs(o.speed - shown))
         log = simulate(impact_cases.impact_oscillator(orbit, 20.0)).arrays.impacts
         name = "impact oscillator, zeta {}, omega {}, stop {}, e {}".format(*key)
-        yield Line("9", f"{name}: speed before impact", orbit.speed, log.approach_speed[-1], 1e-9)
+        yield Comparison("9", f"{name}: speed before impact", orbit.speed, log.approach_speed[-1], 1e-9)
 
 
-ALL: tuple[Callable[[], Iterator[Line]], ...] = (
+ALL: tuple[Callable[[], Iterator[Comparison]], ...] = (
     tsuji,
     linear,
     prescribed_restitution,
