@@ -46,6 +46,8 @@ struct CellLevel {
         for (int m = 0; m < members; ++m) ++at(begin, cell_of(m) + 1);
         for (std::size_t c = 1; c < begin.size(); ++c) begin[c] += begin[c - 1];
         for (int m = 0; m < members; ++m) put(m, at(begin, cell_of(m))++);
+        // Each entry has advanced to the begin of the next cell; the shift restores it without a second
+        // array.
         for (std::size_t c = begin.size() - 1; c > 0; --c) begin[c] = begin[c - 1];
         begin[0] = 0;
     }
@@ -102,6 +104,7 @@ public:
         for (const Row& p : bed.position) largest = larger(largest, p[3]);
         std::vector<SizeClass> classes;
         for (const Row& p : bed.position) {
+            // Size classes are octaves of the radius: within one, cells are at most twice as large as needed.
             const auto k = static_cast<std::size_t>(std::log2(largest / p[3]));
             if (k >= classes.size()) classes.resize(k + 1);
             classes[k].largest = larger(classes[k].largest, p[3]);
@@ -131,6 +134,8 @@ public:
         };
         auto& [line, plane, rest] = axis_;
         line = 0, plane = 1, rest = 2;
+        // A sorting network of three axes; the factor of 1.5 keeps the order, and with it the bits, when
+        // spans fluctuate.
         order(line, plane), order(plane, rest), order(line, plane);
         const Row around = span + row(2 * size_classes_.back().largest);
         const std::size_t finest =
@@ -140,6 +145,8 @@ public:
             CellLevel& level = levels_[k];
             const int members = k == 0 ? bed.particles() : size_classes_[finest + k].count;
             level.largest = size_classes_[finest + k].largest;
+            // Partners of two particles of the level are then in adjacent cells; the margin covers the
+            // rounding of their indices.
             level.size = (2 * level.largest + bed.reach) * (1 + 1e-12);
             for (;;
                  level.size *= 1.25) { // a few particles in a large cavity do not need more cells than this
@@ -165,6 +172,7 @@ public:
             n, [&](int i) { return at(cell_, i); }, [&](int i, int place) { at(new_index_, i) = place; });
         for (int i = 0; i < n; ++i) at(old_index_, at(new_index_, i)) = i;
         if (levels_.size() == 1) return;
+        // Coarse levels list their members by index after the sort, which the first level defines.
         large_.clear();
         const auto radius = [&](int place) { return at(bed.position, old_index(place))[3]; };
         for (int i = 0; i < n; ++i)

@@ -119,6 +119,8 @@ struct ContactStart {
 
 inline ContactStart begin(const NewContact& t, real dt) {
     const PairLaw& e = *t.law;
+    // The restitution that the law asks for at this speed decides on the damping. Beyond the range of the law
+    // the run stops, with a status that names the contact.
     Rebound r = rebound(e, t);
     ContactStart b;
     b.extrapolated = r.extrapolated;
@@ -135,6 +137,7 @@ inline ContactStart begin(const NewContact& t, real dt) {
     real tangential = 0;
     e.normal.visit([&](const auto& reference) {
         using Law = std::decay_t<decltype(reference)>;
+        // Laws are stored for one pair of the species; radii and masses of this pair scale them.
         const Law law = reference.resized(e.size, size);
         tangential =
             e.tangential.visit([&](const auto& own) { return own.coefficient(size, law.stiffness); });
@@ -145,6 +148,8 @@ inline ContactStart begin(const NewContact& t, real dt) {
             b.state.law = row(k.stiffness, k.second, tangential, 0);
             b.yield_history = row(h.deepest, h.stiffness, h.origin, h.deepest);
         } else {
+            // The damping of a constant restitution is the same in all impacts, and its root has been found
+            // once for the pair.
             const real damping = std::isnan(e.constant_damping) ? law.damping(r.e) : e.constant_damping;
             const Coefficients<real> k = law.coefficients(damping, std::fmax(t.speed, 0.0));
             const NormalForce<real> force = law.force(k, depth, t.speed);

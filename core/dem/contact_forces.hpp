@@ -148,6 +148,8 @@ void find_touching(ContactList& list, const View& view, Begun&& begun, Ended&& e
     int* touching = list.touching.data();
     const int* slot = list.slot.data();
     int count = 0;
+    // Eight candidates at a time, as bits of a mask, because most candidates do not touch: what follows
+    // visits set bits only.
     for (int base = 0; base < to; base += lane_count) {
         prefetch.for_candidates(base);
         const int used = std::min(lane_count, to - base);
@@ -159,6 +161,8 @@ void find_touching(ContactList& list, const View& view, Begun&& begun, Ended&& e
         }
         overlapping &= first_lanes(used);
         count += list_lanes(overlapping, base, touching + count);
+        // A candidate with a history slot touched in the last step; where the two masks differ, a contact
+        // begins or ends.
         const unsigned touched = ~negative(slot + base) & first_lanes(used);
         each_lane(overlapping ^ touched,
                   [&](int l) { overlapping >> l & 1 ? begun(base + l) : ended(base + l); });
@@ -176,6 +180,8 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
     const int count = list.touching_count;
     const int* touching = list.touching.data();
     const Group zero = Group::all(0), dt = Group::all(laws.dt);
+    // Contacts that began before this step count as enduring. An age is compared instead of stored, so that a
+    // contact costs nothing while it lasts.
     const bool samples_enduring = list.steps % enduring_interval == 0 && laws.enduring < infinity;
     const Group latest = Group::all(static_cast<real>(list.steps) - laws.enduring);
     ContactForces& contact_forces = list.contact_forces;
@@ -187,7 +193,11 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
     alignas(64) real used[group];
     for (int base = 0; base < count; base += group) {
         const int part = base % lane_count; // first of the eight lanes of the sums
+        // The histories lie in the order in which contacts began, that is, anywhere in memory: they are
+        // requested early.
         if (part == 0) prefetch.for_contacts(base);
+        // The last lanes repeat the last contact, so that loads and stores need no mask; their weight of 0
+        // removes them from all sums. Repeated stores write the same values.
         int a[group], k[group], s[group];
         for (int l = 0; l < group; ++l) {
             a[l] = std::min(base + l, count - 1);
@@ -195,6 +205,7 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
             s[l] = slot[k[l]];
             used[l] = base + l < count;
         }
+        // A lane's row is found by contact (a), candidate (k) or history slot (s).
         const auto state = [&](Row ContactState::* part) {
             return [&, part](int l) { return &(states[s[l]].*part); };
         };
@@ -209,6 +220,8 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
         const auto m = view.template kinematics<rough>(k);
         const auto law = columns(state(&ContactState::law));
         Columns yield_history{};
+        // Unloading follows a curve from the deepest overlap so far. It costs powers of the overlap, and so
+        // is computed only where it is needed: at the turn from loading to unloading, and for a sample.
         if constexpr (Law::hysteretic) {
             alignas(64) real overlap[group];
             pack<group>(overlap) = m.overlap;
@@ -219,13 +232,19 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
             }
             yield_history = columns(yields);
         }
+        // The normal force. A law with a dashpot pulls at the end of a contact; whether that is cut off is
+        // the choice of the case.
         const Group rate = dot(m.velocity, m.normal);
         const Depth<Group> depth = depth_from_overlap(m.overlap);
         const Coefficients<Group> k_normal{law.x, law.y};
         const History<Group> history{yield_history.x, yield_history.y, yield_history.z};
         auto normal = normal_force(normal_law, k_normal, depth, rate, history);
         if (laws.repulsive_only) normal.total = larger(normal.total, zero);
+        // The loss is the power of the dissipative part of the force, at the velocities of this step: what
+        // the ledger checks against the motion.
         Group lost = weight * dt * (normal.total - normal.elastic) * rate;
+        // Each of the eight sums has its own contacts, whatever the width of the registers: sums are the same
+        // on all machines.
         group_of(diagnostics.normal[partner], part) += lost;
         diagnostics.largest_overlap.update(m.overlap, m.radius, part);
         Vector<Group> force = (zero - normal.total) * m.normal;
@@ -237,6 +256,8 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
             store(yield_history, yields);
         }
         if constexpr (rough) {
+            // Friction is limited by the normal force of this step; the spring is half a step ahead, as in
+            // the leapfrog of the velocities.
             const auto h = tangential_force(m, normal.total, rate, law.z, law.w, view.friction(k), depth,
                                             columns(state(&ContactState::friction)), laws.tangential, dt);
             store(as_columns(h.spring), state(&ContactState::friction));
@@ -249,6 +270,8 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
                 group_of(diagnostics.sliding_correction[partner], part) += weight * h.excess;
             }
             if constexpr (rolls) {
+                // Rolling resistance is a spring of its own, with a limit in torque, and uses the tangential
+                // stiffness of this step.
                 const auto r =
                     rolling_torque(m, normal.total, h.stiffness, columns(rolling(&RollingState::law)), depth,
                                    columns(rolling(&RollingState::spring)), laws.tangential, dt);
@@ -265,11 +288,14 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
         } else
             store(Columns{zero, zero, zero, zero}, contact_force(&ContactForce::couple));
         if (samples_enduring) {
+            // A sample stands for all steps of the interval.
             alignas(64) real since[group];
             for (int l = 0; l < group; ++l) since[l] = at(list.history.start_step, s[l]);
             group_of(diagnostics.enduring[partner], part) +=
                 Group::all(enduring_interval) * choose(latest - pack<group>(since), lost, zero);
         }
+        // The fourth number counts contacts when forces are summed: a particle without any skips its contact
+        // terms.
         store(Columns{force.x, force.y, force.z, Group::all(1)}, contact_force(&ContactForce::force));
     }
     if (sampled) diagnostics.contacts[partner] += count;

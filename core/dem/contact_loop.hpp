@@ -67,6 +67,8 @@ class ContactLoop {
                  Chunk& chunk, const Prefetch& prefetch) {
         Diagnostics& diagnostics = chunk.diagnostics;
         const auto begun = [&](int k) {
+            // Coefficients of a law depend on the approach speed at most, so that they are computed once a
+            // contact, here.
             const NewContact t = new_contact_of(list, k, partner);
             const ContactStart b = begin(t, problem_.dt);
             at(list.slot, k) = list.history.add(b, static_cast<real>(list.steps));
@@ -100,6 +102,8 @@ class ContactLoop {
             compute_contact_forces<rough.value, rolls.value>(law, list, view, laws, sampled, partner,
                                                              diagnostics, update_curve, prefetch);
         });
+        // Contacts of this step get the part of their dashpot's impulse that acted between first touch and
+        // the step; it is known as a share of the force.
         for (const auto& [k, first_step] : chunk.first_step) {
             const auto touching = list.touching.begin();
             const auto a = std::lower_bound(touching, touching + list.touching_count, k) - touching;
@@ -183,6 +187,8 @@ public:
     // Computes the forces of the pairs that belong to the chunk. Writes only to the chunk.
     void pair_forces(const NeighbourList& neighbours, Chunk& chunk, bool sampled, const Prefetch& prefetch) {
         const int own = chunk.begin / Bed::chunk_size, last = chunk.highest_neighbour / Bed::chunk_size;
+        // A pair may approach by what its own chunk has moved and what the most mobile of its neighbours'
+        // chunks has.
         real others = 0;
         for (int c = own; c <= last; ++c) others = larger(others, at(bed_.chunk_motion, c).moved);
         const real moved = at(bed_.chunk_motion, own).moved + others;
@@ -201,6 +207,7 @@ public:
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
         compute(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall, sampled, chunk,
                 Prefetch());
+        // The reaction on the cavity; its moment is a result only, and is computed for samples.
         Row total{}, moment{};
         const ContactList& list = chunk.walls;
         for (int a = 0; a < list.touching_count; ++a) {

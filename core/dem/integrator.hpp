@@ -66,10 +66,14 @@ class Integrator {
             Row &x = position[i], &u = velocity[i];
             char& touched = marks[i];
             ContactForce& sum = sums.of(i);
+            // A particle without contact, in this step and in the last one, moves freely: it needs neither
+            // its stored acceleration nor its spin.
             Row a = body, v = u + evenly;
             const bool before = touched, now = sum.force[3] > 0;
             if (before || now) {
                 if (now) a = sum.force * u[3] + body;
+                // Velocity Verlet with the velocity predicted from the last acceleration, since forces depend
+                // on velocities; it is corrected with the present one.
                 v = step.corrected(u, a, before ? rates[i].velocity : body_before);
                 rates[i].velocity = a;
                 if (spins) {
@@ -94,6 +98,7 @@ class Integrator {
             } else if constexpr (sampled) {
                 rotation += twice_rotation_energy(i);
             }
+            // The next step is predicted in the same pass, while the particle is in the registers.
             const Row middle = step.half_step(v, a), weighed = v / u[3];
             momentum += weighed;
             if constexpr (sampled) {
@@ -102,6 +107,8 @@ class Integrator {
             }
             x = step.drifted(x, middle);
             u = step.predicted(v, a);
+            // The largest speed relative to the bed bounds how far any particle of the chunk moves, and so
+            // how long the lists hold.
             const Row moved = middle - reference_velocity;
             const real speed_squared = dot(moved, moved);
             max_speed_squared = max_speed_squared > speed_squared ? max_speed_squared : speed_squared;

@@ -82,6 +82,7 @@ public:
         }
         outgoing.moving.reserve(
             static_cast<std::size_t>(chunk.pairs.touching_count + chunk.walls.touching_count));
+        // Only touching contacts move: candidates without a history are found again by the search.
         for (const ContactList* list : {&chunk.pairs, &chunk.walls})
             for (int a = 0; a < list->touching_count; ++a) {
                 const int k = at(list->touching, a), i = at(list->first, k), j = at(list->second, k);
@@ -150,6 +151,8 @@ public:
             firsts.resize(2 * room), seconds.resize(2 * room);
             first = firsts.data(), second = seconds.data();
         };
+        // Particles of very different sizes are on several levels of cells: one level for the smallest would
+        // make a search around a large one visit thousands of cells.
         const auto& levels = cells_.levels();
         const CellLevel& fine = levels.front();
         const Group fits = Group::all(fine.largest);
@@ -159,6 +162,8 @@ public:
             const real reach = p[3] + bed.reach;
             const Vector<Group> place = {Group::all(p[0]), Group::all(p[1]), Group::all(p[2])};
             const Group around = Group::all(reach);
+            // Particles are sorted by cell, so that a line of cells is one range of particles and is compared
+            // in registers.
             const auto search_range = [&](int from, int to) {
                 for (int j = from; j < to; j += group) {
                     make_room();
@@ -171,6 +176,8 @@ public:
                     count += list_lanes(within & first_lanes(std::min(group, to - j)), j, second + count);
                 }
             };
+            // Each pair is found once: by the particle with the lower index, in its own cell behind itself
+            // and in cells that follow.
             const Cell own = cells_.cell(fine, p);
             const CellBox box = p[3] <= fine.largest ? cells_.adjacent_cells(fine, own)
                                                      : cells_.cells_within(fine, p, reach + fine.largest);
@@ -181,6 +188,8 @@ public:
                     search_range(has_own ? i + 1 : at(fine.begin, line + box.low[0]),
                                  at(fine.begin, line + box.high[0] + 1));
                 }
+            // Larger particles have lists of members, which are few, and both orders of indices occur: the
+            // lower index searches.
             for (std::size_t k = 1; k < levels.size(); ++k) {
                 const CellLevel& level = levels[k];
                 const CellBox there = cells_.cells_within(level, p, reach + level.largest);
@@ -199,6 +208,8 @@ public:
                     }
             }
         }
+        // The lists are copied at the end, with a byte for the first partner: neighbours are read in each
+        // scan and must fit into the caches.
         chunk.neighbour_first.resize(static_cast<std::size_t>(count));
         std::transform(first, first + count, chunk.neighbour_first.begin(),
                        [](int own) { return static_cast<std::uint8_t>(own); });
@@ -213,6 +224,8 @@ public:
         const int walls = static_cast<int>(bed.cavity->walls.size());
         for (const OutgoingContacts& from : outgoing_)
             for (const MovedContact& m : from.moving) {
+                // The sort may have exchanged which partner has the lower index, and with it the owner of the
+                // contact and the sign of its springs.
                 int i = cells_.new_index(m.first), j = m.wall == none ? cells_.new_index(m.second) : i;
                 const bool swapped = i > j;
                 if (swapped) std::swap(i, j);
@@ -224,6 +237,8 @@ public:
                                             chunk.walls.history.add(from.walls, m.slot, 1));
                     continue;
                 }
+                // A contact keeps its history if its pair is still a neighbour; the neighbours of a particle
+                // are consecutive.
                 const auto& firsts = chunk.neighbour_first;
                 auto p = static_cast<int>(std::ranges::lower_bound(firsts, own) - firsts.begin());
                 const auto is_own = [&] {
@@ -254,6 +269,8 @@ public:
     }
 
     void scan_pairs(const Bed& bed, Chunk& chunk) const {
+        // Neighbours hold for many steps, candidates for fewer: a thinner skin leaves fewer pairs to test in
+        // each step, and a scan is cheaper than a search.
         choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach);
         const real skin = chunk.pairs.skin;
         thread_local std::vector<int> candidate_pairs;
@@ -273,6 +290,7 @@ public:
                 list_lanes(within & first_lanes(std::min(group, count - p)), p, candidate_pair + candidates);
         }
         ContactList& pairs = chunk.pairs;
+        // Contacts that last keep their history across the scan, which replaces the list of candidates.
         const std::vector<int>& slot = slots_by_origin(pairs, count);
         pairs.resize(candidates);
         for (int k = 0; k < candidates; ++k) {
@@ -297,6 +315,7 @@ public:
             const Vector<Group> place = {a.x - Group::all(c[0]), a.y - Group::all(c[1]),
                                          a.z - Group::all(c[2])};
             const int used = std::min(group, chunk.end - i);
+            // A bit for each wall of a particle; 32 walls are the most that a cavity has.
             std::uint32_t* mask = &at(masks, i - chunk.begin);
             for (int w = 0; w < walls; ++w) {
                 const Group far = distance(at(all_walls, w), place);

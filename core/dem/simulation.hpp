@@ -223,11 +223,14 @@ class Simulation {
             partition_.each_chunk(
                 worker.rank(), [&](ChunkIndex p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
         };
+        // Contacts leave their chunks first, since the sort by cell changes the index of each particle and
+        // the chunk that owns it.
         each_chunk([](NeighbourList& n, Bed& bed, int c) { n.collect_contacts(bed, at(bed.chunks, c)); });
         worker.sync([&] {
             for (std::size_t b = 0; b < beds_.size(); ++b)
                 choose_reach(beds_[b]), neighbours_[b].set_up_cells(beds_[b]);
         });
+        // The cells depend on the extent of the whole bed, which is known only now.
         each_chunk([](NeighbourList& n, const Bed& bed, int c) { n.assign_cells(bed, at(bed.chunks, c)); });
         worker.sync([&] {
             for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].sort_by_cell(beds_[b]);
@@ -237,6 +240,8 @@ class Simulation {
             for (int b = 0; b < static_cast<int>(beds_.size()); ++b)
                 f(at(neighbours_, b), at(beds_, b), at(range.first, b), at(range.until, b));
         };
+        // The arrays are permuted one after the other through one buffer, which costs a barrier each and
+        // saves the memory of a copy of the bed.
         for (int phase = 0; phase < NeighbourList::sort_phases; ++phase) {
             each_bed([phase](NeighbourList& n, Bed& bed, int first, int until) {
                 n.sort(bed, phase, first, until);
@@ -246,6 +251,8 @@ class Simulation {
             });
         }
         each_chunk([](const NeighbourList& n, Bed& bed, int c) {
+            // Particles are now in the order of cells: each chunk is searched, and its bounds of motion start
+            // again.
             n.search(bed, at(bed.chunks, c));
             at(bed.chunk_motion, c) = ChunkMotion{}, at(bed.chunks, c).approach = 0;
         });
@@ -256,6 +263,7 @@ class Simulation {
         each_chunk([](NeighbourList& n, Bed& bed, int c) { n.clear_outgoing(at(bed.chunks, c)); });
         worker.sync([&] {
             partition_.divide(worker.size());
+            // The work of each range has changed with the order of the particles.
             ++rebuilds_;
             steps_since_ = 0;
         });
@@ -281,6 +289,8 @@ class Simulation {
         WorkerRange& range = partition_.range(worker.rank());
         const Row body = structure().body_acceleration();
         std::vector<char>& computed = range.computed;
+        // Chunks at the border of a range exert forces on particles of other ranges. They are computed first,
+        // so that no worker waits for the whole range of another one.
         computed.assign(range.at_border.begin(), range.at_border.end());
         const auto forces = [&](int k, const Prefetch& prefetch = {}) {
             const ChunkIndex p = partition_.chunk_index(k);
@@ -290,6 +300,7 @@ class Simulation {
         for (int k = range.begin; k < range.end; ++k)
             if (at(computed, k - range.begin)) forces(k);
         worker.report();
+        // Meanwhile this worker computes forces of its own, chunk by chunk, until the others have reported.
         worker.wait_for_lower([&, k = range.begin]() mutable {
             while (k < range.end && at(computed, k - range.begin)) ++k;
             if (k == range.end) return false;
@@ -297,6 +308,8 @@ class Simulation {
             forces(k);
             return true;
         });
+        // Forces of lower ranges are added before those of this range: the order of the sums, and so the
+        // bits, does not depend on the number of workers.
         for (const ChunkIndex in : range.incoming)
             at(contact_loops_, in.bed)
                 .add_incoming(at(range.sums, in.bed), chunk(in), at(range.first, in.bed),
@@ -306,6 +319,7 @@ class Simulation {
             Chunk& own = chunk(p);
             ForceSums& sums = at(range.sums, p.bed);
             ContactLoop& loop = at(contact_loops_, p.bed);
+            // A chunk is integrated as soon as all its forces are known, while it is in the caches.
             const bool is_known = at(computed, k - range.begin);
             const auto swap_buffers = [&] {
                 if (is_known || last) return;
@@ -348,12 +362,15 @@ class Simulation {
         structure().drift();
         needs_rebuild_ = false;
         for (Bed& bed : beds_) {
+            // What matters for neighbours is the motion of particles relative to each other: the mean
+            // velocity of the bed is subtracted from all.
             const Row before = bed.motion.displacement, momentum = momentum_of(bed);
             update_cavity_motion(bed);
             const Row apart = bed.motion.displacement - before - bed.reference_velocity * problem_.dt;
             bed.cavity_moved = std::sqrt(dot(apart, apart)) * (1 + 1e-9);
             bed.reference_velocity = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
             const real since = approach_since_rebuild(bed);
+            // Written so that NaN asks for a rebuild as well.
             needs_rebuild_ |= !(since < bed.reach);
             if (status_ == Status::finished && !(since + bed.cavity_moved < infinity))
                 status_ = Status::not_finite;
@@ -396,6 +413,7 @@ class Simulation {
     // Applies the forces of this step to the structure and takes the sample. Called by one worker.
     void finish_step(bool first, bool sample) {
         compute_modal_force();
+        // Half of this kick was part of the prediction; the forces at the start have had no prediction.
         if (!first) structure().kick();
         structure().store_output();
         Row momentum{};
@@ -403,6 +421,7 @@ class Simulation {
             bed.output_displacement = bed.motion.displacement;
             momentum += momentum_of(bed);
         }
+        // The sum of the momentum is a cheap sign of numbers that are not finite anywhere in the bed.
         if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
         if (!first) structure().work_on_particles(momentum);
         if (sample)
@@ -417,6 +436,7 @@ class Simulation {
     template <class Worker, class Pause>
     void run_steps(Worker& worker, long until, const std::atomic<bool>& stop, Pause&& pause) {
         while (step_ <= until && status_ == Status::finished && !loop_control_.halt && !loop_control_.pause) {
+            // Neighbours are rebuilt before the step in which a pair outside of the lists could touch.
             if (needs_rebuild_) rebuild(worker);
             const bool first = step_ == 0, sample = sampled(step_);
             advance(worker, first, sample, step_ == until);
