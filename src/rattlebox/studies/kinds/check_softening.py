@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rattlebox.model.errors import Hint
 from rattlebox.model.particle_damper import ParticleDamper
-from rattlebox.model.units import whole_number
-from rattlebox.prepare.particles import resolve_softening
-from rattlebox.studies.grid.robust import packing_axis
 from rattlebox.studies.kinds.compare_variants import compared
 
 if TYPE_CHECKING:
@@ -92,32 +89,33 @@ def check_softening(
     >>> sorted(result)[:2]
     ['reduced_loss', 'reduced_loss_change']
     """
-    count = whole_number(packings, "packings", 2)
-    if not case.particle_dampers:
-        raise Hint("the case has no particle damper, and only these have softening", "a case with rb.ParticleDamper")
-    case, _ = resolve_softening(case)
-    own = max(damper.softening_factor for damper in case.particle_dampers)
-    values = _values(own, softenings)
-    variants = []
-    for value in values:
-        dampers = [
-            each.model_copy(update={"softening": max(1.0, each.softening_factor * value / own)})
-            if isinstance(each, ParticleDamper)
-            else each
-            for each in case.dampers
-        ]
-        variants.append(case.model_copy(update={"dampers": tuple(dampers)}))
+
+    def variants(case: Case, _: Mapping[str, Any]) -> dict[float, Case]:
+        largest = max(damper.softening_factor for damper in case.particle_dampers)
+        return {value: _softened(case, value, largest) for value in _values(largest, softenings)}
+
     options = {"skip": skip, "cycles": cycles, "workers": workers, "progress": progress}
-    return compared(variants, measures, packing_axis(case, count), ("softening", values, "1"), tolerance, options)
+    return compared(case, ("softening", "1", "softening"), variants, measures, packings, tolerance, options)
 
 
-def _values(own: float, given: Sequence[float] | None) -> list[float]:
+def _softened(case: Case, value: float, largest: float) -> Case:
+    """Return the case with a value of its largest softening; others keep their ratio to it, but are at least 1."""
+    dampers = [
+        damper.model_copy(update={"softening": max(1.0, damper.softening_factor * value / largest)})
+        if isinstance(damper, ParticleDamper)
+        else damper
+        for damper in case.dampers
+    ]
+    return case.model_copy(update={"dampers": tuple(dampers)})
+
+
+def _values(largest: float, softenings: Sequence[float] | None) -> list[float]:
     """Return the softenings to compare, the largest first."""
-    if given is None:
-        if own == 1:
+    if softenings is None:
+        if largest == 1:
             raise Hint("the softening is 1, so that no contact is softened", "softenings = (10, 1)", ["softening"])
-        return list(dict.fromkeys(max(1.0, own / part) for part in (1, 4, 16)))
-    values = [float(value) for value in given]
-    if len(values) < 2 or not all(1 <= value <= 1e6 for value in values):
+        return list(dict.fromkeys(max(1.0, largest / part) for part in (1, 4, 16)))
+    values = [float(value) for value in softenings]
+    if len(set(values)) < 2 or not all(1 <= value <= 1e6 for value in values):
         raise Hint("two softenings or more are needed, each from 1 to 1e6", "softenings = (100, 10, 1)", ["softenings"])
     return values

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
-from rattlebox.prepare.particles import count_steps, resolve_softening
+from rattlebox.prepare.particles import count_steps
 from rattlebox.studies.grid.axes import read_axes
-from rattlebox.studies.grid.robust import packing_axis
 from rattlebox.studies.kinds.compare_variants import compared
 from rattlebox.studies.work.particle_work import ParticleWork
 
@@ -92,18 +91,19 @@ def check_step(
     >>> float((result.step[0] / result.step[1]).round(12))
     2.0
     """
-    count = whole_number(packings, "packings", 2)
-    if not case.particle_dampers:
-        raise Hint("the case has no particle damper, and only these have time steps", "a case with rb.ParticleDamper")
     divisors = [whole_number(part, f"parts[{index}]", 1) for index, part in enumerate(parts)]
     if len(divisors) < 2 or np.any(np.diff(divisors) <= 0):
         raise Hint("two parts or more are needed, ascending", "parts = (1, 2)", ["parts"])
-    case, _ = resolve_softening(case)
-    seeds = packing_axis(case, count)
-    work = ParticleWork(case, read_axes(case, seeds, source="packings"), cycles=cycles)
-    whole = work.variant(0)
-    own = whole.duration / count_steps(whole)
-    steps = [own / part for part in divisors]
-    variants = [case.model_copy(update={"method": case.method.model_copy(update={"dt": step})}) for step in steps]
+
+    def variants(case: Case, seeds: Mapping[str, Any]) -> dict[float, Case]:
+        # The duration of a run over cycles, and with it the step that fits into it, is known to the work of a study only.
+        prepared = ParticleWork(case, read_axes(case, seeds, source="packings"), cycles=cycles).variant(0)
+        step = prepared.duration / count_steps(prepared)
+        return {step / part: _with_step(case, step / part) for part in divisors}
+
     options = {"skip": skip, "cycles": cycles, "workers": workers, "progress": progress}
-    return compared(variants, measures, seeds, ("step", steps, "s"), tolerance, options)
+    return compared(case, ("step", "s", "time step"), variants, measures, packings, tolerance, options)
+
+
+def _with_step(case: Case, step: float) -> Case:
+    return case.model_copy(update={"method": case.method.model_copy(update={"dt": step})})

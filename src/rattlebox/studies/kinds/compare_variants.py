@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox.model.errors import Hint
+from rattlebox.model.units import whole_number
+from rattlebox.prepare.particles import resolve_softening
 from rattlebox.prepare.time_step import WARNINGS
+from rattlebox.studies.grid.robust import packing_axis
 from rattlebox.studies.kinds.sweep import sweep
 
 if TYPE_CHECKING:
@@ -18,19 +22,31 @@ if TYPE_CHECKING:
 
 
 def compared(
-    variants: Sequence[Case],
+    case: Case,
+    coordinate: tuple[str, str, str],
+    variants_of: Callable[[Case, Mapping[str, Any]], Mapping[float, Case]],
     measures: str | Sequence[str],
-    seeds: Mapping[str, Any],
-    coordinate: tuple[str, Sequence[float], str],
+    packings: int,
     tolerance: float,
     options: Mapping[str, Any],
 ) -> xarray.Dataset:
-    """Return the measures of variants, and their changes from the last one."""
+    """Return the measures of variants by a value, and their changes from the last one.
+
+    The coordinate has name, unit and long name; `variants_of` returns the variants of a case with its axis of packings.
+    """
     import xarray
 
-    along, values, unit = coordinate
+    along, unit, long_name = coordinate
+    whole_number(packings, "packings", 2)
+    if not case.particle_dampers:
+        raise Hint(
+            f"the case has no particle damper, and only these have a {long_name}", "a case with rb.ParticleDamper"
+        )
+    case, _ = resolve_softening(case)
+    seeds = packing_axis(case, packings)
+    variants = variants_of(case, seeds)
     names = [measures] if isinstance(measures, str) else list(measures)
-    studies = [sweep(variant, dict(seeds), names, **options) for variant in variants]
+    studies = [sweep(variant, dict(seeds), names, **options) for variant in variants.values()]
     count = math.prod(studies[0].sizes.values())
     data: dict[str, Any] = {}
     for name in names:
@@ -41,19 +57,19 @@ def compared(
         change, change_error = mean - mean[-1], np.hypot(error, error[-1])
         change_error[-1] = 0.0
         data[name] = along, mean, about
-        long_name, units = about.get("long_name", name), about.get("units", "1")
+        quantity, units = about.get("long_name", name), about.get("units", "1")
         for suffix, part, words in (
             ("error", error, "standard error of the {}"),
             ("change", change, f"change of the {{}} from the last {along}"),
             ("change_error", change_error, "standard error of the change of the {}"),
         ):
-            data[f"{name}_{suffix}"] = along, part, {"units": units, "long_name": words.format(long_name)}
+            data[f"{name}_{suffix}"] = along, part, {"units": units, "long_name": words.format(quantity)}
         allowed = tolerance * abs(mean[-1])
         changed = np.abs(change) > np.maximum(2 * change_error, allowed)
         kept = np.abs(change) + 2 * change_error <= allowed
-        data[f"{name}_changed"] = along, changed, {"long_name": f"whether the {long_name} changes"}
-        data[f"{name}_kept"] = along, kept, {"long_name": f"whether the {long_name} is kept"}
-    about_values = (along, list(values), {"units": unit, "long_name": "time step" if along == "step" else along})
+        data[f"{name}_changed"] = along, changed, {"long_name": f"whether the {quantity} changes"}
+        data[f"{name}_kept"] = along, kept, {"long_name": f"whether the {quantity} is kept"}
+    about_values = (along, list(variants), {"units": unit, "long_name": long_name})
     exceeded = [name for name in WARNINGS if any(_exceeds(study, name) for study in studies)]
     attributes = {"packings": count, "tolerance": tolerance, "exceeded": exceeded}
     return xarray.Dataset(data, {along: about_values}, attributes)
