@@ -72,6 +72,8 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
             "the record before the motions become equal"
         )
     saturation = positive("saturation", saturation, "")
+    # The growth ends where motions are as far apart as they can be; the mean logarithm is compared, since single pairs
+    # saturate at different times.
     logs = np.log(pairs)
     reached = np.flatnonzero(logs.mean(axis=0) >= np.log(saturation))
     size = int(reached[0]) if reached.size else t.size
@@ -80,6 +82,8 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
             f"only {size} samples precede a separation of {saturation:g}, but at least 3 are needed; try: a smaller first "
             "separation, or a higher sampling rate"
         )
+    # Each pair counts from its own first distance, and has its own slope: the scatter of slopes is the error, and needs
+    # no assumption about the noise along a line. One pair has only that of its line.
     growth = logs - logs[:, :1]
     (slopes, offsets), covariance = np.polyfit(t[:size] - t[0], growth[:, :size].T, 1, cov=True)
     exponent = float(slopes.mean())

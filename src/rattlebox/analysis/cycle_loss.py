@@ -101,16 +101,22 @@ def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] |
     """
     arrays = run.arrays
     own = list(range(len(arrays.dampers))) if dampers is None else list(dampers)
+    # Ends of cycles lie between samples. Only what is smooth is interpolated: the energy of the contents as rigid
+    # masses, which changes fastest, is taken out before and added after.
     ends = arrays.time[-1] - np.arange(cycles, -1, -1) / frequency
     *energies, carried, velocity, mass = _energies(run, own)
     energy, raised, lost = (np.interp(ends, arrays.time, values) for values in energies)
     energy = energy + carried(ends)
     supplied = energy + lost
     work, stored = float(supplied[-1] - supplied[0]) / cycles, float(energy[-1] - energy[0]) / cycles
+    # The natural unit of a loss is m V^2; small losses are compared with a part of it, since their relative change is
+    # large in any motion.
     moving = velocity[arrays.time >= ends[0] - 1e-9 / frequency]
     scale = 2 * mass * float(np.var(moving, axis=0).sum())
     limit = max(SHARE * abs(work), FLOOR * scale)
     each = np.diff(supplied)
+    # The first half against the second: a loss that still falls, as of a bed that compacts, shows there before it does
+    # in single cycles.
     half = cycles // 2
     drift = float(each[cycles - half :].mean() - each[:half].mean()) if half else 0.0
     sunk = float(raised[-1] - raised[0]) / cycles
@@ -151,12 +157,15 @@ def _energies(
     from scipy.interpolate import CubicSpline
 
     arrays = run.arrays
+    # Gravity counts as stored energy: a bed that sinks pays for a part of the loss, which the walls have not supplied.
     raised = arrays.gravity_energy[:, dampers].sum(axis=1)
     still = raised + arrays.contact_energy[:, dampers].sum(axis=1)
     if arrays.engine == "dem":
         parts = (arrays.normal_loss, arrays.plastic_loss, arrays.sliding_loss, arrays.rolling_loss)
         lost = sum(part[:, dampers].sum(axis=(1, 2)) for part in parts)
         moving = (arrays.kinetic_energy + arrays.rotation_energy)[:, dampers].sum(axis=1)
+        # One mass for each cavity in 3-D, one for each ball in 1-D: the energy that is taken out is that of bodies that
+        # move with their cavity.
         masses, momenta = arrays.particle_mass[dampers], arrays.momentum[:, dampers]
         base = arrays.base_velocity
         cavities = base[:, None] + arrays.cavity_velocity[:, dampers]

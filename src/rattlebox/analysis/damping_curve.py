@@ -118,12 +118,15 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     lower, upper = (np.log(edges) for edges in band_edges(levels))
     ratio, frequency, starts, ends = np.full((4, levels.size), np.nan)
     for k in range(levels.size):
+        # A band that the decay does not cross as a whole would have the ratio of a part of it.
         if not logarithm[-1] < lower[k] < upper[k] <= logarithm[0]:
             continue
         (t_high, phase_high), (t_low, phase_low) = (_crossing(decay, logarithm, e) for e in (upper[k], lower[k]))
         turn = phase_low - phase_high
+        # Less than half a cycle cannot be told from a change of the rest position.
         if turn < math.pi:
             continue
+        # The decrement counts phase instead of time, and so is exact while the frequency changes.
         delta = (upper[k] - lower[k]) / turn
         ratio[k] = delta / math.sqrt(1 + delta**2)
         frequency[k] = turn / (2 * math.pi * (t_low - t_high))

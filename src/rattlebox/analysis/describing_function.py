@@ -279,6 +279,7 @@ def solve(
     Applications of Bifurcation Theory, Academic Press, 359-384.
     E. L. Allgower, K. Georg (1990), Numerical Continuation Methods, Springer, doi:10.1007/978-3-642-61257-2.
     """
+    # Without a load at a cavity nothing moves, at any level; such frequencies would divide by zero.
     inside = np.flatnonzero(table.covers(frequency) & np.any(drive != 0, axis=1))
     one = drive.shape[1] == 1
     curves = table.curves(frequency)
@@ -298,6 +299,8 @@ def solve_near(
     """Return the motions for a table that differs little from that of known motions."""
     if drive.shape[1] == 1:
         return solve(table, frequency, gain, drive, levels)
+    # Known motions are good starts for Newton's method, many times faster than following the branch again. Steps are
+    # bounded, so that a start cannot change to another branch.
     place = np.nonzero(np.isfinite(solutions.acceleration).all(axis=-1))
     level, rows = np.log(levels[place[0]]), place[1]
     branch = _Branch(_System(table, table.curves(frequency), np.arange(frequency.size), frequency, gain, drive))
@@ -314,6 +317,8 @@ def solve_near(
     near = replace(solutions, acceleration=acceleration)
     if found.all():
         return near
+    # A fold may have passed over a motion, which then has no neighbour: its whole frequency is solved from the
+    # beginning.
     lost = np.unique(rows[~found])
     return near.with_rows(lost, solve(table, frequency[lost], gain[lost], drive[lost], levels))
 
@@ -390,6 +395,8 @@ class _UnorderedSolutions:
 def _solve_one(system: _System, levels: FloatArray) -> _UnorderedSolutions:
     """Return the solutions for one cavity from the level as a function of the amplitude."""
     grid, gain, drive = system.curves.grid, system.gain[:, 0, 0], system.drive[:, 0]
+    # The logarithm of the level as a function of that of the amplitude: levels are roots of `curve - level`, and where
+    # it falls, a larger level belongs to a smaller motion.
     offset = system.table.log_acceleration(2 * np.pi * system.frequency) - np.log(np.abs(drive))
     with np.errstate(divide="ignore"):
         factor = np.log(np.abs(1 + gain[:, None] * system.curves.mass_on_grid[system.rows]))
@@ -408,6 +415,7 @@ def _solve_one(system: _System, levels: FloatArray) -> _UnorderedSolutions:
             sides, numbers = over[row, known[row]], np.flatnonzero(known[row])
             hidden = (sides[1:] != sides[:-1]) & (np.diff(numbers) > 1)
             lost[number, row] = hidden.any() or not (known[row, 0] and known[row, -1])
+        # Each change of side between neighbours of the grid is a solution; the sign of the change is its stability.
         rows, cells = np.nonzero((over[:, 1:] != over[:, :-1]) & known[:, 1:] & known[:, :-1])
         places.append(np.stack([np.full(rows.size, number), rows, cells, over[rows, cells + 1]]))
     level_of, rows, cells, rises = np.concatenate(places, axis=1)
@@ -475,6 +483,7 @@ class _Branch:
 
     def start(self) -> FloatArray:
         """Return the motions at a level at which all are so far below the table that the masses are constant."""
+        # There the system is linear, with one solution, from which all others are followed.
         low = self.limits[0] - 10 * _EDGE
         every = np.arange(len(self.gain))
         mass, _ = self.system.mass(every, np.full((every.size, self.count), low))
@@ -492,6 +501,7 @@ def _solve_several(system: _System, levels: FloatArray) -> _UnorderedSolutions:
     below, above, lost = (np.zeros(shape, bool) for _ in range(3))
     parts = []
     for number, level in enumerate(np.log(levels)):
+        # The branch passes a level as often as there are motions: twice more after each pair of folds.
         below[number] = path[0, :, -1] > level
         above[number] = ~at_end & (path[-1, :, -1] < level)
         lost[number] = at_end
@@ -501,6 +511,7 @@ def _solve_several(system: _System, levels: FloatArray) -> _UnorderedSolutions:
         part = (level - first[:, -1]) / (last[:, -1] - first[:, -1])
         points = _at_level(branch, first + part[:, None] * (last - first), rows, level)
         logs = branch.log_amplitudes(points, rows)
+        # A cavity at a node of the motion is below the table at any level; it has no influence and does not decide.
         smallest = np.where(logs < logs.max(axis=1, keepdims=True) + math.log(NEGLIGIBLE), np.inf, logs).min(axis=1)
         motion = branch.motion(points) * (branch.scale[rows] * levels[number])[:, None]
         small, large = smallest < low, logs.max(axis=1) > high
@@ -541,6 +552,7 @@ def _follow_branch(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
     path, tangent = [point.copy()], np.zeros_like(point)
     tangent[:, -1] = 1.0
     length = np.full(len(point), _LONGEST)
+    # All frequencies advance together, each with its own step, because the cost is that of the calls.
     end = branch.limits[1] + 10 * _EDGE
     lost, active = np.zeros(len(point), bool), np.arange(len(point))
     before = tangent.copy()
@@ -553,6 +565,8 @@ def _follow_branch(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
         bend = (along - before[active]) / np.where(last[active] > 0, last[active], np.inf)[:, None]
         ahead = here + h[:, None] * along + 0.5 * h[:, None] ** 2 * bend
         accepted, new_tangent = _correct_prediction(branch, ahead, along, active)
+        # A step is good if the corrector stayed near the prediction and the tangent has not turned by more than 25
+        # degrees: otherwise it may have jumped to another branch.
         good = np.asarray(np.isfinite(accepted).all(axis=1) & np.isfinite(new_tangent).all(axis=1))
         good &= np.linalg.norm(np.where(good[:, None], accepted - ahead, 0.0), axis=1) < 0.5 * h
         good &= np.einsum("fi,fi->f", np.nan_to_num(new_tangent), along) > 0.9
@@ -561,6 +575,8 @@ def _follow_branch(branch: _Branch) -> tuple[FloatArray, NDArray[np.bool_]]:
         point[done], tangent[done] = accepted[good], new_tangent[good]
         length[active] = np.where(good, np.minimum(1.5 * h, _LONGEST), 0.5 * h)
         path.append(point.copy())
+        # Where even the shortest step fails, the table has a hole or a kink: the rest of the branch is reported as
+        # lost.
         lost[active] = length[active] < _SHORTEST
         beyond = branch.log_amplitudes(point[active], active).max(axis=1) > end
         active = active[~beyond & ~lost[active]]
@@ -578,6 +594,8 @@ def _correct_prediction(
         for _ in range(8):
             along_here = along[active]
             value, derivative = branch.residual(here, rows[active])
+            # The bordered matrix stays regular at folds, where the derivative without the level is singular. One
+            # factorisation gives the correction and the tangent.
             matrix = np.concatenate([derivative, along_here[:, None, :]], axis=1)
             distance = np.einsum("fi,fi->f", along_here, here - ahead[active])
             right = np.zeros((*here.shape, 2))
@@ -632,6 +650,8 @@ def damping_of_modes(
     count, amplitudes = stiffness.size, np.log(table.amplitude)
     frequency, ratio = np.full((2, count, amplitudes.size), np.nan)
     for mode in np.flatnonzero(stiffness > 0):
+        # The mass of a damper depends on frequency and amplitude, which depend on it: a fixed point that converges
+        # fast, since dampers are light.
         omega = np.full(amplitudes.size, math.sqrt(stiffness[mode]))
         x = np.zeros((amplitudes.size, count))
         x[:, mode] = 1.0
@@ -646,6 +666,7 @@ def damping_of_modes(
                 break
             if step > 8:  # slow convergence, or none
                 omega = 0.3 * before + 0.7 * omega
+        # Energy lost in a cycle over the largest kinetic energy; modes are coupled by damping only to second order.
         extra = -number * omega[:, None, None] * np.einsum("kp,pi,pj->kij", mass.imag, shapes, shapes)
         lost = np.einsum("ki,kij,kj->k", x, damping + extra, x)
         kinetic = np.einsum("ki,kij,kj->k", x, loaded, x)

@@ -167,6 +167,7 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
 
     t, f, v = sampled(time, 3, force=force, velocity=velocity)
     frequency = positive("frequency", frequency, "Hz")
+    # Parts of a cycle would leak the mean and other harmonics into the amplitudes.
     cycles = np.floor((t[-1] - t[0]) * frequency + 1e-9)
     if cycles < 1:
         raise ValueError(
@@ -174,6 +175,7 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
         )
     weights = trapezoid_weights(t, max(t[-1] - cycles / frequency, t[0]))
     f_amplitude, v_amplitude = first_harmonic(t, np.stack([f, v], axis=-1), weights, frequency)
+    # Ratios to a velocity of rounding errors would look like results.
     if not abs(v_amplitude) > 1e-9 * np.abs(v).max():
         raise ValueError(f"velocity has no component at {frequency:g} Hz; try: the frequency of the motion")
     power = f_amplitude.conjugate() * v_amplitude / 2

@@ -100,6 +100,7 @@ def read_frequency_response(
         implied = None
     if frequency.size < 2 or np.any(np.diff(frequency) <= 0) or frequency[0] < 0:
         raise DataError(f"{file}: the frequencies do not rise", "two or more points in the order of their frequencies")
+    # The unit of the argument wins over that of the file; an assumed one is noted with the peak, which shows a wrong guess.
     where = "unit" if unit is not None else str(file)
     factor, si = _ratio_in_si(unit or stated, where) if unit or stated else (1.0, implied or "")
     values = factor * values
@@ -165,6 +166,7 @@ def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[FloatArray
         to_hertz, _ = unit_above(heads[0], ("Hz",)) or (1.0, "Hz")
     except Hint as hint:
         raise DataError(f"{file}: {hint.complaint}", hint.suggestion) from None
+    # What the columns are is in their headings only: real and imaginary part, or magnitude and phase.
     above = [" ".join(head) for head in heads]
     kind = next((kind for kind, pattern in _PARTS.items() if pattern.search(above[2])), None)
     if kind is None:
@@ -179,6 +181,7 @@ def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[FloatArray
             raise DataError(f"{file}: the real part is in {unit}, the imaginary part in {other}", "one unit for both")
         return to_hertz * table[:, 0], table[:, 1] + 1j * table[:, 2], unit or other, []
     magnitude = table[:, 1]
+    # Decibels of a response function are of amplitudes, hence 20; the unit is their reference.
     if "db" in above[1].lower():
         magnitude, unit = 10 ** (magnitude / 20), re.sub(r"(?i)\s*(re\.?\s*1?|db)\s*", "", unit)
     elif (magnitude < 0).any():

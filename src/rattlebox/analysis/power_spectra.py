@@ -184,6 +184,7 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
     f, d = sampled(density["frequency"], 2, density=density)
     octave = 10.0**0.3
     shift = 0.0 if fraction % 2 else 0.5
+    # The first frequency may be zero, which has no logarithm and lies in no band.
     lowest = max(f[0], f[1] - f[0])
     numbers = np.arange(
         math.floor(fraction * math.log(lowest / 1000, octave)) - 1,
@@ -191,6 +192,8 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
     )
     middle = 1000 * octave ** ((numbers + shift) / fraction)
     lower, upper = middle * octave ** (-0.5 / fraction), middle * octave ** (0.5 / fraction)
+    # A band of few frequencies would show the resolution of the spectrum, not the level. Once a band is too narrow, all
+    # below it are.
     bins = np.searchsorted(f, upper, "right") - np.searchsorted(f, lower, "left")
     inside = (lower >= f[0]) & (upper <= f[-1]) & (bins >= MIN_BINS)
     narrow = np.flatnonzero((bins < MIN_BINS) & (lower < f[-1]))
@@ -201,6 +204,8 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
             f"density has frequencies from {f[0]:g} Hz to {f[-1]:g} Hz, and no band has {MIN_BINS} of them; "
             "try: a finer resolution or a smaller fraction"
         )
+    # Edges lie between frequencies, so that the density is integrated as straight lines; then neighbouring bands add up
+    # exactly.
     total = np.concatenate([[0.0], np.cumsum(0.5 * (d[1:] + d[:-1]) * np.diff(f))])
 
     def integral(edge: FloatArray) -> FloatArray:
@@ -274,6 +279,7 @@ def transfer_function(
 
     t, x, y = evenly_sampled(time, 16, source=source, response=response)
     cut = _segments(t, resolution)
+    # With one segment the coherence is 1 for any two signals.
     if cut.count < 2:
         raise ValueError(
             f"resolution is {cut.rate / cut.length:.4g} Hz, which leaves one segment, but at least 2 are needed; try: a "
@@ -282,6 +288,7 @@ def transfer_function(
     if not x.any():
         raise ValueError("source is zero throughout; a source that moves is needed")
     options = (cut.rate, WINDOW, cut.length, cut.length - cut.shift)
+    # H1 divides by the power of the source: noise in the response cancels in the mean, noise in the source does not.
     frequency, cross = csd(x, y, *options, detrend="constant")
     source_density, response_density = (welch(z, *options, detrend="constant")[1] for z in (x, y))
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -109,23 +109,28 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
     number = arrays.dampers.index(damper)
     frequency = positive("frequency", frequency, "Hz")
     times = arrays.time
+    # Whole cycles that end with the run: the end is the most settled part, and means over parts of a cycle are biased.
     cycles = math.floor((times[-1] - max(after, times[0])) * frequency + 1e-9)
     if cycles < 1:
         raise ValueError(f"no whole cycle of {frequency:g} Hz lies after {after:g} s; the run ends at {times[-1]:g} s")
     start = times[-1] - cycles / frequency
     mass = float(particle_mass[number])
+    # With fewer samples the harmonics of short impulses are aliased into the amplitude of the force.
     samples = np.count_nonzero(times > start + 1e-9 / frequency)
     if samples < MIN_SAMPLES * cycles:
         raise ValueError(
             f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {MIN_SAMPLES}"
             f"\n  try: rb.Output(rate={20 * frequency:g})"
         )
+    # The ledger is relative to the base; the harmonic balance holds in the inertial frame.
     velocity = arrays.base_velocity + arrays.cavity_velocity[:, number]
     momentum = arrays.momentum[:, number] + mass * arrays.base_velocity
     omega, span = 2 * np.pi * frequency, times[-1] - start
     weights = trapezoid_weights(times, start)
     v = first_harmonic(times, velocity, weights, frequency)
     size = float(np.linalg.norm(v))
+    # A cavity that moves mostly at other frequencies has a small first harmonic, whose ratios would be noise. A drift
+    # is not motion in this sense.
     about = velocity - weights @ velocity / span
     whole = float(weights @ np.sum(about**2, axis=1)) / span
     if not 0.5 * size**2 > _LEAST_SHARE * whole:
@@ -135,6 +140,7 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
             f"{100 * _LEAST_SHARE:g} % are needed",
             "the frequency of the motion",
         )
+    # Forces in contacts last for less than a sampling step. The change of momentum has their whole impulse.
     step = np.diff(times)
     middle = 0.5 * (times[1:] + times[:-1])
     # The weight is constant, so the change of momentum gives the first harmonic of the force.
@@ -142,6 +148,7 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
     inside = steps_inside(times, start)
     force = first_harmonic(middle, mean_force, inside, frequency, gain=np.sinc(frequency * step))
     power = complex(force.conjugate() @ v) / 2
+    # The second way needs no forces: energy from the ledger, mass from the momentum in phase with the velocity.
     carried = first_harmonic(times, momentum, weights, frequency)
     balance = cycle_loss(run, frequency, cycles, [number])
     masses = np.array([-2 * power.imag / (omega * size**2), float((carried @ v.conjugate()).real) / size**2])

@@ -90,11 +90,13 @@ def shock_response_spectrum(
         f = finite("frequencies", frequencies)
         for value in f:
             positive("frequencies", value, "Hz")
+    # A high oscillator sees the straight lines between samples, not the shock.
     if f.max() > 1 / (MIN_SAMPLES_PER_PERIOD * step):
         raise ValueError(
             f"frequencies go up to {f.max():g} Hz, but a record sampled at {1 / step:g} Hz has no information above "
             f"{1 / (MIN_SAMPLES_PER_PERIOD * step):g} Hz; try: lower frequencies, or a higher sampling rate"
         )
+    # Each oscillator alone: their time steps differ by orders of magnitude.
     peaks = np.array([_peaks(a, step, 2 * math.pi * value, zeta) for value in f])
     unit = units_of(acceleration)
     axis = ("frequency", f, {"units": "Hz", "long_name": "natural frequency"})
@@ -114,6 +116,7 @@ def _peaks(acceleration: FloatArray, step: float, w: float, zeta: float) -> tupl
     """Return the largest positive and negative absolute acceleration and relative displacement of one oscillator."""
     from scipy.signal import lfilter
 
+    # The recursion is exact at any step; samples are added only so that peaks are not missed between them.
     split = max(math.ceil(SAMPLES_PER_PERIOD * step * w / (2 * math.pi)), MIN_STEPS_PER_SAMPLE)
     h = step / split
     size = acceleration.size
@@ -126,6 +129,7 @@ def _peaks(acceleration: FloatArray, step: float, w: float, zeta: float) -> tupl
     decay = np.exp(pole * h)
     now, before = h * second, h * (first - second)
     r, _ = lfilter([now, before], [1.0, -decay], fine, zi=[-now * fine[0]])
+    # The largest response may come after the record: one period of free motion contains it.
     free = r[-1] * np.exp(pole * h * np.arange(1, math.ceil(2 * math.pi / (wd * h)) + 3))
     r = np.concatenate([r, free])
     relative, rate = -r.imag / wd, -(pole * r).imag / wd

@@ -124,6 +124,8 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
     tried = examples(given, shape)
     for part in parts:
         wrong = [part.grid_index(local) for local in invalid_starts(part.packed, part.shape)]
+        # Formulas of the model take arrays in fields that are declared as numbers. The comparison finds one that
+        # silently does not, and repeats the message of a variant that is not valid.
         for index in (*wrong, *tried):
             if (local := part.local_index(index)) is not None:
                 one = variant(case, given, index)
@@ -136,12 +138,15 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
 def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, Any]) -> list[Batch]:
     """Return the batches of the variants over columns, with the fixed values in all of them."""
     whole = tuple(np.arange(n) for n in shape)
+    # Numbers are broadcast; values of other kinds, such as a law, divide the grid into groups that are packed for
+    # themselves, one path after the other.
     path = next((path for path, values in columns.items() if not is_number(case, path, values)), None)
     if path is None:
         problem, points, inertia = _broadcast(case, columns, len(shape), fixed)
         return [Batch(problem, whole, points, inertia)]
     values = columns[path]
     rest = {other: column for other, column in columns.items() if other != path}
+    # A column that varies along no axis is the same in all variants, and is set in the case.
     axis = next((k for k, n in enumerate(values.shape) if n > 1), None)
     if axis is None:
         return _variants(case, rest, shape, {**fixed, path: values.item()})
@@ -154,6 +159,8 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
     if len(groups) == 1:
         return batches[0]
     obstacle = next((part.obstacle for parts in batches for part in parts if part.obstacle), None)
+    # Groups that differ in numbers only are merged again, so that the core gets one batch; laws of different kinds are
+    # not.
     if all(len(parts) == 1 for parts in batches):
         try:
             merger = Merger(path, groups, axis, shape)
@@ -184,6 +191,8 @@ def _broadcast(
     # The case with the first value of each column has a field for each array.
     first = {path: values.flat[0].item() for path, values in columns.items()}
     batch = replaced(case, {**fixed, **first})
+    # Fields are replaced without validation, which would refuse arrays; lengths that are given in another way are
+    # converted here, as validation does for one case.
     cavities: dict[Place, NDArray[Any]] = {}
     for path, values in columns.items():
         place = place_of(batch, path)

@@ -237,6 +237,7 @@ def push_apart(
     """
     places, grown = places.copy(), radii * (1 + enlargement)
     walls = cavity.walls() if walls is None else walls
+    # Candidate pairs hold until something has moved by half of the margin; a search costs as much as many iterations.
     margin = 0.3 * float(grown.min())
     listed = np.full_like(places, np.inf)  # positions at the last search for candidate pairs
     move, stride, mixing, downhill = np.zeros_like(places), 0.3, 0.1, 0
@@ -253,9 +254,11 @@ def push_apart(
         first, second, apart = near[0][deep], near[1][deep], apart[deep]
         depth = walls.distances(places) - grown[:, None]
         small = np.minimum(grown[first], grown[second])
+        # Spheres were enlarged, so that the end may leave half of the enlargement: true sizes then have no overlap.
         if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * enlargement:
             return places
         between, length = between[deep], length[deep][:, None]
+        # Two centres at the same place have no direction; any one separates them.
         push = -apart[:, None] * np.where(length > 0, between / np.maximum(length, 1e-300), [0.0, 0.0, 1.0])
         force = _off_walls(walls, places, depth)
         np.add.at(force, first, push)
@@ -263,6 +266,8 @@ def push_apart(
         around = np.bincount(first, minlength=radii.size) + np.bincount(second, minlength=radii.size)
         # The stiffness of the springs of many small spheres on a large one adds up, and steps would be unstable.
         force /= np.maximum(around / KISSING_NUMBER, 1.0)[:, None]
+        # Downhill the motion speeds up and turns into the force; uphill it stops at once, which makes FIRE safe with
+        # long steps.
         if np.sum(force * move) > 0:
             move = (1 - mixing) * move + mixing * force * math.sqrt(np.sum(move**2) / np.sum(force**2))
             downhill += 1
@@ -272,6 +277,7 @@ def push_apart(
             move, stride, mixing, downhill = np.zeros_like(places), 0.5 * stride, 0.1, 0
         move += stride * force
         places += stride * move
+    # Failure: the number that would fit is computed, so that the advice can be followed.
     crowd = Crowd.of(radii)
     filled = crowd.count * crowd.volume / cavity.volume
     raise Hint(
@@ -309,6 +315,8 @@ class _SettlingBed:
         # The largest overlap of a linear contact is the speed times the duration over pi.
         self._contact_time = math.pi * FALL_OVERLAP * small / (self._pull * self._fall)
         mass = float(self._contents.mass.min()) / 2
+        # Only the positions of the bed are used, so that contacts may be soft: as soft as overlaps in the fall allow,
+        # which makes steps long.
         stiffness = mass * (math.pi / self._contact_time) ** 2
         self._laws = _core.PairLaws(
             normal=_core.LinearForce(stiffness=stiffness, mass=mass, zero_overlap=0.0, fixed_contact_time=1.0),
@@ -321,8 +329,11 @@ class _SettlingBed:
 
     def fall(self, places: Array, at_rest: float) -> Array:
         """Compute the positions of the particles after they have fallen and come to rest."""
+        # The unit of energy is a fall of all particles by their radius.
         limit = at_rest * float(np.sum(self._contents.mass * self._contents.radius)) * self._pull
         blocks = max(1, math.ceil(MAX_FALL_TIMES * self._fall / (20 * self._contact_time)))
+        # A deep bed without damping of its modes sways for long. If it has not come to rest, it is stopped where its
+        # energy is largest, that is, where its potential is lowest, and falls again from there.
         for stopped in (False, *MAX_STOPS * (True,)):
             quiet, before = 0, 0.0
             for now, energy in self._simulate(places, 1.0, blocks):
@@ -341,6 +352,8 @@ class _SettlingBed:
         radii = self._contents.radius
         # The tolerance is for rows exactly as long as the cavity, which overlap by rounding under any weight.
         reduced = radii - 0.5 * TOUCHING * radii.min()
+        # Under its weight a bed overlaps; with less of it in each step it swells as a whole instead of being pushed
+        # apart at random.
         for weight in WEIGHT_FACTORS:
             for now, _ in self._simulate(places, weight, RELAXATION_BLOCKS):
                 if cavity.room(now, reduced).min() >= 0 and not overlapping(now, reduced)[0].size:
@@ -380,6 +393,7 @@ class _SettlingBed:
             pairs=[self._laws],
         )
         dem = _core.Dem(problem)
+        # Small beds are faster on one thread; results do not depend on the number.
         dem.threads = max(1, min(os.cpu_count() or 1, count // 4000))
         for sample in range(1, blocks + 1):
             dem.run(sample * every, None)

@@ -179,6 +179,7 @@ def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: floa
     s = (1 + c (f_1 / f)^2 / K)^n. The value is rounded down to two digits.
     """
     gravity = float(np.linalg.norm(damper.gravity))
+    # Each early return is a case in which the estimate below does not hold; the reason becomes a note of the run.
     level = motion.acceleration / gravity if gravity and motion.is_prescribed else 0.0
     if not gravity:
         return _unsoftened("without gravity the effect of softening cannot be estimated")
@@ -190,6 +191,8 @@ def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: floa
             "softening; it also depends on the friction law, and without friction on the dashpot"
         )
     exponent = damper.contact.force_exponent
+    # Softening lowers the resonance of the bed towards the frequency of the motion; that, and not the stiffness itself,
+    # changes the loss.
     room = AUTO_CHANGE / _sensitivity(level) * (bed_resonance(damper, 1.0) / motion.highest) ** 2
     by_loss = (1 + room) ** exponent
     value = _rounded(max(1.0, min(by_loss, largest, _LARGEST)))

@@ -278,10 +278,13 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
     for damper, table, speed in zip(case.particle_dampers, tables, speeds, strict=True):
         result += contact_limits(case, damper, table, speed, fraction)
         for index, species in enumerate(damper.particles):
+            # A law whose duration does not depend on the speed has a spring of its own; waves along the particle do not
+            # matter then.
             if not any(entry.contact.depends_on_speed for entry in table.entries if species.label in entry.names):
                 continue
             radius = float(damper.contents.radius[damper.contents.species == index].min())
             material = species.material
+            # Softened contacts stand for a softer material, in which waves are slower, too.
             shear = material.young / (2 * (1 + material.poisson)) / damper.softening_factor
             wave = (0.1631 * material.poisson + 0.8766) * math.sqrt(shear / material.density)
             time = math.pi * radius / wave
@@ -365,6 +368,7 @@ def step_diagnostics(
         ),
         key=lambda limit: limit.duration,
     )
+    # With the speeds that have occurred, instead of those expected before the run.
     steps = shortest.duration / step.dt
     diagnostics = {
         "step": step.dt,
@@ -383,6 +387,7 @@ def step_diagnostics(
             "softened_enduring_share": max(effect.share if effect.softening > 1 else 0.0 for effect in effects),
         }
     notes = [_step_note(case, step), *_softening_notes(case)]
+    # Notes follow from the same numbers and limits as the flags of a study, so that both agree.
     warned = exceeded_limits(diagnostics)
     if "few_steps" in warned:
         notes.append(
