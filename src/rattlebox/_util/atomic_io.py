@@ -33,12 +33,12 @@ _WRITERS = {
 }
 
 
-def check_suffix(path: Path, own: str) -> None:
+def check_suffix(path: Path, suffix_of_kind: str) -> None:
     """Raise if the suffix of a path belongs to another kind of file."""
     suffix = path.suffix.lower()
-    if suffix != own and suffix in _WRITERS:
-        what = f"a {own} file" if own else "a folder"
-        name, other = path.with_suffix(own).name, _WRITERS[suffix]
+    if suffix != suffix_of_kind and suffix in _WRITERS:
+        what = f"a {suffix_of_kind} file" if suffix_of_kind else "a folder"
+        name, other = path.with_suffix(suffix_of_kind).name, _WRITERS[suffix]
         raise DataError(f"{path}: {what} is written, not a {suffix} file", f"{name}; the other is written by {other}")
 
 
@@ -62,11 +62,11 @@ def require_readable(path: Path) -> None:
         raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
 
 
-def check_format(path: Path, version: object, own: int) -> None:
+def check_format(path: Path, version: object, supported: int) -> None:
     """Raise if a file has a different version of its format."""
-    if version != own:
+    if version != supported:
         raise DataError(
-            f"{path} has format {version}, and this version of Rattlebox reads format {own}",
+            f"{path} has format {version}, and this version of Rattlebox reads format {supported}",
             "the version of Rattlebox that wrote it, or run the case again",
         )
 
@@ -84,10 +84,10 @@ _watched_only: ContextVar[bool] = ContextVar("watched_only", default=False)
 def _identity(path: Path) -> Identity | None:
     """Return what tells the file at a path from another one and from a changed one; None if there is none."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
 
 
 @contextmanager

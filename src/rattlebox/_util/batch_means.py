@@ -196,59 +196,59 @@ _DOUBT, _REFUSED = 0.8, 0.7
 def _spectral_half_widths(x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return half widths (NaN if refused) and spectral densities S(0) of series with zero mean."""
     length = x.shape[1]
-    found = np.abs(np.fft.rfft(x, axis=1)[:, 1 : (length - 1) // 2 + 1]) ** 2 / length
-    found = found[:, :_OSCILLATION]
-    count = found.shape[1]
+    periodograms = np.abs(np.fft.rfft(x, axis=1)[:, 1 : (length - 1) // 2 + 1]) ** 2 / length
+    periodograms = periodograms[:, :_OSCILLATION]
+    count = periodograms.shape[1]
     # Effective number of the ordinates that hold the power: about half of all for noise.
-    holders = found.sum(axis=1) ** 2 / (found**2).sum(axis=1)
-    peak = _peak(found)
+    holders = periodograms.sum(axis=1) ** 2 / (periodograms**2).sum(axis=1)
+    peak = _peak(periodograms)
     refused = (holders < _SPREAD * count) | ((holders < _NARROW * count) & (peak > _PEAK))
-    half, level = _fitted(found[:, :_ORDINATES], length)
+    half, level = _fitted(periodograms[:, :_ORDINATES], length)
     if count <= _FEW:
         # The lobe of a squared oscillation at twice its frequency makes a spectrum look flat that has one at zero, too.
         # A spectrum that rises from zero on, of parts that make up for each other, has none.
-        lobe = found[:, :3].mean(axis=1) > _LOBE * np.median(found[:, 3 : max(count // 2, 4)], axis=1)
+        lobe = periodograms[:, :3].mean(axis=1) > _LOBE * np.median(periodograms[:, 3 : max(count // 2, 4)], axis=1)
         refused |= lobe & ((peak > _CLEAR_PEAK) | (holders < _CLEAR_SPREAD * count))
         third = count // 3
-        rises = lobe & (found[:, -third:].mean(axis=1) > _RISE * found[:, third : 2 * third].mean(axis=1))
+        rises = lobe & (periodograms[:, -third:].mean(axis=1) > _RISE * periodograms[:, third : 2 * third].mean(axis=1))
         if rises.any():
-            half[rises], level[rises] = _fitted(found[rises, : -(-count // 2)], length)
+            half[rises], level[rises] = _fitted(periodograms[rises, : -(-count // 2)], length)
     half[refused] = np.nan
     return half, level
 
 
-def _fitted(found: FloatArray, length: int) -> tuple[FloatArray, FloatArray]:
+def _fitted(periodograms: FloatArray, length: int) -> tuple[FloatArray, FloatArray]:
     """Return half widths (NaN if refused) and densities S(0) from ordinates of the periodograms of series of a length."""
-    full = found.shape[1]
-    low, level = _posterior(found, min(_SHORTEST, full / 2.5))
+    full = periodograms.shape[1]
+    low, level = _posterior(periodograms, min(_SHORTEST, full / 2.5))
     doubt = low / (_DOUBT / full)
     refused = doubt > 1
     for ordinates, limit in _GATES:
         if ordinates < full:
-            low, rough = _posterior(found[:, :ordinates], limit)
+            low, rough = _posterior(periodograms[:, :ordinates], limit)
             refused |= low > _REFUSED
             level = rough if ordinates > 6 else level
-    level = np.maximum(level, found[:, :4].mean(axis=1))
+    level = np.maximum(level, periodograms[:, :4].mean(axis=1))
     factor = _STUDENT[min(max(_STUDENT), 2 * full)] * (1 + _WIDENING * np.cbrt(np.minimum(doubt, 1)))
     half = factor * np.sqrt(level / length)
     half[refused] = np.nan
     return half, level
 
 
-def _peak(found: FloatArray) -> FloatArray:
+def _peak(periodograms: FloatArray) -> FloatArray:
     """Return the largest ratio of three ordinates away from frequency zero to the median of lower ones."""
-    peak = np.zeros(len(found))
-    for j in range(12, found.shape[1]):
-        ratio = found[:, j - 1 : j + 2].mean(axis=1) / np.median(found[:, : j - 3], axis=1)
+    peak = np.zeros(len(periodograms))
+    for j in range(12, periodograms.shape[1]):
+        ratio = periodograms[:, j - 1 : j + 2].mean(axis=1) / np.median(periodograms[:, : j - 3], axis=1)
         peak = np.fmax(peak, ratio)
     return peak
 
 
-def _posterior(found: FloatArray, corner: float) -> tuple[FloatArray, FloatArray]:
+def _posterior(periodograms: FloatArray, corner: float) -> tuple[FloatArray, FloatArray]:
     """Return the probability of a corner frequency below a limit, and the upper quartile of S(0)."""
-    count = found.shape[1]
+    count = periodograms.shape[1]
     shape = 1 / (1 + (np.arange(1, count + 1) / _CORNERS[:, None]) ** 2)
-    level = np.maximum(found @ (1 / shape).T / count, 1e-300)
+    level = np.maximum(periodograms @ (1 / shape).T / count, 1e-300)
     likelihood = -count * np.log(level) - np.log(shape).sum(axis=1)
     weight = np.exp(likelihood - likelihood.max(axis=1, keepdims=True))
     weight /= weight.sum(axis=1, keepdims=True)

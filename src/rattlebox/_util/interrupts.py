@@ -96,17 +96,17 @@ class StoppableCalls:
 
     def call(self, function: Callable[[], Result]) -> Result | None:
         """Return the result of a function; None if the calls are stopped."""
-        own = threading.get_ident()
+        thread = threading.get_ident()
         try:
             with self._lock:
                 if self._stopped:
                     return None
-                self._threads.add(own)
+                self._threads.add(thread)
             try:
                 return function()
             finally:
                 with self._lock:
-                    self._threads.discard(own)
+                    self._threads.discard(thread)
         except _Stopped:
             return None
 

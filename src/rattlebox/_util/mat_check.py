@@ -39,15 +39,15 @@ def check_mat(content: bytes) -> None:
         raise NotImplementedError
     if major != 1:
         raise ValueError(f"it is of version {major}, which is not known")
-    place = 128
-    while place < len(content):
-        if len(content) - place < 8:
+    offset = 128
+    while offset < len(content):
+        if len(content) - offset < 8:
             raise ValueError("the file is cut off")
-        kind, size = struct.unpack_from(f"{order}II", content, place)
-        place += 8
-        if size > len(content) - place:
+        kind, size = struct.unpack_from(f"{order}II", content, offset)
+        offset += 8
+        if size > len(content) - offset:
             raise ValueError("the file is cut off")
-        element = content[place : place + size]
+        element = content[offset : offset + size]
         if kind == _COMPRESSED:
             unpacker = zlib.decompressobj()
             try:
@@ -63,7 +63,7 @@ def check_mat(content: bytes) -> None:
         if kind != _MATRIX:
             raise ValueError(f"it contains an element of the unknown type {kind}")
         _Variable(element, order).check(0)
-        place += size
+        offset += size
 
 
 class _Variable:
@@ -189,11 +189,11 @@ class _Variable:
 def _check_level_4(content: bytes) -> None:
     first = content[:4]
     order = "<" if struct.unpack("<i", first)[0] in range(5000) else ">"
-    place = 0
-    while place < len(content):
-        if len(content) - place < 20:
+    offset = 0
+    while offset < len(content):
+        if len(content) - offset < 20:
             raise ValueError("the file is cut off")
-        code, rows, columns, imaginary, length = struct.unpack_from(f"{order}5i", content, place)
+        code, rows, columns, imaginary, length = struct.unpack_from(f"{order}5i", content, offset)
         machine, rest = divmod(code, 1000)
         zero, rest = divmod(rest, 100)
         precision, sort = divmod(rest, 10)
@@ -203,13 +203,13 @@ def _check_level_4(content: bytes) -> None:
             raise ValueError("it has no header of a MAT file")
         if length < 1:
             raise ValueError("a variable has no name")
-        start = place + 20 + length
-        place = start + rows * columns * size * (1 + imaginary)
-        if place > len(content):
+        start = offset + 20 + length
+        offset = start + rows * columns * size * (1 + imaginary)
+        if offset > len(content):
             raise ValueError("the file is cut off")
         if sort == 2:
             _check_sparse_4(
-                content[start:place], rows, columns, f"{order}{['f8', 'f4', 'i4', 'i2', 'u2', 'u1'][precision]}"
+                content[start:offset], rows, columns, f"{order}{['f8', 'f4', 'i4', 'i2', 'u2', 'u1'][precision]}"
             )
 
 

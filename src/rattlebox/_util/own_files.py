@@ -62,9 +62,9 @@ def sealed_kind(path: Path) -> str:
     seals = list(_SEAL.finditer(content, max(0, len(content) - _LONGEST_END)))
     if not seals:
         return ""
-    found = seals[-1]
-    intact = hashlib.sha256(content[: found.start()]).hexdigest().encode() == found[2]
-    return found[1].decode() if intact else "changed"
+    last = seals[-1]
+    intact = hashlib.sha256(content[: last.start()]).hexdigest().encode() == last[2]
+    return last[1].decode() if intact else "changed"
 
 
 def may_replace(path: Path) -> bool:

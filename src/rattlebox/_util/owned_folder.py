@@ -86,14 +86,14 @@ def is_free(folder: Path, also: Iterable[str] = ()) -> bool:
 def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
     """Write the fixed part of an owned folder; it replaces an earlier one."""
     earlier = read_marker(folder)
-    own = earlier.files if earlier else {}
-    foreign = [name for name in files if name not in own and os.path.lexists(folder / name)]
+    earlier_files = earlier.files if earlier else {}
+    foreign = [name for name in files if name not in earlier_files and os.path.lexists(folder / name)]
     if foreign:
         raise ForeignFile(f"{folder / foreign[0]} was not written by Rattlebox", "move it out of this folder")
     folder.mkdir(parents=True, exist_ok=True)
-    if not (earlier and earlier.complete and own.keys() == files.keys()):
-        write_marker(folder, replace(marker, complete=False, files=dict.fromkeys((*own, *files), "")))
-        remove(folder, own.keys() - files.keys())
+    if not (earlier and earlier.complete and earlier_files.keys() == files.keys()):
+        write_marker(folder, replace(marker, complete=False, files=dict.fromkeys((*earlier_files, *files), "")))
+        remove(folder, earlier_files.keys() - files.keys())
     for name, content in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)

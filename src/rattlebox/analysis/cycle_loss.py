@@ -100,11 +100,11 @@ def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] |
     H. B. Mann (1945), Nonparametric tests against trend, Econometrica 13, 245-259, doi:10.2307/1907187.
     """
     arrays = run.arrays
-    own = list(range(len(arrays.dampers))) if dampers is None else list(dampers)
+    numbers = list(range(len(arrays.dampers))) if dampers is None else list(dampers)
     # Ends of cycles lie between samples. Only what is smooth is interpolated: the energy of the contents as rigid
     # masses, which changes fastest, is taken out before and added after.
     ends = arrays.time[-1] - np.arange(cycles, -1, -1) / frequency
-    *energies, carried, velocity, mass = _energies(run, own)
+    *energies, carried, velocity, mass = _energies(run, numbers)
     energy, raised, lost = (np.interp(ends, arrays.time, values) for values in energies)
     energy = energy + carried(ends)
     supplied = energy + lost
@@ -114,11 +114,11 @@ def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] |
     moving = velocity[arrays.time >= ends[0] - 1e-9 / frequency]
     scale = 2 * mass * float(np.var(moving, axis=0).sum())
     limit = max(SHARE * abs(work), FLOOR * scale)
-    each = np.diff(supplied)
+    work_of_cycle = np.diff(supplied)
     # The first half against the second: a loss that still falls, as of a bed that compacts, shows there before it does
     # in single cycles.
     half = cycles // 2
-    drift = float(each[cycles - half :].mean() - each[:half].mean()) if half else 0.0
+    drift = float(work_of_cycle[cycles - half :].mean() - work_of_cycle[:half].mean()) if half else 0.0
     sunk = float(raised[-1] - raised[0]) / cycles
     return CycleLoss(
         work=work,
@@ -130,7 +130,7 @@ def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] |
         scale=scale,
         is_settled=not _matters(sunk, limit, raised),
         is_balanced=not _matters(stored, limit, energy),
-        is_constant=not _matters(drift, max(DRIFT * abs(work), FLOOR * scale), each),
+        is_constant=not _matters(drift, max(DRIFT * abs(work), FLOOR * scale), work_of_cycle),
     )
 
 

@@ -115,11 +115,12 @@ class MassTable:
         right = np.minimum(left + 1, nodes.size - 1)
         span = nodes[right] - nodes[left]
         part = np.clip((np.log(frequency) - nodes[left]) / np.where(span > 0, span, 1.0), 0.0, 1.0)
-        found = np.zeros((frequency.size, self.amplitude.size - 1, 4), np.complex128)
+        coefficients = np.zeros((frequency.size, self.amplitude.size - 1, 4), np.complex128)
         for column, weight in ((left, 1 - part), (right, part)):
             w = weight[:, None, None]
-            found += np.where(w > 0, w * self._coefficients[column], 0.0)  # a column without weight may be unknown
-        return found
+            # A column without weight may be unknown, that is, NaN.
+            coefficients += np.where(w > 0, w * self._coefficients[column], 0.0)
+        return coefficients
 
     def covers(self, frequency: FloatArray) -> NDArray[np.bool_]:
         """Return whether frequencies [Hz] are within the table, same shape."""
@@ -234,8 +235,8 @@ class Solutions:
         """Return the solutions with other ones at some frequencies; these are all frequencies of the others."""
         count = max(self.is_unstable.shape[2], others.is_unstable.shape[2])
         changed, new = self._padded(count), others._padded(count)
-        for each in fields(Solutions):
-            getattr(changed, each.name)[:, rows] = getattr(new, each.name)
+        for field in fields(Solutions):
+            getattr(changed, field.name)[:, rows] = getattr(new, field.name)
         return changed
 
     def _padded(self, count: int) -> Solutions:
@@ -284,8 +285,8 @@ def solve(
     one = drive.shape[1] == 1
     curves = table.curves(frequency)
     system = _System(table, curves, inside, frequency[inside], gain[inside], drive[inside])
-    found = (_solve_one if one else _solve_several)(system, levels)
-    return found.solutions(inside, frequency.size, levels.size, drive.shape[1])
+    unordered = (_solve_one if one else _solve_several)(system, levels)
+    return unordered.solutions(inside, frequency.size, levels.size, drive.shape[1])
 
 
 def solve_near(
@@ -301,25 +302,25 @@ def solve_near(
         return solve(table, frequency, gain, drive, levels)
     # Known motions are good starts for Newton's method, many times faster than following the branch again. Steps are
     # bounded, so that a start cannot change to another branch.
-    place = np.nonzero(np.isfinite(solutions.acceleration).all(axis=-1))
-    level, rows = np.log(levels[place[0]]), place[1]
+    index = np.nonzero(np.isfinite(solutions.acceleration).all(axis=-1))
+    level, rows = np.log(levels[index[0]]), index[1]
     branch = _Branch(_System(table, table.curves(frequency), np.arange(frequency.size), frequency, gain, drive))
     scale = (branch.scale[rows] * np.exp(level))[:, None]
-    unit = solutions.acceleration[place] / scale
+    unit = solutions.acceleration[index] / scale
     start = np.concatenate([unit.real, unit.imag, level[:, None]], axis=1)
     reach = np.maximum(_NEARBY, 0.5 * np.linalg.norm(start[:, :-1], axis=1))
     point = _at_level(branch, start, rows, level, reach)
     value, _ = branch.residual(point, rows)
     with np.errstate(invalid="ignore"):
-        found = np.asarray(np.abs(value).max(axis=1) < _NEWTON) & (np.linalg.norm(point - start, axis=1) < reach)
+        converged = np.asarray(np.abs(value).max(axis=1) < _NEWTON) & (np.linalg.norm(point - start, axis=1) < reach)
     acceleration = np.full(solutions.acceleration.shape, np.nan, np.complex128)
-    acceleration[place] = branch.motion(point) * scale
+    acceleration[index] = branch.motion(point) * scale
     near = replace(solutions, acceleration=acceleration)
-    if found.all():
+    if converged.all():
         return near
     # A fold may have passed over a motion, which then has no neighbour: its whole frequency is solved from the
     # beginning.
-    lost = np.unique(rows[~found])
+    lost = np.unique(rows[~converged])
     return near.with_rows(lost, solve(table, frequency[lost], gain[lost], drive[lost], levels))
 
 
@@ -371,20 +372,20 @@ class _UnorderedSolutions:
 
     def solutions(self, inside: NDArray[np.intp], frequencies: int, levels: int, dampers: int) -> Solutions:
         """Return the solutions over all frequencies, those of a level and frequency in the order of their amplitudes."""
-        place = inside[self.row]
-        order = np.lexsort((-np.abs(self.motion).max(axis=1), place, self.level))
-        cell = (self.level * frequencies + place)[order]
+        column = inside[self.row]
+        order = np.lexsort((-np.abs(self.motion).max(axis=1), column, self.level))
+        cell = (self.level * frequencies + column)[order]
         first = np.searchsorted(cell, cell, side="left")
         number = np.arange(cell.size) - first
         shape = levels, frequencies
         acceleration = np.full((*shape, int(number.max(initial=0)) + 1, dampers), np.nan, np.complex128)
         unstable = np.zeros(acceleration.shape[:-1], bool)
-        acceleration[self.level[order], place[order], number] = self.motion[order]
-        unstable[self.level[order], place[order], number] = self.unstable[order]
+        acceleration[self.level[order], column[order], number] = self.motion[order]
+        unstable[self.level[order], column[order], number] = self.unstable[order]
         flags = []
-        for each in (self.below, self.above, self.lost):
+        for flag in (self.below, self.above, self.lost):
             everywhere = np.zeros(shape, bool)
-            everywhere[:, inside] = each
+            everywhere[:, inside] = flag
             flags.append(everywhere)
         return Solutions(acceleration, unstable, *flags)
 
@@ -401,7 +402,7 @@ def _solve_one(system: _System, levels: FloatArray) -> _UnorderedSolutions:
     with np.errstate(divide="ignore"):
         factor = np.log(np.abs(1 + gain[:, None] * system.curves.mass_on_grid[system.rows]))
     curve = grid + offset[:, None] + factor
-    known = np.isfinite(curve)
+    has_mass = np.isfinite(curve)
     shape = levels.size, system.frequency.size
     below, above, lost = (np.zeros(shape, bool) for _ in range(3))
     places = []
@@ -409,14 +410,14 @@ def _solve_one(system: _System, levels: FloatArray) -> _UnorderedSolutions:
         over = curve >= level
         # A level below that of the smallest amplitude belongs to a smaller amplitude, one above that of the largest to a
         # larger amplitude.
-        below[number] = over[:, 0] & known[:, 0]
-        above[number] = ~over[:, -1] & known[:, -1]
-        for row in np.flatnonzero(~known.all(axis=1)):  # the level may be reached where runs of the map failed
-            sides, numbers = over[row, known[row]], np.flatnonzero(known[row])
+        below[number] = over[:, 0] & has_mass[:, 0]
+        above[number] = ~over[:, -1] & has_mass[:, -1]
+        for row in np.flatnonzero(~has_mass.all(axis=1)):  # the level may be reached where runs of the map failed
+            sides, numbers = over[row, has_mass[row]], np.flatnonzero(has_mass[row])
             hidden = (sides[1:] != sides[:-1]) & (np.diff(numbers) > 1)
-            lost[number, row] = hidden.any() or not (known[row, 0] and known[row, -1])
+            lost[number, row] = hidden.any() or not (has_mass[row, 0] and has_mass[row, -1])
         # Each change of side between neighbours of the grid is a solution; the sign of the change is its stability.
-        rows, cells = np.nonzero((over[:, 1:] != over[:, :-1]) & known[:, 1:] & known[:, :-1])
+        rows, cells = np.nonzero((over[:, 1:] != over[:, :-1]) & has_mass[:, 1:] & has_mass[:, :-1])
         places.append(np.stack([np.full(rows.size, number), rows, cells, over[rows, cells + 1]]))
     level_of, rows, cells, rises = np.concatenate(places, axis=1)
     low, high, level = grid[cells], grid[cells + 1], np.log(levels)[level_of]
@@ -671,9 +672,9 @@ def damping_of_modes(
         lost = np.einsum("ki,kij,kj->k", x, damping + extra, x)
         kinetic = np.einsum("ki,kij,kj->k", x, loaded, x)
         converged = np.abs(omega / before - 1) < 1e-6
-        known = valid & converged & ~outside & table.covers(omega / (2 * np.pi))
-        frequency[mode, known] = omega[known] / (2 * np.pi)
-        ratio[mode, known] = (lost / (2 * omega * kinetic))[known]
+        valid_at = valid & converged & ~outside & table.covers(omega / (2 * np.pi))
+        frequency[mode, valid_at] = omega[valid_at] / (2 * np.pi)
+        ratio[mode, valid_at] = (lost / (2 * omega * kinetic))[valid_at]
     return frequency, ratio
 
 
@@ -690,8 +691,8 @@ def _cavity_amplitudes(motions: FloatArray, amplitudes: FloatArray) -> tuple[Flo
 
 def _mode(stiffness: FloatArray, mass: FloatArray, mode: int) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
     """Return eigenvalue and eigenvector of a mode for many mass matrices, and whether these are positive definite."""
-    known = np.asarray(np.isfinite(mass).all(axis=(1, 2)))
-    valid = known & (np.linalg.eigvalsh(np.where(known[:, None, None], mass, 0.0)).min(axis=1) > 0)
+    finite = np.asarray(np.isfinite(mass).all(axis=(1, 2)))
+    valid = finite & (np.linalg.eigvalsh(np.where(finite[:, None, None], mass, 0.0)).min(axis=1) > 0)
     root = np.linalg.cholesky(np.where(valid[:, None, None], mass, np.eye(stiffness.size)))
     inverse = np.linalg.inv(root)
     values, vectors = np.linalg.eigh(np.einsum("kia,a,kja->kij", inverse, stiffness, inverse))

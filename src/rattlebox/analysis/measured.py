@@ -123,10 +123,10 @@ def read_frequency_response(
 
 def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, Any, str, str | None]:
     """Return frequencies, values, the stated unit, and the SI unit of the stated quantities."""
-    functions = [each for each in read_functions(file) if each.kind == _FREQUENCY_RESPONSE]
+    functions = [function for function in read_functions(file) if function.kind == _FREQUENCY_RESPONSE]
     if not functions:
         raise DataError(f"{file} holds no frequency response function", "a function of type 4 in a set 58")
-    names = [each.name for each in functions]
+    names = [function.name for function in functions]
     if wanted is None and len(functions) > 1:
         raise DataError(
             f"{file} holds {len(functions)} frequency response functions ({', '.join(names)})", "function = 1"
@@ -134,25 +134,25 @@ def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, A
     if isinstance(wanted, str) and names.count(wanted) > 1:
         raise DataError(f"{file} holds {names.count(wanted)} functions {wanted!r}", "its number, counted from 1")
     if isinstance(wanted, str):
-        place = names.index(wanted) if wanted in names else -1
+        number = names.index(wanted) if wanted in names else -1
     else:
-        place = 0 if wanted is None else wanted - 1
-    if not 0 <= place < len(functions):
+        number = 0 if wanted is None else wanted - 1
+    if not 0 <= number < len(functions):
         raise DataError(f"{file} holds no function {wanted!r}, but {', '.join(names)}", "function = 1")
-    found = functions[place]
-    return found.abscissa, np.asarray(found.values, complex), _stated_unit(found), _unit_of_quantities(found)
+    chosen = functions[number]
+    return chosen.abscissa, np.asarray(chosen.values, complex), _stated_unit(chosen), _unit_of_quantities(chosen)
 
 
-def _stated_unit(found: Function) -> str:
+def _stated_unit(function: Function) -> str:
     """Return the unit that a function of a universal file states, "" if none."""
-    if found.unit and found.source_unit:
-        return f"({found.unit})/({found.source_unit})"
-    return found.unit
+    if function.unit and function.source_unit:
+        return f"({function.unit})/({function.source_unit})"
+    return function.unit
 
 
-def _unit_of_quantities(found: Function) -> str | None:
+def _unit_of_quantities(function: Function) -> str | None:
     """Return the SI unit of the quantities that a function states by number; None if one is unknown."""
-    response, source = (_QUANTITIES.get(code) for code in found.quantities)
+    response, source = (_QUANTITIES.get(code) for code in function.quantities)
     return f"{response}/{source}" if response and source else None
 
 

@@ -157,11 +157,11 @@ def _motion(run: Run, of: str | None) -> tuple[str, FloatArray, FloatArray]:
 def _portrait(run: Run, name: str, time: FloatArray, position: FloatArray, velocity: FloatArray) -> xarray.Dataset:
     import xarray
 
-    place = "in its cavity" if name in run.arrays.balls else "of the structure"
+    where = "in its cavity" if name in run.arrays.balls else "of the structure"
     return xarray.Dataset(
         {
-            "position": labelled("position", position, "m", f"position {place}", time=time),
-            "velocity": labelled("velocity", velocity, "m/s", f"velocity {place}", time=time),
+            "position": labelled("position", position, "m", f"position {where}", time=time),
+            "velocity": labelled("velocity", velocity, "m/s", f"velocity {where}", time=time),
         },
         attrs={"of": name},
     )

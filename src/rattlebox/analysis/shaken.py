@@ -91,10 +91,10 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     N. Meyer, R. Seifried (2021), Toward a design methodology for particle dampers by analyzing their energy dissipation,
     Computational Particle Mechanics 8, 681-699, doi:10.1007/s40571-020-00363-0.
     """
-    found = harmonic_loss(run, frequency=frequency, damper=damper, after=after)
-    for text in found.attrs["warnings"]:
+    result = harmonic_loss(run, frequency=frequency, damper=damper, after=after)
+    for text in result.attrs["warnings"]:
         warnings.warn(text.removeprefix("warning: "), stacklevel=2)
-    return found
+    return result
 
 
 def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, after: float = 0.0) -> xarray.Dataset:

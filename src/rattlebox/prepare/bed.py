@@ -207,9 +207,9 @@ def _in_spheres(points: Array, positions: Array, radii: Array) -> NDArray[np.boo
     filled = np.zeros(len(points), bool)
     sizes = np.log2(radii / radii.min()).astype(int)
     for size in np.unique(sizes):  # The search radius is that of similar spheres.
-        own = np.flatnonzero(sizes == size)
+        similar = np.flatnonzero(sizes == size)
         near = cKDTree(points).sparse_distance_matrix(
-            cKDTree(positions[own]), float(radii[own].max()), output_type="ndarray"
+            cKDTree(positions[similar]), float(radii[similar].max()), output_type="ndarray"
         )
-        filled[near["i"][near["v"] < radii[own][near["j"]]]] = True
+        filled[near["i"][near["v"] < radii[similar][near["j"]]]] = True
     return filled

@@ -45,8 +45,8 @@ def restitution_curve(law: Restitution, pair: Pair, speeds: ArrayLike) -> NDArra
     >>> [round(float(e), 3) for e in rb.restitution_curve(rb.JacksonGreen(), pair, [0.05, 1.0])]
     [1.0, 0.881]
     """
-    given = np.asarray(speeds, dtype=float)
-    return pack_restitution(law, pair).at(given.ravel()).reshape(given.shape)
+    array = np.asarray(speeds, dtype=float)
+    return pack_restitution(law, pair).at(array.ravel()).reshape(array.shape)
 
 
 def pack_restitution(law: Restitution | None, pair: Pair) -> _core.Restitution:
@@ -94,9 +94,9 @@ def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDA
     >>> round(float(rb.restitution_of_alpha(0.006313, "zero_overlap")), 6)
     0.99117
     """
-    given = np.asarray(alpha, dtype=float)
-    ratios = given.ravel() / math.sqrt(5)
-    return _core.restitution_of_damping(ratios, ending == "zero_overlap").reshape(given.shape)
+    array = np.asarray(alpha, dtype=float)
+    ratios = array.ravel() / math.sqrt(5)
+    return _core.restitution_of_damping(ratios, ending == "zero_overlap").reshape(array.shape)
 
 
 def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
@@ -131,6 +131,6 @@ def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray
     >>> round(float(rb.alpha_of_restitution(0.99117, "zero_overlap")), 6)
     0.006313
     """
-    given = np.asarray(e, dtype=float)
-    ratios = _core.damping_of_restitution(given.ravel(), ending == "zero_overlap")
-    return math.sqrt(5) * ratios.reshape(given.shape)
+    array = np.asarray(e, dtype=float)
+    ratios = _core.damping_of_restitution(array.ravel(), ending == "zero_overlap")
+    return math.sqrt(5) * ratios.reshape(array.shape)

@@ -119,16 +119,16 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
 
     As a check, some variants, the extreme ones included, are also packed one by one and compared with their batch.
     """
-    given = {path: column(path, values, shape) for path, values in columns.items()}
-    parts = _variants(case, given, tuple(shape), {})
-    tried = examples(given, shape)
+    arrays = {path: column(path, values, shape) for path, values in columns.items()}
+    parts = _variants(case, arrays, tuple(shape), {})
+    tried = examples(arrays, shape)
     for part in parts:
         wrong = [part.grid_index(local) for local in invalid_starts(part.packed, part.shape)]
         # Formulas of the model take arrays in fields that are declared as numbers. The comparison finds one that
         # silently does not, and repeats the message of a variant that is not valid.
         for index in (*wrong, *tried):
             if (local := part.local_index(index)) is not None:
-                one = variant(case, given, index)
+                one = variant(case, arrays, index)
                 compare(_problem(one), part.packed, local)
                 compare(_points(one), part.points, local)
                 compare(_inertia(one), part.inertia, local)

@@ -193,7 +193,7 @@ def _fills(
     notes: list[str] = []
     beds = [math.nan for _ in dampers]
     if all(isinstance(damper.packing, Bed) and damper.up is not None for damper in dampers):
-        beds = [bed_level(damper, place)[0] for damper, place in zip(dampers, positions, strict=True)]
+        beds = [bed_level(damper, centres)[0] for damper, centres in zip(dampers, positions, strict=True)]
         fills["bed_fill"] = sum(bed * damper.cavity.volume for bed, damper in zip(beds, dampers, strict=True)) / volume
         for index, (damper, bed) in enumerate(zip(dampers, beds, strict=True)):
             notes += bed_note(damper, damper.label(index), bed)

@@ -30,10 +30,10 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
     """
     if not isinstance(damper.packing, Positions):
         return
-    contents, place = damper.contents, damper.start.position
+    contents, centres = damper.contents, damper.start.position
     radii, masses, species = contents.radius, contents.mass, contents.species
-    first, second, apart = overlapping(place, radii)
-    room = damper.cavity.room(place, radii)
+    first, second, apart = overlapping(centres, radii)
+    room = damper.cavity.room(centres, radii)
     pairs = [
         (float(-apart[k]), int(first[k]), int(second[k]))
         for k in _deepest(
@@ -66,11 +66,11 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
 def _deepest(distance: np.ndarray, size: np.ndarray, entry: np.ndarray) -> list[int]:
     """Return the contact with the deepest overlap over its size for each kind of pair."""
     ratio = distance / size
-    found = []
+    deepest = []
     for kind in np.unique(entry):
-        own = np.flatnonzero(entry == kind)
-        found.append(int(own[ratio[own].argmin()]))
-    return [k for k in found if distance[k] < 0]
+        of_kind = np.flatnonzero(entry == kind)
+        deepest.append(int(of_kind[ratio[of_kind].argmin()]))
+    return [k for k in deepest if distance[k] < 0]
 
 
 def _law(damper: ParticleDamper, entry: Entry, radius: float, mass: float) -> NormalForce:

@@ -234,8 +234,8 @@ def _sizes(damper: ParticleDamper, entry: Entry, wall_mass: float) -> Iterator[t
         if name not in labels:
             extremes.append([(math.inf, wall_mass)])
             continue
-        own = damper.contents.species == labels.index(name)
-        radii, masses = damper.contents.radius[own], damper.contents.mass[own]
+        of_species = damper.contents.species == labels.index(name)
+        radii, masses = damper.contents.radius[of_species], damper.contents.mass[of_species]
         extremes.append([(float(radii[k]), float(masses[k])) for k in {int(radii.argmin()), int(radii.argmax())}])
     for radius, mass in extremes[0]:
         for other_radius, other_mass in extremes[1]:
@@ -329,18 +329,18 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
     interval = case.duration / samples
     every = math.ceil(min(interval / longest * (1 - 1e-12), 2.0 * MAX_STEPS))
     if every * samples > MAX_STEPS:
-        raise _too_many_steps(case, longest, given=method.dt != "auto")
+        raise _too_many_steps(case, longest, is_chosen=method.dt != "auto")
     shortest = min((limit for limit in all_limits if limit.is_contact), key=lambda limit: limit.duration)
     return Step(interval / every, every, every * samples, tightest, shortest, speeds)
 
 
-def _too_many_steps(case: Case, dt: float, *, given: bool) -> Hint:
+def _too_many_steps(case: Case, dt: float, *, is_chosen: bool) -> Hint:
     """Return the error for a step of which a run needs more than `MAX_STEPS`."""
     steps = Decimal(case.duration) / Decimal(dt)
     return Hint(
-        f"{'' if given else 'the automatic '}dt = {dt:.3g} s is too short: the run would take {steps:.2e} steps, "
+        f"{'' if is_chosen else 'the automatic '}dt = {dt:.3g} s is too short: the run would take {steps:.2e} steps, "
         f"and at most {MAX_STEPS:.2e} can be counted",
-        'dt = "auto"' if given else "a larger fraction, or a shorter duration",
+        'dt = "auto"' if is_chosen else "a larger fraction, or a shorter duration",
     )
 
 

@@ -124,10 +124,10 @@ class Merger:
         axes = len(self._shape)
         arrays = [part if isinstance(part, np.ndarray) else np.full((1,) * axes, part) for part in parts]
         first = arrays[0]
-        own = first.ndim - axes  # 1 for a vector, 0 for a number
-        if any(array.shape[:own] != first.shape[:own] for array in arrays):
+        dimensions = first.ndim - axes  # 1 for a vector, 0 for a number
+        if any(array.shape[:dimensions] != first.shape[:dimensions] for array in arrays):
             raise self._obstacle(where)
-        axis = own + self._axis
+        axis = dimensions + self._axis
         if all(array.shape[axis] == 1 and np.array_equal(array, first) for array in arrays):
             return parts[0]
         shape = list(np.broadcast_shapes(*((*array.shape[:axis], 1, *array.shape[axis + 1 :]) for array in arrays)))
@@ -229,10 +229,10 @@ def _compare_numbers(one: Any, batch: Any, index: Index, where: Sequence[str]) -
         if one is not batch:
             raise _mismatch(one, batch, index, where)
         return
-    own = np.ndim(one)
+    dimensions = np.ndim(one)
     one, batch = np.asarray(one, dtype=float), np.asarray(batch, dtype=float)
-    if batch.ndim > own:
-        batch = batch[(slice(None),) * own + _broadcast_index(batch.shape[own:], index)]
+    if batch.ndim > dimensions:
+        batch = batch[(slice(None),) * dimensions + _broadcast_index(batch.shape[dimensions:], index)]
     with np.errstate(invalid="ignore"):  # The differences of infinite numbers are NaN; these must be equal.
         near = np.abs(one - batch) <= _ULPS * np.spacing(np.maximum(np.abs(one), np.abs(batch)))
     if not np.all((one == batch) | near):
