@@ -29,6 +29,8 @@ class Dem {
     // Returns positions, velocities and spins at the last step whose forces are known, computed back from the
     // next step.
     CavityState cavity_state(const Bed& b) const {
+        // Particles are predicted to the next step; the state of the last one follows by undoing the
+        // prediction.
         const real dt = simulation_->step() > 0 ? simulation_->problem().dt : 0;
         const auto rates = [&](std::size_t i) {
             const int k = static_cast<int>(i);
@@ -62,6 +64,8 @@ public:
             seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
         };
         try {
+            // As a single job, so that Ctrl-C and progress work as in batches; the simulation has threads of
+            // its own.
             const bool finished = run_jobs(1, 1, 1, work, should_continue);
             measure();
             return finished;
@@ -149,6 +153,7 @@ public:
     }
 
     Bytes save() {
+        // Two passes: the first counts bytes, so that a state of gigabytes is allocated once.
         Sizer size;
         simulation_->serialize(size);
         Writer writer(size.bytes);

@@ -106,6 +106,7 @@ template <class Law>
 std::unique_ptr<NormalForce> LawOfFamily<Law, NormalForce>::resized(PairSize from, PairSize to) const {
     const auto& own = *static_cast<const LawNumbers<Law>*>(this);
     const Law law = own.law().resized(from, to);
+    // The copy keeps the arrays of the tables alive, into which the law points.
     auto other = std::make_unique<LawNumbers<Law>>(own);
     for (std::size_t k = 0; k < own.numbers.size(); ++k) other->numbers[k] = law.*Law::fields[k].member;
     return other;
@@ -126,6 +127,8 @@ class Filler {
 
     // Sets the values of all variants from an array whose axes from `first` on are those of the grid.
     void column(real& target, const Vector& array, std::size_t first, std::size_t offset) {
+        // The first variant is set here; a column of pointer and strides gives the others while the batch
+        // runs, so that nothing is copied for each of a million variants.
         target = array.data()[offset];
         if (array.ndim() == first) return;
         const std::size_t axes = array.ndim() - first;
@@ -133,6 +136,7 @@ class Filler {
             throw std::invalid_argument(
                 "an array has the wrong number of axes; it must have those of the grid");
         Column column{&target, array.data() + offset, std::vector<std::size_t>(axes, 0)};
+        // A stride of zero repeats a value along an axis, as in NumPy.
         std::size_t step = 1;
         for (std::size_t k = axes; k-- > 0;) {
             const std::size_t size = array.shape(first + k);
@@ -141,6 +145,7 @@ class Filler {
             if (size != 1) column.stride[k] = step;
             step *= size;
         }
+        // An array of one value is the same in all variants and needs no column.
         if (step > 1) batch_->columns.push_back(std::move(column));
     }
 

@@ -27,11 +27,15 @@ bool run_jobs(std::size_t count, int threads, std::size_t chunk, Job&& job,
     std::mutex mutex;
     std::condition_variable over;
     std::exception_ptr error;
+    // The calling thread runs no job: it holds the interpreter, and only it may check for Ctrl-C and call
+    // Python.
     int working = threads;
     std::vector<std::thread> pool;
     for (int t = 0; t < threads; ++t)
         pool.emplace_back([&, t] {
             try {
+                // Jobs differ in cost by orders of magnitude, so that they are fetched, not divided in
+                // advance.
                 for (std::size_t i; !stop && (i = next.fetch_add(chunk)) < count;)
                     for (std::size_t k = i; k < std::min(i + chunk, count) && !stop; ++k, ++done)
                         job(k, t, stop);
@@ -48,9 +52,12 @@ bool run_jobs(std::size_t count, int threads, std::size_t chunk, Job&& job,
     for (bool finished = false; !finished;) {
         {
             nb::gil_scoped_release unlocked;
+            // Without the GIL while waiting: other threads of the program run, and end the wait at once when
+            // the work is done.
             std::unique_lock lock(mutex);
             finished = over.wait_for(lock, std::chrono::milliseconds(20), [&] { return working == 0; });
         }
+        // After a stop, workers need a moment to see it; they are waited for without asking again.
         if (finished || stopped) continue;
         try {
             if (PyErr_CheckSignals() != 0) throw nb::python_error();

@@ -123,6 +123,7 @@ inline void add_node(nb::module_& module) {
             "replace",
             [](nb::handle self, const nb::kwargs& changes) {
                 nb::dict values = values_of(self);
+                // The constructor checks the names: an unknown field raises the same error as there.
                 values.update(changes);
                 return self.type()(**values);
             },
@@ -144,6 +145,7 @@ auto define(nb::module_& module, const char* name, const char* doc, const Fields
     bound.def(
         "__init__",
         [fields...](Owner* self, typename Fields::Value... values) {
+            // Set on a temporary, since a conversion that throws must leave no half-built object behind.
             Owner result;
             (fields.set(result, std::move(values)), ...);
             new (self) Owner(std::move(result));
@@ -165,6 +167,7 @@ auto define(nb::module_& module, const char* name, const char* doc, const Fields
 
 // Returns an array that owns the memory of a vector.
 template <class Array, class T> Array owned(std::vector<T> values, const std::vector<std::size_t>& shape) {
+    // The vector moves to the heap and is deleted with the last array that views it: results are not copied.
     auto* memory = new std::vector<T>(std::move(values));
     nb::capsule owner(memory, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
     return Array(reinterpret_cast<typename Array::Scalar*>(memory->data()), shape.size(), shape.data(),
@@ -185,6 +188,8 @@ template <> struct type_caster<rattlebox::bindings::Number> {
     bool from_python(handle source, std::uint32_t flags, cleanup_list* cleanup) noexcept {
         if (PyFloat_Check(source.ptr()) || PyLong_Check(source.ptr())) {
             value = PyFloat_AsDouble(source.ptr());
+            // -1 is both a value and the sign of an error. The error is cleared, so that the next caster is
+            // tried.
             if (value.value != -1 || !PyErr_Occurred()) return true;
             PyErr_Clear();
             return false;

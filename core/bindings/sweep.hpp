@@ -78,6 +78,7 @@ inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vecto
                                   const std::vector<std::string>& batched, bool motion, bool state,
                                   std::size_t last, int threads, const Progress& progress) {
     const OutputRequest outputs{measure_indices(names), measure_indices(batched), motion, state, last};
+    // Each thread has a problem of its own, whose varying numbers are overwritten for each variant.
     std::vector<std::unique_ptr<Worker>> workers;
     for (int t = 0; t < threads; ++t)
         workers.push_back(std::make_unique<Worker>(packed, grid, window, outputs));
@@ -85,10 +86,12 @@ inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vecto
     const std::size_t n = output.variants = stop - start;
     std::vector<real> numbers(output.set_layout(workers.at(0)->problem, workers[0]->window, outputs),
                               not_a_number);
+    // A variant that was not reached keeps this status and NaN.
     std::vector<std::int8_t> status(n, static_cast<std::int8_t>(Status::interrupted));
     output.numbers = numbers.data();
     output.status = status.data();
     const bool finished = run_jobs(
+        // Four variants at a time: threads seldom meet at the counter, and few wait at the end.
         n, threads, 4,
         [&](std::size_t i, int thread, const std::atomic<bool>& stopped) {
             Worker& worker = *workers[static_cast<std::size_t>(thread)];

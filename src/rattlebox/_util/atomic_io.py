@@ -137,16 +137,20 @@ def atomic_write(
         require_folder(target)
         if replace is False and os.path.lexists(path):  # before a long computation in the block
             raise _taken(path)
+        # In the same folder, since only within a file system a rename is atomic.
         handle, name = tempfile.mkstemp(f".partial{target.suffix}", f".{target.name}.", target.parent)
         os.close(handle)
         temporary = Path(name)
         try:
             yield temporary
+            # A temporary file is private; the result gets the permissions of any new file, which can only be asked by
+            # setting the mask.
             mask = os.umask(0)
             os.umask(mask)
             temporary.chmod(0o666 & ~mask)
             sync(temporary)
             install(temporary, path, replace=replace)
+            # Without this a crash of the machine may lose the new name although the content is on the disk.
             sync(target.parent)
         except BaseException:
             temporary.unlink(missing_ok=True)

@@ -201,6 +201,7 @@ def _spectral_half_widths(x: FloatArray) -> tuple[FloatArray, FloatArray]:
     count = periodograms.shape[1]
     # Effective number of the ordinates that hold the power: about half of all for noise.
     holders = periodograms.sum(axis=1) ** 2 / (periodograms**2).sum(axis=1)
+    # An oscillation concentrates the power in few ordinates, and its lobe at zero frequency is then a guess.
     peak = _peak(periodograms)
     refused = (holders < _SPREAD * count) | ((holders < _NARROW * count) & (peak > _PEAK))
     half, level = _fitted(periodograms[:, :_ORDINATES], length)
@@ -228,6 +229,7 @@ def _fitted(periodograms: FloatArray, length: int) -> tuple[FloatArray, FloatArr
             low, rough = _posterior(periodograms[:, :ordinates], limit)
             refused |= low > _REFUSED
             level = rough if ordinates > 6 else level
+    # The fit may lie below the lowest ordinates themselves, which would make intervals too narrow.
     level = np.maximum(level, periodograms[:, :4].mean(axis=1))
     factor = _STUDENT[min(max(_STUDENT), 2 * full)] * (1 + _WIDENING * np.cbrt(np.minimum(doubt, 1)))
     half = factor * np.sqrt(level / length)

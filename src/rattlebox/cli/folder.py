@@ -87,14 +87,19 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
     if (out / "zarr.json").exists() or (marker and marker.name not in (RUN_FOLDER, "")):
         raise DataError(f"{out} contains a study; a run needs a folder of its own", "another -o folder")
     _check_inputs(out, case)
+    # The lock of the checkpoint stands for the folder: a second run into the same folder is refused.
     own = Checkpoint(out / CHECKPOINT, case)
     resumable = bool(case.particle_dampers) and checkpoint is None
     with ExitStack() as stack:
         with own.lock():
+            # A process that was killed may have left temporary files, or a finished replacement that was not moved; the
+            # lock shows that nobody else works on them.
             for name in WRITTEN:
                 remove_temporaries(out / name)
             for folder in replacements(out):
                 _install(out, folder)
+            # Results of the same case may be replaced without a question; those of another one are what a user would
+            # miss.
             earlier = _stored_case(out / RUN)
             present = tuple(name for name in files_in(out) if may_replace(out / name))
             lines = (
@@ -102,6 +107,7 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
             )
             if lines and not replace:
                 raise DataError("\n".join([f"{out / RUN} is the result of another case", *lines, _SUGGESTION]))
+            # A checkpoint of an unfinished run holds hours of computation, and is kept unless this run resumes it.
             foreign = own.path.is_file() and not (resumable and (not replace or _is_readable(own)))
             if foreign and not replace:
                 raise DataError(f"{own.path} belongs to an unfinished run\n{_SUGGESTION}")
@@ -112,10 +118,12 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
         # Otherwise the run itself locks its checkpoint, and with it the folder.
         if not resumable or (not resumed and (lines or foreign)):
             stack.enter_context(own.lock())
+        # Nothing of value is in the way: the run writes into the folder itself.
         if not lines and not foreign:
             rewritten = () if earlier is None else present
             yield RunFolder(out, out, checkpoint or own.path, out / SNAPSHOTS, rewritten, tuple(notes))
             return
+        # Otherwise it writes beside the earlier results, which are removed only when the new ones are complete.
         folder = stack.enter_context(_replacement(out, case))
         notes = [note for note in notes if not note.startswith(f"{folder} ")]
         default = own.path if resumed else folder / CHECKPOINT

@@ -33,6 +33,7 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
     contents, centres = damper.contents, damper.start.position
     radii, masses, species = contents.radius, contents.mass, contents.species
     first, second, apart = overlapping(centres, radii)
+    # One contact for each kind of pair decides, since the law and its usual overlap depend on the kind only.
     room = damper.cavity.room(centres, radii)
     pairs = [
         (float(-apart[k]), int(first[k]), int(second[k]))
@@ -52,6 +53,8 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
         else:
             entry = table.entries[table.wall_entry[species[one], 0]]
             law, size = _law(damper, entry, radii[one], masses[one]), radii[one]
+        # Overlaps as deep as impacts make them are those of a run that is continued; much deeper ones would throw the
+        # particles apart.
         usual = law.largest_overlap(speed)
         if depth > TOUCHING * size and depth > DEEPER * usual:
             raise _too_deep(damper, depth, usual, speed, one, other)

@@ -58,6 +58,7 @@ def errors_of(path: str | os.PathLike[str], what: str) -> Iterator[None]:
 def arrays_from_child(path: Path, kind: str) -> dict[str, Any]:
     """Return the arrays that a script of `IN_CHILD` reads from a file, in a process with limits of memory and time."""
     size = path.stat().st_size
+    # Damaged files can make a reader loop or allocate without end. What a sound file of this size may need is allowed.
     seconds = LEAST_TIME + size / BYTES_PER_SECOND
     memory = max(LEAST_MEMORY, MEMORY_PER_BYTE * size)
     whole = "the complete file"
@@ -73,12 +74,15 @@ def arrays_from_child(path: Path, kind: str) -> dict[str, Any]:
                 errors="replace",
                 check=False,
                 timeout=seconds,
+                # Threads of OpenBLAS would reserve memory that counts towards the limit.
                 env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
             )
         except subprocess.TimeoutExpired:
             raise DataError(
                 f"{path} cannot be read as .{kind} within {seconds:.0f} s; it may be damaged", whole
             ) from None
+        # 1 is an error of the script itself, with its message in the last line; anything else is a crash of the
+        # library.
         if process.returncode == 1:
             reason = (process.stderr.strip().splitlines() or ["cannot be read"])[-1]
             raise DataError(f"{path} {reason}", whole)
