@@ -18,12 +18,38 @@ class RattleboxError(Exception):
 
     _source: ClassVar[tuple[str, str]] = (__name__, "RattleboxError")  # module and name of the class, for pickles
 
-    def __init__(self, complaint: str, suggestion: str = "", place: Sequence[str | int] = ()) -> None:
-        where = named(place)
-        super().__init__(message(where, complaint, suggestion) if where else message(complaint, suggestion))
-        self.complaint = complaint
+    def __init__(
+        self,
+        complaint: str,
+        suggestion: str = "",
+        place: Sequence[str | int] = (),
+        *,
+        head: str = "",
+        allowed: Sequence[str] = (),
+    ) -> None:
+        self.complaint = complaint  # what is wrong, and what is allowed
         self.suggestion = suggestion
         self.place = tuple(place)
+        self.head = head  # the place as a message names it, with file and value; default that of `place`
+        self.allowed = tuple(allowed)  # names of fields or values, of which one is needed
+        super().__init__(
+            message(self.without_suggestion, suggestion)
+        )  # the only place where the parts are put together
+
+    @property
+    def without_suggestion(self) -> str:
+        """The text without the suggestion."""
+        where = self.head or named(self.place)
+        return message(where, self.complaint, "") if where else self.complaint
+
+    def restated(self, kind: type[RattleboxError] | None = None, source: str = "", **changes: Any) -> RattleboxError:
+        """Return the error with some parts changed, of another class, or with a file or option in front."""
+        names = ("complaint", "suggestion", "place", "head", "allowed")
+        parts: dict[str, Any] = {name: getattr(self, name) for name in names} | changes
+        if source:
+            name = "head" if parts["head"] or parts["place"] else "complaint"
+            parts[name] = f"{source}: {parts[name] or named(parts['place'])}"
+        return (kind or type(self))(**parts)
 
     def __init_subclass__(cls) -> None:
         """Name a class in tracebacks as users know it: a class of the package outside of this module by its public base."""

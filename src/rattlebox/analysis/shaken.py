@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox._util.exceptions import DataError
+from rattlebox._util.exceptions import CaseError, DataError
 
 from .cycle_loss import cycle_loss
 from .signals import FloatArray, first_harmonic, positive, steps_inside, trapezoid_weights
@@ -118,9 +118,9 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
     # With fewer samples the harmonics of short impulses are aliased into the amplitude of the force.
     samples = np.count_nonzero(times > start + 1e-9 / frequency)
     if samples < MIN_SAMPLES * cycles:
-        raise ValueError(
-            f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {MIN_SAMPLES}"
-            f"\n  try: rb.Output(rate={20 * frequency:g})"
+        raise CaseError(
+            f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {MIN_SAMPLES}",
+            f"rb.Output(rate={20 * frequency:g})",
         )
     # The ledger is relative to the base; the harmonic balance holds in the inertial frame.
     velocity = arrays.base_velocity + arrays.cavity_velocity[:, number]

@@ -37,7 +37,7 @@ FAILURES = (rb.RattleboxError, OSError, ValueError, ArithmeticError, MemoryError
 def said(error: BaseException) -> str:
     """Return the text of one of `FAILURES`."""
     if isinstance(error, MemoryError):
-        return "the memory is exhausted\n  try: a shorter or smaller case"
+        return str(rb.ResourceError("the memory is exhausted", "a shorter or smaller case"))
     return "nested too deep" if isinstance(error, RecursionError) else str(error)
 
 

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, ClassVar
 
+import rattlebox as rb
+
 from .worker import main
 
 _CONTEXT = multiprocessing.get_context("spawn")
@@ -77,7 +79,7 @@ class Worker:
                     return content[0]
         except (EOFError, OSError):
             ended = "the process that computed ended; it may have needed more memory than this machine has"
-            raise TaskFailed(f"{ended}\n  try: a shorter or smaller case") from None
+            raise TaskFailed(str(rb.ResourceError(ended, "a shorter or smaller case"))) from None
 
     def stop(self) -> None:
         """End the process and its computation."""
@@ -118,9 +120,8 @@ class Live:
                 except TimeoutError:
                     self._worker.stop()
                     self._started = False
-                    self._fail(
-                        f"this case takes longer than {self._longest:g} s\n  try: Run and save, or a shorter case"
-                    )
+                    slow = f"this case takes longer than {self._longest:g} s"
+                    self._fail(str(rb.ResourceError(slow, "Run and save, or a shorter case")))
                 except TaskFailed as error:
                     self._fail(str(error))
         finally:

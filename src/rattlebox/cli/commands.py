@@ -85,8 +85,8 @@ def _check_single(ctx: typer.Context, first: Path) -> None:
     """Raise if a command received more than one file or folder."""
     if ctx.args:
         raise CaseError(
-            f"unexpected argument {' '.join(ctx.args)}: 'rattlebox {ctx.info_name}' takes one argument, here {first}\n"
-            f"  try: rattlebox {ctx.info_name} {first} -o {ctx.args[0]}"
+            f"unexpected argument {' '.join(ctx.args)}: 'rattlebox {ctx.info_name}' takes one argument, here {first}",
+            f"rattlebox {ctx.info_name} {first} -o {ctx.args[0]}",
         )
 
 

@@ -106,13 +106,16 @@ def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: b
                 differences({"case": _bare(earlier)}, {"case": comparable_toml(case)}) if earlier is not None else []
             )
             if lines and not replace:
-                raise DataError("\n".join([f"{out / RUN} is the result of another case", *lines, _SUGGESTION]))
+                raise DataError("\n".join([f"{out / RUN} is the result of another case", *lines]), _SUGGESTION)
             # A checkpoint of an unfinished run holds hours of computation, and is kept unless this run resumes it.
             foreign = own.path.is_file() and not (resumable and (not replace or _is_readable(own)))
             if foreign and not replace:
-                raise DataError(f"{own.path} belongs to an unfinished run\n{_SUGGESTION}")
+                raise DataError(f"{own.path} belongs to an unfinished run", _SUGGESTION)
             if foreign and not is_checkpoint(own.path):
-                raise DataError(_FOREIGN.format(own.path))
+                raise DataError(
+                    f"{own.path} was not written by this command, or has changed since, and is not overwritten",
+                    "another -o folder, or move the file",
+                )
         notes = [f"{folder} {_UNFINISHED}" for folder in replacements(out)]
         resumed = resumable and own.path.is_file() and not foreign
         # Otherwise the run itself locks its checkpoint, and with it the folder.
@@ -222,11 +225,7 @@ def digests(folder: Path, names: Iterable[str]) -> dict[str, str]:
     return {name: "" if name in _SELF_DESCRIBING else digest_of(folder / name) for name in names}
 
 
-_FOREIGN = (
-    "{} was not written by this command, or has changed since, and is not overwritten\n"
-    "  try: another -o folder, or move the file"
-)
-_SUGGESTION = "  try: another -o folder, or --replace"
+_SUGGESTION = "another -o folder, or --replace"
 
 
 def _stored_case(file: Path) -> str | None:
@@ -253,8 +252,8 @@ def _check_inputs(out: Path, case: Case) -> None:
         for file in [named] if isinstance(named, str) else [*named.values()] if named else []:
             if Path(file).name in WRITTEN and Path(file).resolve().parent == out.resolve():
                 raise DataError(
-                    f"{out / Path(file).name} is an input of the case, and a result would overwrite it\n"
-                    "  try: another -o folder"
+                    f"{out / Path(file).name} is an input of the case, and a result would overwrite it",
+                    "another -o folder",
                 )
 
 

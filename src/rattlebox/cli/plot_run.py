@@ -75,12 +75,13 @@ def _plot(
     given = {"size": size, **particles, "pixels": pixels and tuple(map(int, _numbers("pixels", pixels, "x")))}
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     if not path.exists():
-        raise DataError(f"{path} does not exist{_missing_file_hint(path)}")
+        reason, suggestion = _why_missing(path)
+        raise DataError(f"{path} does not exist{reason}", suggestion)
     run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
     if number is not None and not isinstance(run, Snapshots):
         raise CaseError(
-            f"--number {number}: {path} has no snapshots\n"
-            "  try: run.vtkhdf in the same folder; output.snapshots in the case creates it"
+            f"--number {number}: {path} has no snapshots",
+            "run.vtkhdf in the same folder; output.snapshots in the case creates it",
         )
     try:
         if film:
@@ -110,18 +111,17 @@ def _numbers(option: str, text: str, separator: str) -> tuple[float, ...]:
     return numbers
 
 
-def _missing_file_hint(path: Path) -> str:
-    """Return the end of the message about a missing file of a run: the reason, if known, and a suggestion."""
+def _why_missing(path: Path) -> tuple[str, str]:
+    """Return the reason why a file of a run is missing, "" if it is not known, and a suggestion."""
     present = {name for name in (RUN, SNAPSHOTS, CHECKPOINT) if (path.parent / name).is_file()}
     if path.name == SNAPSHOTS and RUN in present and "particles" not in load(path.parent / RUN).groups:
-        return ": only runs of particle dampers have snapshots\n  try: -o run.png"
+        return ": only runs of particle dampers have snapshots", "-o run.png"
     if path.name == SNAPSHOTS:
-        return "\n  try: output.snapshots in the case"
+        return "", "output.snapshots in the case"
     unfinished = ": the run is not finished" if CHECKPOINT in present else ""
     hints = [f"rattlebox plot {path.parent / SNAPSHOTS}"] if SNAPSHOTS in present else []
     hints += ["repeat the command that started the run; it resumes"] if unfinished else []
-    suggestion = ", or ".join(hints) or "the folder that 'rattlebox run -o' wrote"
-    return f"{unfinished}\n  try: {suggestion}"
+    return unfinished, ", or ".join(hints) or "the folder that 'rattlebox run -o' wrote"
 
 
 def _check_film(out: Path, kind: str | None, number: int | None) -> None:

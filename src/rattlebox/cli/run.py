@@ -102,13 +102,13 @@ def run_case(
     case = Case.from_file(path)
     if checkpoint is not None and not case.particle_dampers:
         raise CaseError(
-            f"--checkpoint {checkpoint}: {path} has no particle damper, and only runs with particles write checkpoints\n"
-            "  try: leave out --checkpoint"
+            f"--checkpoint {checkpoint}: {path} has no particle damper, and only runs with particles write checkpoints",
+            "leave out --checkpoint",
         )
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
         raise DataError(
-            f"--checkpoint {checkpoint}: a result could overwrite a file with this suffix in the results folder\n"
-            f"  try: --checkpoint {out / CHECKPOINT}"
+            f"--checkpoint {checkpoint}: a result could overwrite a file with this suffix in the results folder",
+            f"--checkpoint {out / CHECKPOINT}",
         )
     with reserve_folder(out, case, checkpoint=checkpoint, replace=replace) as folder:
         for note in folder.notes:
@@ -150,7 +150,7 @@ def _run_in_folder(path: Path, case: Case, folder: RunFolder, *, csv: bool, mat:
         option = "--replace, " if checkpoint == out / CHECKPOINT else ""
         raise DataError(error.complaint, f"another -o folder, {option}{error.suggestion}") from None
     except Hint as hint:
-        raise CaseError(f"{path}: {hint}") from None
+        raise hint.restated(CaseError, str(path)) from None
     except KeyboardInterrupt:
         typer.echo(f"stopped; {_stop_message(checkpoint, out, list(written.values()) if installed else ())}", err=True)
         sys.exit(STOPPED)

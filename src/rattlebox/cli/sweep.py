@@ -50,7 +50,7 @@ def _error_context(study: Path, out: Path) -> Iterator[None]:
     except RattleboxError as error:
         if str(error).startswith((str(study), str(out))):
             raise
-        raise type(error)(f"{study}: {error}") from None
+        raise error.restated(source=str(study)) from None
 
 
 @contextmanager
@@ -64,8 +64,8 @@ def _cluster(address: str | None) -> Iterator[Any]:
         client: Any = distributed.Client(**target, timeout=10)
     except (OSError, ValueError, TypeError) as error:
         raise ResourceError(
-            f"no Dask scheduler responds at {address}: {error}\n  try: the address that 'dask scheduler' printed, "
-            "such as tcp://10.0.0.1:8786"
+            f"no Dask scheduler responds at {address}: {error}",
+            "the address that 'dask scheduler' printed, such as tcp://10.0.0.1:8786",
         ) from None
     with client:
         yield client

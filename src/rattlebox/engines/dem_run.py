@@ -64,7 +64,7 @@ class DemRun:
             if snapshots.written >= before:
                 return
         except DataError as error:
-            wrong = str(error).partition("\n  try: ")[0]
+            wrong = error.without_suggestion
         raise DataError(wrong, "put the file and output.snapshots back, or remove the checkpoint to start again")
 
     @property

@@ -390,7 +390,7 @@ class Case(Part):
             existing(file)
             content = file.read_text(encoding="utf-8-sig")
         except DataError as error:
-            raise CaseError(str(error)) from None
+            raise error.restated(CaseError) from None
         except OSError as error:
             raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
         except UnicodeDecodeError:

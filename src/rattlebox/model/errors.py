@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError, message
+from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError
 
 from .synonyms import ABSENT, MEANT
 
@@ -34,7 +34,7 @@ def at(*place: str | int) -> Iterator[None]:
     try:
         yield
     except (Hint, DataError, ResourceError) as error:
-        raise type(error)(error.complaint, error.suggestion, (*place, *error.place)) from None
+        raise error.restated(place=(*place, *error.place)) from None
 
 
 def one_of(advice: str, **alternatives: Any) -> None:
@@ -82,25 +82,44 @@ def translate(
     findings = _without_echoes(
         _misspelt_fields_first(error.errors(include_url=False), str(source), vocabulary), vocabulary
     )
-    blocks: list[str] = []
+    kinds = {type(_raised(finding)) for finding in findings}
+    kind = kinds.pop() if len(kinds) == 1 else CaseError
+    kind = kind if kind in (DataError, ResourceError) else CaseError
+    parts: dict[str, RattleboxError] = {}
     for finding in findings[:_EXAMINED]:
         location = (*finding["loc"], *getattr(_raised(finding), "place", ()))
         if finding["type"] == "union_tag_invalid":
             location += ("kind",)
         missing = finding["type"] == "missing"
-        place, value = _as_written(given, location, len(finding["loc"]) - missing)
+        words, value = _as_written(given, location, len(finding["loc"]) - missing)
+        place = ".".join(words)
         head = f"{source}: {place}" if place else f"{source}:"
         if not missing and value is not _NOTHING and not _holds_tables(value):
             head += f" = {_shown(value)}"
-        block = message(head, *_complaint_and_suggestion(finding, value, str(source), vocabulary, place))
-        if block not in blocks:
-            blocks.append(block)
-    count = len(blocks) + len(findings[_EXAMINED:])
-    if count > _LIMIT:
-        blocks[_LIMIT:] = [f"and {count - _LIMIT} more"]
-    kinds = {type(_raised(finding)) for finding in findings}
-    kind = kinds.pop() if len(kinds) == 1 else CaseError
-    return (kind if kind in (DataError, ResourceError) else CaseError)("\n".join(blocks))
+        complaint, suggestion = _complaint_and_suggestion(finding, value, str(source), vocabulary, place)
+        part = kind(complaint, suggestion, words, head=head, allowed=_allowed(finding, str(source), vocabulary))
+        parts.setdefault(str(part), part)
+    count = len(parts) + len(findings[_EXAMINED:])
+    if count == 1:
+        return next(iter(parts.values()))
+    texts = list(parts)
+    return kind("\n".join(texts if count <= _LIMIT else [*texts[:_LIMIT], f"and {count - _LIMIT} more"]))
+
+
+def _allowed(finding: Any, source: str, vocabulary: Vocabulary) -> Sequence[str]:
+    """Return the names of fields, kinds or values of which one is needed."""
+    what = finding["type"]
+    if what == "extra_forbidden":
+        return sorted(_fields(finding["loc"][:-1], source, vocabulary))
+    if what in (*_TAGS, *_TABLES):
+        return [kind for kind in _kinds(finding["loc"], source, vocabulary) if kind]
+    return _choices(finding) if what == "literal_error" else ()
+
+
+def _choices(finding: Any) -> list[str]:
+    """Return the texts of which a field accepts one."""
+    expected = str((finding.get("ctx") or {}).get("expected", "")).replace(" or ", ", ").split(", ")
+    return [word.strip("'") for word in expected]
 
 
 def _raised(finding: Any) -> Any:
@@ -132,8 +151,8 @@ def _without_echoes(findings: Sequence[Any], vocabulary: Vocabulary) -> list[Any
     ]
 
 
-def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, Any]:
-    """Return the place in the names of the input, and its value.
+def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[list[str], Any]:
+    """Return the steps to the place in the names of the input, and its value.
 
     Names before index `sure` that the input lacks are tags of pydantic and are omitted.
     """
@@ -155,7 +174,7 @@ def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, An
         elif number >= sure:
             words.append(str(part))
             node = _NOTHING
-    return ".".join(words), node if words else _NOTHING
+    return words, node if words else _NOTHING
 
 
 def _has(node: Any, name: Any) -> bool:
@@ -261,7 +280,7 @@ def _complaint_and_suggestion(
     """Return what is wrong with a value, and what to try."""
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
     if isinstance(raised, RattleboxError):
-        return raised.complaint, raised.suggestion
+        return (raised.without_suggestion if raised.head else raised.complaint), raised.suggestion
     if isinstance(raised, ValueError):
         return str(raised), ""
     location = finding["loc"]
@@ -293,8 +312,7 @@ def _complaint_and_suggestion(
             return "one more is needed", ""
         return _PLAIN[what], _table_of(location[-1], vocabulary) or _example_of(location, source, vocabulary)
     if what == "literal_error" and isinstance(value, str):
-        expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
-        close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)
+        close = difflib.get_close_matches(value, _choices(finding), n=1)
         return _PLAIN[what].format(**context), f'"{close[0]}"' if close else ""
     if what in ("list_type", "tuple_type") and isinstance(value, (str, int, float)) and not isinstance(value, bool):
         return _PLAIN[what], "[" + (f'"{value}"' if isinstance(value, str) else f"{value!r}") + "]"

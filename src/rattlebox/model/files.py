@@ -59,6 +59,7 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
     try:
         return tomllib.loads(content)
     except (ValueError, RecursionError) as error:  # ValueError: also an integer of thousands of digits
+        advice: list[str] = []
         complaint = [f"{source}: not TOML: {error or 'nested too deep'}"]
         place = re.search(r"at line (\d+), column (\d+)", str(error))
         lines = content.rstrip().splitlines()
@@ -69,20 +70,20 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
             complaint.append("  " + "".join(mark if mark.isprintable() else " " for mark in line[:100]))
         bare = re.match(r"\s*([\w.-]+)\s*=\s*([-+\d.eE_]+\s*[A-Za-z%µ°][^#,\"']*)", line)
         if bare:
-            complaint.append(f'  try: quotes around a number with a unit: {bare[1]} = "{bare[2].strip()}"')
+            advice.append(f'quotes around a number with a unit: {bare[1]} = "{bare[2].strip()}"')
         comma = re.match(r"\s*([\w.-]+)\s*=\s*([-+]?\d+),(\d+)\s*(?:#|$)", line)
         if comma:
-            complaint.append(f"  try: a point before decimals: {comma[1]} = {comma[2]}.{comma[3]}")
+            advice.append(f"a point before decimals: {comma[1]} = {comma[2]}.{comma[3]}")
         if is_cut:
-            complaint.append(f"  try: the whole file, which seems cut off at line {number}")
+            advice.append(f"the whole file, which seems cut off at line {number}")
         twice = re.search(r"Cannot declare \((.*)\) twice", str(error))
         names = re.findall(r"'([\w-]+)'", twice[1]) if twice else []
         if names and names[0] == "materials":
-            complaint.append("  try: another name for one of the two materials")
+            advice.append("another name for one of the two materials")
         elif names and names[-1] in _SEVERAL:
             table = ".".join([*names[:-1], _SEVERAL[names[-1]]])
-            complaint.append(f"  try: double brackets for each of them, [[{table}]]")
-        raise CaseError("\n".join(complaint)) from None
+            advice.append(f"double brackets for each of them, [[{table}]]")
+        raise CaseError("\n".join(complaint), "; or ".join(advice)) from None
 
 
 def _has_long_key(content: str) -> bool:

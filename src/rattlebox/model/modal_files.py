@@ -64,8 +64,8 @@ def _from_toml(file: Path) -> dict[str, Any]:
     try:
         table = read_toml(content, str(file))
     except CaseError as error:
-        advice = "" if "\n  try: " in str(error) else 'frequencies = ["10 Hz"] and [shapes] tip = [0.7]'
-        raise DataError(str(error), advice) from None
+        advice = error.suggestion or 'frequencies = ["10 Hz"] and [shapes] tip = [0.7]'
+        raise error.restated(DataError, suggestion=advice) from None
     if not table:
         raise DataError(f"{file} is empty", "frequencies, damping_ratios and shapes")
     for name in table:

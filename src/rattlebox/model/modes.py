@@ -58,12 +58,12 @@ class ModalModel:
         rows = self.participation
         return np.asarray(self.total_mass - (rows.T @ rows))
 
-    def point(self, name: str | None) -> str:
-        """Return the name of a point; None is the only point of the structure."""
+    def point(self, name: str | None, field: str = "point") -> str:
+        """Return the name of a point; None is the only point of the structure. A message names the field."""
         if name is None:
             own = [known for known in self.shapes if known not in self.attached]
             if len(own) != 1:
-                raise Hint("a point must be named", " or ".join(f'point = "{known}"' for known in own))
+                raise Hint("a point must be named", " or ".join(f'{field} = "{known}"' for known in own))
             return own[0]
         if name not in self.shapes:
             raise Hint(f"the structure has no point {name!r}", nearest(name, self.shapes))

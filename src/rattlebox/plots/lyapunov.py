@@ -53,8 +53,8 @@ def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
     values = study.growth_per_cycle if "growth_per_cycle" in study else study.exponent
     if values.ndim > 2:
         raise CaseError(
-            f"the study varies along {', '.join(map(str, values.dims))}; at most two axes can be drawn\n"
-            "  try: study.sel(...) to fix the others"
+            f"the study varies along {', '.join(map(str, values.dims))}; at most two axes can be drawn",
+            "study.sel(...) to fix the others",
         )
     with figure_style(size):
         if values.ndim == 2:

@@ -126,8 +126,8 @@ def _check_axes(study: xr.Dataset, name: str, dims: list[str], kind: str | None)
         raise CaseError("a random design has no axes to draw along", "a grid of values")
     if not dims:
         raise CaseError(
-            f"no axis of the study is left to draw along: {name} = {float(study[name].values):.6g}\n"
-            "  try: fewer values of at"
+            f"no axis of the study is left to draw along: {name} = {float(study[name].values):.6g}",
+            "fewer values of at",
         )
     if len(dims) > 2 or (kind == "map" and len(dims) == 1):
         variation = f"varies along {', '.join(dims)}"

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from rattlebox._util.exceptions import CaseError
+
 from ..results import RunArrays
 from ..results.summary import largest_points
 from .style import FAINT, SERIES_COLOURS, SERIES_STYLES, Size, StyledFigure, legend_above, pen
@@ -33,9 +35,9 @@ def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice
         return slice(0, arrays.time.size)
     first, last = np.searchsorted(arrays.time, between[0]), np.searchsorted(arrays.time, between[1], "right")
     if first >= last:
-        raise ValueError(
-            f"between = {between}: the run has no output time in this interval\n"
-            f"  try: times from {arrays.time[0]:g} s to {arrays.time[-1]:g} s"
+        raise CaseError(
+            f"between = {between}: the run has no output time in this interval",
+            f"times from {arrays.time[0]:g} s to {arrays.time[-1]:g} s",
         )
     return slice(int(first), int(last))
 

@@ -49,7 +49,7 @@ def _in_si(coord: xr.DataArray, name: str, value: Any) -> Any:
     try:
         return parse(value, (unit_of(coord) or "1",))[0]
     except Hint as hint:
-        raise CaseError(f"at: {name} = {value!r}\n  {hint}") from None
+        raise hint.restated(CaseError, head=f"at: {name} = {value!r}") from None
 
 
 def _nearest_index(coord: xr.DataArray, name: str, value: Any) -> int:

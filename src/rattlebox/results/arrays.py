@@ -13,6 +13,8 @@ from typing import Any, NoReturn, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rattlebox._util.exceptions import message
+
 from .schema import (
     AXES,
     BOTH,
@@ -84,9 +86,8 @@ class _Frozen:
     """Base class of read-only collections of arrays, which compare by value."""
 
     def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(
-            f"{name} cannot be set because results are read-only\n  try: replaced({name}=...), which returns a copy"
-        )
+        complaint = f"{name} cannot be set because results are read-only"
+        raise AttributeError(message(complaint, f"replaced({name}=...), which returns a copy"))
 
     def __eq__(self, other: object) -> bool:
         return same(vars(self), vars(other)) if type(other) is type(self) else NotImplemented

@@ -77,9 +77,9 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
         study = make_study(cls, given, source, {"": {"": examples(cls)}, "spaced": {"": examples(SpacedTable)}})
         study.validate()
     except Hint as hint:
-        raise CaseError(f"{source}: {hint}") from None
+        raise hint.restated(CaseError, source) from None
     except CaseError as error:
-        raise error if str(error).startswith(source) else CaseError(f"{source}: {error}") from None
+        raise error if str(error).startswith(source) else error.restated(source=source) from None
     return study
 
 
@@ -88,8 +88,8 @@ def _read(content: str, source: str) -> dict[str, Any]:
         return read_toml(content, source)
     except CaseError as error:
         path = re.search(r"\n  ([\w.]+\[\d+\][^\s=]*)", str(error))
-        hint = f'\n  try: quotes around a path with a number: "{path[1]}" = ...' if path else ""
-        raise CaseError(f"{error}{hint}") from None
+        advice = f'quotes around a path with a number: "{path[1]}" = ...' if path else error.suggestion
+        raise error.restated(suggestion=advice) from None
 
 
 # ---- paths without quotes, which TOML reads as tables in tables
@@ -155,12 +155,15 @@ def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Materi
     if "file" in content:
         name = content["file"]
         if len(content) > 1 or not isinstance(name, str):
-            hint = Hint("the table must have either the name of a file or a case, not both", 'file = "case.toml"')
-            raise CaseError(f"{source}: case\n  {hint}")
+            raise CaseError(
+                "the table must have either the name of a file or a case, not both",
+                'file = "case.toml"',
+                head=f"{source}: case",
+            )
         try:
             file = existing(folder / name)
         except DataError as error:
-            raise CaseError(f"{source}: case.file = {name!r}\n  {error}") from None
+            raise error.restated(CaseError, head=f"{source}: case.file = {name!r}") from None
         content = read_toml(_text(file), str(file))
         return case_and_materials(content, source=str(file), folder=file.parent)
     return case_and_materials(content, source=f"{source}: case", folder=folder)
@@ -170,7 +173,7 @@ def _text(file: Path) -> str:
     try:
         return existing(file).read_text(encoding="utf-8-sig")
     except DataError as error:
-        raise CaseError(str(error)) from None
+        raise error.restated(CaseError) from None
     except OSError as error:
         raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

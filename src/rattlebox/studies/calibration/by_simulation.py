@@ -184,7 +184,7 @@ class Calibration:
             f"{bad.size} of {len(values)} samples have no simulated value, most often of "
             f"{self.points[int(np.argmax(missing.sum(axis=0)))]}"
         )
-        reason = work.reason(int(bad[0])).partition("\n  try: ")[0].replace("\n", "\n  ")
+        reason = work.reason(int(bad[0])).replace("\n", "\n  ")
         if bad.size > _MOST_MISSING * len(values) or used < self.least_runs:
             raise Hint(
                 f"{line}" + (f"; the first one: {reason}" if reason else ""),

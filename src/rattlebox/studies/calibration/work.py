@@ -285,7 +285,7 @@ class CalibrationWork:
             try:
                 each.simulate(self.variant(index), 1, lambda *_: True)
             except RattleboxError as error:
-                return str(error)
+                return error.without_suggestion
         return ""
 
     def predict(self) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rattlebox.analysis.describing_function import MassTable
 from rattlebox.model.case import Case
-from rattlebox.model.errors import Hint
+from rattlebox.model.errors import Hint, at
 from rattlebox.model.modes import ModalModel
 from rattlebox.model.space import Triple, unit_vector
 from rattlebox.model.structures import StructurePart
@@ -271,12 +271,8 @@ class _Load(NamedTuple):
     def of(cls, model: ModalModel, unit: str, point: Any, direction: Any, dampers: _Dampers) -> _Load:
         still = np.zeros(len(dampers.points))
         if unit == "N":
-            try:
-                name = model.point(point)
-            except Hint as error:
-                raise Hint(
-                    error.complaint, error.suggestion.replace("point =", "load_point ="), ["load_point"]
-                ) from None
+            with at("load_point"):
+                name = model.point(point, "load_point")
             return cls(model.shape(name, direction), still, f"force at {name}")
         if point is not None:
             raise Hint("the base moves as a whole and has no point", "leave load_point out", ["load_point"])

@@ -204,7 +204,7 @@ class Store:
         hint = "another folder, or remove this one"
         if len(lines) == 1 and there["core"] != here["core"]:
             hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another folder"
-        raise StoreError("\n".join([f"{self.path} holds another study", *lines, f"  try: {hint}"]))
+        raise StoreError("\n".join([f"{self.path} holds another study", *lines]), hint)
 
 
 class _MemoryFiles:
