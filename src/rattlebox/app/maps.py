@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from nicegui import run as threads
@@ -14,13 +14,11 @@ from nicegui import ui
 import rattlebox as rb
 
 from .draft import dotted, numeric_paths, quantity, rounded
+from .host import Host
 from .jobs import TaskFailed, Worker
 from .results import MAP_FORMATS, download_map, maps, new_name, stored_map
 from .runs import offer
 from .views import prefixed
-
-if TYPE_CHECKING:
-    from .page import Page
 
 NONE = "(none)"
 VIRIDIS = ["#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#fde725"]
@@ -32,7 +30,7 @@ MOST_VALUES = 400
 class MapTab:
     """Choice of parameters and measure, and the map, which fills while it is computed."""
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Host) -> None:
         self._page = page
         self._worker: Worker | None = None
         self._name = ""

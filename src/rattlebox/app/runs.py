@@ -6,7 +6,6 @@ from collections.abc import Callable
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from nicegui import run as threads
 from nicegui import ui
@@ -15,11 +14,9 @@ import rattlebox as rb
 
 from .draft import FAILURES, leaves, said, short
 from .elements import Charts
+from .host import Host
 from .results import FORMATS, download, inside, name_of_case, paused_runs, runs
 from .views import comparison
-
-if TYPE_CHECKING:
-    from .page import Page
 
 MOST_RUNS = 50
 MOST_DIFFERENCES = 12
@@ -28,7 +25,7 @@ MOST_DIFFERENCES = 12
 class RunsTab:
     """List of the runs in the folder."""
 
-    def __init__(self, page: Page, tab: ui.tab) -> None:
+    def __init__(self, page: Host, tab: ui.tab) -> None:
         self._page, self._tab = page, tab
         self._chosen: set[str] = set()
         with ui.row().classes("items-center"):

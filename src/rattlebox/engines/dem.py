@@ -209,7 +209,7 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
     displacement = np.stack([q @ shape for shape in shapes], axis=1)
     base = np.zeros((3, times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
-        base += np.multiply.outer(acceleration.motion(times), direction_of_base(case, signal))
+        base += np.multiply.outer(acceleration.motion(times), direction_of_base(case.particle_dampers, signal))
     load = np.array([signal.evaluate(times) for signal in case.loads]).reshape(len(case.loads), times.size).T
     ends = dem.state().cavities
     contents = [damper.contents for damper in dampers]

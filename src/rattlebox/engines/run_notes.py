@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from rattlebox._util.quantities import quantity
 from rattlebox.core import _core
+from rattlebox.model.contact_pairs import contact_pairs
 from rattlebox.model.contacts import MAX_OVERLAP, Contact
-from rattlebox.model.pairs import contact_pairs
 from rattlebox.prepare.time_step import MIN_STEPS_PER_CONTACT, contact_limits
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from inspect import Signature
+from inspect import Parameter, Signature
 from reprlib import Repr
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, get_args
 
 import numpy as np
 from pydantic import (
@@ -24,9 +24,10 @@ from pydantic_core import CoreSchema
 
 from rattlebox._util.text import has_controls
 
+from .also_accepts import AlsoAccepts
 from .errors import Hint, nearest, translate
 from .kinds import register
-from .signatures import part_signature
+from .signatures import PlainText, type_text
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass as _ModelType
@@ -38,7 +39,7 @@ class _ReadableSignature:
     """The signature of a part, in place of the one with all validators that pydantic assigns, which is ignored."""
 
     def __get__(self, cls: type[Part], _: type) -> Signature:
-        return part_signature(cls)
+        return _signature(cls)
 
     def __set__(self, cls: type[Part], value: object) -> None:
         pass
@@ -59,6 +60,36 @@ class _PartMeta(_ModelType):
             return super().__call__(**values)
         except ValidationError as error:
             raise translate(error, cls.__name__, vocabulary(), values) from None
+
+
+def _signature(part: type[Part]) -> Signature:
+    """Return the signature of a part of a case."""
+    singular = {field: name for name, field in part.aliases.items()}
+    alternatives = {name for pair in part.alternatives for name in pair}
+    named: list[Parameter] = []
+    positional: list[Parameter] = []
+    for name, field in part.model_fields.items():
+        if name == "kind":
+            continue
+        annotation: Any = field.annotation
+        metadata: tuple[Any, ...] = tuple(field.metadata)
+        default: Any = Parameter.empty
+        if not field.is_required():
+            default = field.get_default(call_default_factory=True)
+        elif name in alternatives:
+            annotation, metadata, default = Annotated[annotation, *metadata] | None, (), None
+        if name in singular:
+            # Show both names: the plural takes several, and is optional if the singular is given.
+            metadata = tuple(each for each in metadata if not isinstance(each, AlsoAccepts))
+            default = () if default is Parameter.empty else default
+            one = PlainText(f"{type_text(get_args(annotation)[0])} | None")
+            named.append(Parameter(singular[name], Parameter.KEYWORD_ONLY, default=None, annotation=one))
+        kind = Parameter.POSITIONAL_OR_KEYWORD if name in part.positional else Parameter.KEYWORD_ONLY
+        shown = Parameter(
+            field.alias or name, kind, default=default, annotation=PlainText(type_text(annotation, metadata))
+        )
+        (positional if name in part.positional else named).append(shown)
+    return Signature([*sorted(positional, key=lambda each: part.positional.index(each.name)), *named])
 
 
 _NAMES = frozenset({"name", "title", "point"})

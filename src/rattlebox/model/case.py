@@ -15,7 +15,9 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import CaseError, DataError, ResourceError
+from rattlebox._util.frozen import complete
 from rattlebox._util.html import code_block, paragraph
+from rattlebox._util.narrow import instance
 
 from .also_accepts import AlsoAccepts
 from .any_signal import AnySignal
@@ -30,8 +32,7 @@ from .materials import Material, materials
 from .matrices import Matrices
 from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
-from .pairs import contact_pairs
-from .particle_case import check_particle_case
+from .particle_case import direction_of_base
 from .particle_damper import ParticleDamper
 from .paths import replaced
 from .shocks import Shock
@@ -118,18 +119,19 @@ class Case(Part):
 
     @model_validator(mode="after")
     def _check_consistency(self) -> Case:
-        put = object.__setattr__
-        put(self, "loads", self._signals_in_unit("loads", "N", "a load"))
-        put(self, "base", self._signals_in_unit("base", "m/s^2", "the base"))
+        complete(
+            self,
+            loads=self._signals_in_unit("loads", "N", "a load"),
+            base=self._signals_in_unit("base", "m/s^2", "the base"),
+        )
         if self.particle_dampers and "method" not in self.model_fields_set:
-            put(self, "method", Dem())
+            complete(self, method=Dem())
         self._check_signals()
         self._check_directions()
         self._check_size()
         names: set[str] = set()
         for index, damper in enumerate(self.dampers):
             with at("dampers", index):
-                first = len(names)
                 for each in damper.each():
                     label = each.label(len(names))
                     if label in names:
@@ -138,7 +140,7 @@ class Case(Part):
                 if isinstance(damper, ImpactDamper):
                     self._check_clearance(damper)
                     self._check_starts(damper)
-                    self._check_laws(damper, first)
+                    self._check_laws(damper)
                 else:
                     self._check_particle_laws(damper)
         return self
@@ -192,7 +194,7 @@ class Case(Part):
     def _check_directions(self) -> None:
         """Check that dampers, method, output and directions of motion are consistent."""
         if self.particle_dampers:
-            check_particle_case(self)
+            self._check_particles()
             self._check_snapshots()
             return
         if self.output.snapshots is not None:
@@ -223,6 +225,49 @@ class Case(Part):
                 "points that move along one line, with one participation for each mode",
                 ["base"],
             )
+
+    def _check_particles(self) -> None:
+        """Raise if the parts of a case with particle dampers are inconsistent."""
+        first = self.particle_dampers[0]
+        if self.impact_dampers:
+            raise Hint(
+                "impact dampers and particle dampers cannot be in one case",
+                "a ParticleDamper with one particle in place of each impact damper",
+                ["dampers"],
+            )
+        if not isinstance(self.method, Dem):
+            raise Hint(f"{self.method.kind} computes impact dampers only", 'kind = "dem"', ["method"])
+        if self.output.times is not None:
+            times = self.sample_times()
+            even = np.linspace(0.0, self.duration, times.size)
+            if np.abs(times - even).max() > 1e-6 * even[1]:
+                raise Hint(
+                    "particles move in equal steps: output times must be evenly spaced, together with 0 and the end",
+                    "a rate",
+                    ["output", "times"],
+                )
+        for index, damper in enumerate(self.dampers):
+            damper = instance(damper, ParticleDamper)
+            with at("dampers", index):
+                if damper.gravity != first.gravity:
+                    raise Hint(
+                        f"gravity must be the same for all dampers of a case; another one has {list(first.gravity)} m/s^2",
+                        "the same gravity",
+                        ["gravity"],
+                    )
+                for number, point in enumerate(damper.points or (damper.point,)):
+                    with at(*(("points", number) if damper.points else ("point",))):
+                        self.modes.space_shape(point, damper.direction)
+        if self.base and not self.modes.spatial and len({damper.direction for damper in self.particle_dampers}) > 1:
+            raise Hint(
+                "a structure whose points move along lines has one direction, but its dampers have several",
+                "mode shapes of three components, or the same direction",
+                ["dampers"],
+            )
+        for field, signals in (("base", self.base), ("motion", self.shaker_motion)):
+            for index, signal in enumerate(signals):
+                with at(*(("structure",) if field == "motion" else ()), field, index):
+                    direction_of_base(self.particle_dampers, signal)
 
     def _check_snapshots(self) -> None:
         """Raise if a snapshot is after the end of the run."""
@@ -279,9 +324,9 @@ class Case(Part):
                     ["start"],
                 )
 
-    def _check_laws(self, damper: ImpactDamper, index: int) -> None:
+    def _check_laws(self, damper: ImpactDamper) -> None:
         """Check that the coefficients of the contact laws are finite for their pairs of bodies."""
-        for number, pair in enumerate(contact_pairs(self, index)):
+        for number, pair in enumerate(damper.pairs(self.modes.effective_mass(damper.point))):
             between = 0 < number < len(damper.balls) and damper.ball_contact is not None
             law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
             with at("ball_contact" if between else "contact"), _raise_if_not_finite():

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import reduce
+from itertools import pairwise
 from operator import add
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from rattlebox._util.frozen import complete
 from rattlebox._util.narrow import present
 from rattlebox._util.phrases import joined, with_article
 from rattlebox._util.quantities import amount
@@ -21,6 +23,7 @@ from .contacts import AnyContact
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of
 from .materials import AnyMaterial, AnyWall
+from .pairs import Body, Pair
 from .particle_damper import MAX_DAMPERS
 from .signals import as_several
 from .units import (
@@ -203,9 +206,8 @@ class ImpactDamper(Part):
                     f'cavity_length = "{1e3 * row * 1.01:.4g} mm"',
                     ["cavity_length"],
                 )
-            put = object.__setattr__
-            put(self, "gap", (self.cavity_length - row) / 2)
-            put(self, "cavity_length", None)  # Equal to a damper that has a gap from the outset.
+            # Equal to a damper that has a gap from the outset.
+            complete(self, gap=(self.cavity_length - row) / 2, cavity_length=None)
         return self
 
     @model_validator(mode="after")
@@ -283,6 +285,24 @@ class ImpactDamper(Part):
         one = f"{with_article(materials[0])} ball of {mass}"
         several = f"a row of {count} {joined(materials)} balls of {mass} in all"
         return f"{one if count == 1 else several} with {amount(self.clearance, 'm')} of clearance"
+
+    def pairs(self, wall_mass: float) -> list[Pair]:
+        """Return the pairs of bodies in contact, from the trailing to the leading wall.
+
+        Parameters
+        ----------
+        wall_mass
+            Effective mass of the walls [kg].
+
+        Returns
+        -------
+        list of Pair
+            Trailing wall and ball 1, ball 1 and ball 2, ..., last ball and leading wall.
+        """
+        balls = [Body(ball.material, ball.half, ball.weight) for ball in self.balls]
+        materials = (balls[0].material, balls[-1].material) if self.wall is None else (self.wall, self.wall)
+        walls = [Body(None if isinstance(one, str) else one, mass=wall_mass) for one in materials]
+        return [Pair(below, above) for below, above in pairwise([walls[0], *balls, walls[1]])]
 
     @property
     def row(self) -> float:

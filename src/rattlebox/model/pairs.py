@@ -5,19 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rattlebox._util.narrow import present
 
 from .elementwise import exp, less, power, sqrt
-from .errors import Hint, several
+from .errors import Hint
 from .materials import Material
-
-if TYPE_CHECKING:
-    from .case import Case
 
 
 def hardness(poisson: float, yield_stress: float) -> float:
@@ -137,54 +132,3 @@ class Pair:
         if self.below.is_flat:
             return replace(self, below=replace(self.below, material=material))
         return replace(self, above=replace(self.above, material=material))
-
-
-def contact_pairs(case: Case, index: int = 0) -> list[Pair]:
-    """Return the pairs of bodies of an impact damper, from the trailing to the leading wall.
-
-    Parameters
-    ----------
-    case
-        The case.
-    index
-        Index of the impact damper, from 0.
-
-    Returns
-    -------
-    list of Pair
-        The pairs: trailing wall and ball 1, ball 1 and ball 2, ..., last ball and leading wall. Walls have the effective
-        mass of the structure at the point of the damper, 1 / sum(phi^2) over the mass-normalised mode shapes phi.
-
-    Raises
-    ------
-    CaseError
-        If the case has no impact damper with this index.
-
-    Examples
-    --------
-    >>> import rattlebox as rb
-    >>> trailing, leading = rb.contact_pairs(rb.reference_case())
-    >>> trailing.radius  # doctest: +NUMBER
-    0.03317
-    """
-    count = len(case.impact_dampers)
-    if case.particle_dampers:
-        raise Hint(
-            "the case has particle dampers, but contact_pairs returns the pairs of impact dampers",
-            "[entry.pair for entry in case.particle_dampers[0].contact_table.entries]",
-        )
-    if not -count <= index < count:
-        raise Hint(
-            f"index = {index}, but the case has {several(count, 'impact damper')}",
-            "a case with an ImpactDamper" if not count else "index = 0" if count == 1 else f"0 to {count - 1}",
-        )
-    damper = case.impact_dampers[index]
-    wall_mass = case.modes.effective_mass(damper.point)
-    balls = [Body(ball.material, ball.half, ball.weight) for ball in damper.balls]
-
-    def wall(ball: Body) -> Body:
-        material = ball.material if damper.wall is None else damper.wall
-        return Body(None if isinstance(material, str) else material, mass=wall_mass)
-
-    row = [wall(balls[0]), *balls, wall(balls[-1])]
-    return [Pair(below, above) for below, above in pairwise(row)]

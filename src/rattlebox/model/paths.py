@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, TypeVar, get_args
 
 import numpy as np
 from pydantic import ValidationError
@@ -19,16 +19,14 @@ from .materials import Material
 from .signals import Signal
 from .units import SI, parse
 
-if TYPE_CHECKING:
-    from .case import Case
-
 Place = tuple[str | int, ...]
+AnyPart = TypeVar("AnyPart", bound=Part)  # a case; any other part has paths, too
 
 _EDGES = {"length": 0, "width": 1, "depth": 1, "height": 2}  # synonyms of the edges of a box
 _STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
 
 
-def place_of(case: Case, path: str) -> Place:
+def place_of(case: Part, path: str) -> Place:
     """Return the place in a case that a path refers to."""
     place: list[str | int] = []
     node: Any = case
@@ -68,7 +66,7 @@ def place_of(case: Case, path: str) -> Place:
     return tuple(place)
 
 
-def spelt(case: Case, place: Place) -> str:
+def spelt(case: Part, place: Place) -> str:
     """Return the shortest path to a place: "damper.gap" for a single damper, else "dampers[0].gap"."""
     words = list(_words(place))
     for number, step in enumerate(place):
@@ -82,12 +80,12 @@ def spelt(case: Case, place: Place) -> str:
     return "".join(words)
 
 
-def get(case: Case, path: str) -> Any:
+def get(case: Part, path: str) -> Any:
     """Return the value at a path, in SI units."""
     return part_at(case, place_of(case, path))
 
 
-def part_at(case: Case, place: Sequence[str | int]) -> Any:
+def part_at(case: Part, place: Sequence[str | int]) -> Any:
     """Return the value at a place."""
     node: Any = case
     for step in place:
@@ -105,7 +103,7 @@ def get_field(part: Part, name: str) -> Any:
     return getattr(part, name)
 
 
-def unit_of(case: Case, path: str) -> str | None:
+def unit_of(case: Part, path: str) -> str | None:
     """Return the SI unit of the numbers at a path, "1" for dimensionless numbers, None for other values."""
     place = place_of(case, path)
     node: Any = case
@@ -139,7 +137,7 @@ def _units(annotations: Sequence[Any]) -> Iterator[str]:
         yield "1"
 
 
-def replaced(case: Case, values: Mapping[str, Any]) -> Case:
+def replaced(case: AnyPart, values: Mapping[str, Any]) -> AnyPart:
     """Return a copy of a case with other values.
 
     A new value removes alternatives that exclude it: a damping ratio replaces a damping. Dampers store their gap: balls of
@@ -157,7 +155,7 @@ def replaced(case: Case, values: Mapping[str, Any]) -> Case:
         raise translate(error, "case", vocabulary(), tree) from None
 
 
-def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
+def places_of(case: Part, values: Mapping[str, Any]) -> dict[Place, Any]:
     """Return values by place, with None at the places of alternatives that they exclude."""
     paths: dict[Place, str] = {}
     for path in values:
@@ -233,7 +231,7 @@ def _materials(node: Any) -> Iterator[Material]:
             yield from _materials(item)
 
 
-def all_paths(case: Case) -> list[str]:
+def all_paths(case: Part) -> list[str]:
     """Return the paths of all fields of a case, as short as they can be."""
     return [spelt(case, place) for place in _places(case, ())]
 
@@ -285,7 +283,7 @@ def _words(steps: Sequence[str | int]) -> Iterator[str]:
         yield f"[{step}]" if isinstance(step, int) else f".{step}" if number else step
 
 
-def _suggested(case: Case, path: str, step: str, known: set[str]) -> str:
+def _suggested(case: Part, path: str, step: str, known: set[str]) -> str:
     """Return a suggestion of existing paths similar to one that does not exist."""
     if step in _EDGES and "size" in known:
         return f"did you mean '{path.removesuffix(step)}size[{_EDGES[step]}]'?"

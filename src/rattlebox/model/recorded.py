@@ -10,7 +10,6 @@ from typing import Annotated, Any, ClassVar, Literal, cast
 
 import numpy as np
 from pydantic import (
-    BaseModel,
     BeforeValidator,
     Field,
     PlainSerializer,
@@ -21,6 +20,7 @@ from pydantic import (
 )
 
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.frozen import complete
 from rattlebox.exchange.read.ground_motion import read_ground_motion
 from rattlebox.exchange.read.universal import read_functions
 
@@ -237,10 +237,12 @@ class Record(FilePart, Sampled):
             with at("values"):
                 values = {**values, "unit": known[1], "values": known[0] * numbers(values["values"])}
         record: Record = handler(values)
-        put = BaseModel.__setattr__
-        put(record, "_unit_as_given", given if has_file else None)
-        put(record, "_unit_is_assumed", has_file and values.get("unit") is None)
-        put(record, "_notes", tuple(notes))
+        complete(
+            record,
+            _unit_as_given=given if has_file else None,
+            _unit_is_assumed=has_file and values.get("unit") is None,
+            _notes=tuple(notes),
+        )
         return record
 
     @staticmethod

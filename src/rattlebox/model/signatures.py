@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from inspect import Parameter, Signature
 from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
 from pydantic import WithJsonSchema
@@ -13,13 +12,10 @@ from pydantic import WithJsonSchema
 from .also_accepts import AlsoAccepts
 from .units import SI
 
-if TYPE_CHECKING:
-    from .base import Part
-
 _JSON_TYPES = {"string": "str", "number": "float"}
 
 
-class _Plain(str):
+class PlainText(str):
     """A text that `inspect.Signature` prints without quotes."""
 
     __slots__ = ()
@@ -71,33 +67,3 @@ def _takes_text(metadata: Any) -> bool:
     if isinstance(metadata, WithJsonSchema):
         return {"type": "string"} in (metadata.json_schema or {}).get("anyOf", ())
     return isinstance(metadata, SI)
-
-
-def part_signature(part: type[Part]) -> Signature:
-    """Return the signature of a part of a case."""
-    singular = {field: name for name, field in part.aliases.items()}
-    alternatives = {name for pair in part.alternatives for name in pair}
-    named: list[Parameter] = []
-    positional: list[Parameter] = []
-    for name, field in part.model_fields.items():
-        if name == "kind":
-            continue
-        annotation: Any = field.annotation
-        metadata: tuple[Any, ...] = tuple(field.metadata)
-        default: Any = Parameter.empty
-        if not field.is_required():
-            default = field.get_default(call_default_factory=True)
-        elif name in alternatives:
-            annotation, metadata, default = Annotated[annotation, *metadata] | None, (), None
-        if name in singular:
-            # Show both names: the plural takes several, and is optional if the singular is given.
-            metadata = tuple(each for each in metadata if not isinstance(each, AlsoAccepts))
-            default = () if default is Parameter.empty else default
-            one = _Plain(f"{type_text(get_args(annotation)[0])} | None")
-            named.append(Parameter(singular[name], Parameter.KEYWORD_ONLY, default=None, annotation=one))
-        kind = Parameter.POSITIONAL_OR_KEYWORD if name in part.positional else Parameter.KEYWORD_ONLY
-        shown = Parameter(
-            field.alias or name, kind, default=default, annotation=_Plain(type_text(annotation, metadata))
-        )
-        (positional if name in part.positional else named).append(shown)
-    return Signature([*sorted(positional, key=lambda each: part.positional.index(each.name)), *named])

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import (
-    BaseModel,
     BeforeValidator,
     Field,
     PrivateAttr,
@@ -20,6 +19,7 @@ from pydantic import (
     model_validator,
 )
 
+from rattlebox._util.frozen import complete
 from rattlebox._util.narrow import present
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount
@@ -434,8 +434,7 @@ class Modal(FilePart, StructurePart):
             path = absolute(values["file"])
         fields, notes = fields_of_modes(values, path)
         made = handler({**values, **fields, "file": path})
-        BaseModel.__setattr__(made, "_notes", tuple(notes))
-        BaseModel.__setattr__(made, "_read", tuple(fields))
+        complete(made, _notes=tuple(notes), _read=tuple(fields))
         return made
 
     @classmethod

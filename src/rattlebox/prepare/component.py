@@ -13,10 +13,10 @@ from rattlebox._util.own_files import register_format
 from rattlebox._util.quantities import quantity
 from rattlebox.core import _core
 from rattlebox.model.case import Case
+from rattlebox.model.contact_pairs import contact_pairs
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Newton, TwoStep
-from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
 from rattlebox.model.structures import SDOF, Fixed, Shaker

@@ -18,11 +18,12 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.model.base import Part
+from rattlebox.model.contact_pairs import contact_pairs
 from rattlebox.model.contacts import FixedDamping
 from rattlebox.model.elementwise import stacked
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import EventDriven, Newton, TwoStep
-from rattlebox.model.pairs import Pair, contact_pairs
+from rattlebox.model.pairs import Pair
 from rattlebox.model.paths import Place, part_at, place_of, replaced
 from rattlebox.model.restitutions import Constant
 from rattlebox.prepare.laws import pack_restitution, restitution_of_alpha

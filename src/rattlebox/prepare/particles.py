@@ -214,8 +214,8 @@ def _loads(case: Case) -> tuple[list[_core.Load], Array]:
     ]
     directions = [np.zeros(3) for _ in loads]
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
-        direction = direction_of_base(case, signal)
-        shape = _array(-inertia_along(case, direction))
+        direction = direction_of_base(case.particle_dampers, signal)
+        shape = _array(-inertia_along(case.modes, case.particle_dampers, direction))
         loads.append(_core.Load(signal=pack_signal(acceleration), shape=shape, base=True))
         directions.append(direction)
     return loads, _array(directions).reshape(-1, 3)

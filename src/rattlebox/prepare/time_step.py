@@ -129,7 +129,7 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
     times = evaluation_times(case)
     base = np.zeros((times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
-        base += np.outer(acceleration.motion(times)[1], direction_of_base(case, signal))
+        base += np.outer(acceleration.motion(times)[1], direction_of_base(case.particle_dampers, signal))
     speeds = []
     for damper, velocity in zip(case.particle_dampers, cavity_velocities, strict=True):
         gravity = np.array(damper.gravity)

@@ -8,6 +8,8 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from rattlebox._util.frozen import complete
+
 from .arrays import RunArrays, same
 from .ledger import Ledger
 from .provenance import Provenance
@@ -65,11 +67,13 @@ class Record:
         for name in self.counts:
             if not name.isidentifier():
                 raise ValueError(f"count {name!r} is not an identifier")
-        put = object.__setattr__  # the dataclass is frozen
-        put(self, "notes", tuple(self.notes))
-        put(self, "counts", MappingProxyType({name: int(number) for name, number in self.counts.items()}))
-        put(self, "diagnostics", MappingProxyType({name: float(value) for name, value in self.diagnostics.items()}))
-        put(self, "wall_time", float(self.wall_time))
+        complete(
+            self,
+            notes=tuple(self.notes),
+            counts=MappingProxyType({name: int(number) for name, number in self.counts.items()}),
+            diagnostics=MappingProxyType({name: float(value) for name, value in self.diagnostics.items()}),
+            wall_time=float(self.wall_time),
+        )
 
     @cached_property
     def case(self) -> Case:

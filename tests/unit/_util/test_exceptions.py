@@ -116,7 +116,9 @@ def test_errors_carry_their_parts() -> None:
     Messages were put together by hand at 38 places and taken apart again: tests compared the text alone.
     """
     with pytest.raises(rb.CaseError) as caught:
-        rb.Case.from_toml('duration = "1 s"\n[structure]\nkind = "sdof"\nmas = "3 kg"\nfrequency = "2 Hz"', source="a.toml")
+        rb.Case.from_toml(
+            'duration = "1 s"\n[structure]\nkind = "sdof"\nmas = "3 kg"\nfrequency = "2 Hz"', source="a.toml"
+        )
     error = caught.value
     assert (error.place, error.suggestion) == (("structure", "mas"), "did you mean 'mass'?")
     assert error.complaint == "there is no such field here"

@@ -9,6 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rattlebox._util.frozen import complete
 from rattlebox._util.quantities import amount
 from rattlebox.analysis.damping_curve import damping_over_amplitude
 from rattlebox.model.dampers import Sphere
@@ -118,12 +119,6 @@ def _one_or_all(name: str, values: FloatArray, count: int) -> FloatArray:
     return np.broadcast_to(values, (count,)).astype(float)
 
 
-def _replace(data: Any, **values: Any) -> None:
-    """Replace fields of measurements by numbers in SI units; called once, by their constructor."""
-    for name, value in values.items():
-        object.__setattr__(data, name, value)
-
-
 @dataclass(frozen=True, eq=False)
 class Drops:
     """Drop tests: a ball falls from rest onto a plate, and the height of its first rebound is measured.
@@ -191,7 +186,7 @@ class Drops:
                     "height first, rebound second",
                 )
         error = None if self.error is None else _uncertainty(self.error, "m")
-        _replace(self, height=heights, rebound=rebounds, error=error, unit=columns[0].unit and columns[1].unit)
+        complete(self, height=heights, rebound=rebounds, error=error, unit=columns[0].unit and columns[1].unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,7 +224,7 @@ class BounceTimes:
                 _check_contacts(columns[-1].values)
         error = None if self.error is None else _uncertainty(self.error, "s")
         unit = None if any(column.unit is None for column in columns) else "s"
-        _replace(self, times=tuple(column.values for column in columns), error=error, unit=unit)
+        complete(self, times=tuple(column.values for column in columns), error=error, unit=unit)
 
 
 def _check_contacts(times: FloatArray) -> None:
@@ -311,7 +306,7 @@ class RingDown:
                 raise Hint("an amplitude is given twice", "the mean of its damping ratios")
         error = read_error(self.error, ratio, ())
         mode = whole_number(self.mode, "mode", 1)
-        _replace(self, amplitude=amplitude[order], damping_ratio=ratio[order], error=error[order], mode=mode, unit=unit)
+        complete(self, amplitude=amplitude[order], damping_ratio=ratio[order], error=error[order], mode=mode, unit=unit)
 
     @classmethod
     def from_signal(
@@ -408,7 +403,7 @@ class ShakerLoss:
                 )
         amplitude = _one_or_all("amplitude", amplitude, loss.size)
         frequency = _one_or_all("frequency", read_column("frequency", self.frequency, ("Hz",)).values, loss.size)
-        _replace(
+        complete(
             self,
             amplitude=amplitude,
             frequency=frequency,

@@ -264,7 +264,7 @@ def _bare(
     if driver in case.loads:
         force = modes.shape(driver.point, driver.direction)
     elif case.particle_dampers:
-        force = -inertia_along(case, direction_of_base(case, driver))
+        force = -inertia_along(case.modes, case.particle_dampers, direction_of_base(case.particle_dampers, driver))
     else:
         force = -np.asarray(modes.participation)
     if point is not None or not case.dampers:

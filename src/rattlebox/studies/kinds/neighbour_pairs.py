@@ -9,7 +9,7 @@ and for Hamiltonian systems, Meccanica 15, 9-20 and 21-30, doi:10.1007/BF0212823
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
+from rattlebox.studies.grid.grid import Grid
 from rattlebox.studies.work.gather_variants import gather_values, gather_variants
+from rattlebox.studies.work.impact_work import ImpactWork
 from rattlebox.studies.work.work import Cancelled
-
-if TYPE_CHECKING:
-    from rattlebox.studies.kinds.lyapunov import LyapunovWork
 
 Array = NDArray[np.float64]
 
@@ -31,6 +30,26 @@ _MAX_ATTEMPTS = 8
 _SATURATED = 1e-3  # distance over the scale of distances
 _MERGED = 2e-15  # distance over the size of the state
 _CLOSED = 1e-12  # gap over the clearance
+
+
+class Task(Protocol):
+    """The variants and how their pairs are computed; see `Lyapunov` for the fields."""
+
+    grid: Grid
+    cycles: tuple[int, int] | None
+    skip: float
+    pairs: int
+    distance: float
+    reach: float
+    seed: int
+
+    @property
+    def count(self) -> int:
+        """Number of steps."""
+
+    @property
+    def sweep(self) -> ImpactWork:
+        """The variants as a sweep."""
 
 
 class _Stopped(Exception):
@@ -43,7 +62,7 @@ class Pairs:
     Arrays have the axes (variant, pair, member of the pair, component of the state).
     """
 
-    def __init__(self, task: LyapunovWork, start: int, stop: int, threads: int, cancelled: Cancelled) -> None:
+    def __init__(self, task: Task, start: int, stop: int, threads: int, cancelled: Cancelled) -> None:
         self._task, self._threads, self._cancelled = task, threads, cancelled
         self._count = stop - start
         shape = task.grid.shape

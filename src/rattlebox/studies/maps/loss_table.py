@@ -199,7 +199,7 @@ def _axis_and_clearance(text: str) -> tuple[FloatArray | None, float]:
         return None, 0.0
     (motion,) = case.shaker_motion
     if case.particle_dampers:
-        return np.asarray(direction_of_base(case, motion)), 0.0
+        return np.asarray(direction_of_base(case.particle_dampers, motion)), 0.0
     axis = None if motion.direction is None else unit_vector(motion.direction)
     weightless = all(damper.gravity == 0 for damper in case.impact_dampers)
     return axis, min(damper.clearance for damper in case.impact_dampers) if weightless else 0.0

@@ -106,7 +106,7 @@ class ParticleMapWork(ParticleWork):
         if run.ok:
             (motion,) = case.shaker_motion
             arrays = self.window(run, case).run.arrays
-            momentum = arrays.momentum.sum(axis=1) @ direction_of_base(case, motion)
+            momentum = arrays.momentum.sum(axis=1) @ direction_of_base(case.particle_dampers, motion)
             frequency = float(self.grid.values_at(index)[FREQUENCY])
             harmonics, variation = force_harmonics(arrays.time, momentum, frequency, HIGHEST)
             row |= {"force_harmonics": harmonics, "force_variation": variation}
