@@ -48,7 +48,7 @@ def test_rooms_are_drawn_and_described() -> None:
 
 
 def test_frozen_objects_are_completed_in_one_place() -> None:
-    """Frozen objects are changed by `_util/frozen.py` alone, and no import for types is hidden from the search for cycles."""
+    """Frozen objects change in `_util/frozen.py` alone, and no import for types is hidden from the search for cycles."""
     files = [path for path in PACKAGE.rglob("*.py") if path.name != "frozen.py"]
     assert not [str(path) for path in files if re.search(r"\w\.__setattr__\b", path.read_text(encoding="utf-8"))]
     assert "exclude_type_checking_imports" not in (ROOT / "pyproject.toml").read_text(encoding="utf-8")

@@ -26,17 +26,8 @@ UNIT_NAMES = {"N": "a force", "m/s^2": "an acceleration", "m": "a displacement"}
 _EXAMPLES = {"N": "5 kN", "m/s^2": "9.81 m/s^2", "m": "1 mm"}
 
 
-class _Amplitude(float):
-    """A number with the unit of the input."""
-
-    unit: str | None = None
-
-
-def _amplitude(value: Any) -> _Amplitude:
-    number, unit = parse(value, UNITS)
-    result = _Amplitude(number)
-    result.unit = getattr(value, "unit", None) if isinstance(value, _Amplitude) else unit
-    return result
+def _amplitude(value: Any) -> float:
+    return parse(value, UNITS)[0]
 
 
 Amplitude = Annotated[
@@ -95,17 +86,13 @@ class Signal(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _unit_of_amplitude(cls, values: Any) -> Any:
-        if isinstance(values, dict) and "amplitude" in values:
-            try:
-                unit = parse(values["amplitude"], UNITS)[1]
-            except Hint:
-                return values
-            if unit is not None:
-                if values.get("unit") not in (None, unit):
-                    raise Hint(f"the amplitude is in {unit}", "leave unit out", ["unit"])
-                return {**values, "unit": unit}
-        return values
+    def _read_amplitude(cls, values: Any) -> Any:
+        try:
+            return _with_unit_of_amplitude(values, UNITS) if isinstance(values, dict) else values
+        except Hint as hint:
+            if hint.place == ("unit",):
+                raise
+            return values  # the field raises, together with other fields
 
     def placed(self, allowed: Sequence[Unit], place: str) -> Signal:
         """Return the signal with the unit of the field in which it is used.
@@ -278,6 +265,17 @@ class Sampled(Polyline):
         return ("duration",)
 
 
+def _with_unit_of_amplitude(values: dict[str, Any], units: tuple[Unit, ...]) -> dict[str, Any]:
+    """Return the fields of a signal with the number of its amplitude, and its unit as that of the signal."""
+    if "amplitude" not in values:
+        return values
+    with at("amplitude"):
+        number, unit = parse(values["amplitude"], units)
+    if unit is not None and values.get("unit") not in (None, unit):
+        raise Hint(f"the amplitude is in {unit}", "leave unit out", ["unit"])
+    return {**values, "amplitude": number, **({} if unit is None else {"unit": unit})}
+
+
 def as_several(value: Any) -> Any:
     """Return a tuple; a single value becomes a tuple of one, None an empty tuple."""
     if value is None:
@@ -286,14 +284,17 @@ def as_several(value: Any) -> Any:
 
 
 def signals_in(*units: Unit) -> BeforeValidator:
-    """Return a validator of one or several signals that checks the units of amplitudes."""
+    """Return a validator of one or several signals that reads their amplitudes in these units."""
 
-    def read(value: Any) -> Any:
-        signals = as_several(value)
+    def validate(value: Any) -> Any:
+        signals, read = as_several(value), []
+        # `placed` has better advice for a displacement.
+        readable = (*units, "m") if units == ("m/s^2",) else units
         for index, signal in enumerate(signals):
-            if isinstance(signal, dict) and "amplitude" in signal:
-                with at(index, "amplitude"):  # `placed` has better advice for a displacement
-                    parse(signal["amplitude"], (*units, "m") if units == ("m/s^2",) else units)
-        return signals
+            if isinstance(signal, dict):
+                with at(index):
+                    signal = _with_unit_of_amplitude(signal, readable)
+            read.append(signal)
+        return tuple(read)
 
-    return BeforeValidator(read)
+    return BeforeValidator(validate)

@@ -11,6 +11,8 @@ from scipy.integrate import quad
 from scipy.signal import lsim
 
 import rattlebox as rb
+from rattlebox.model import signals
+from rattlebox.model import units as units_module
 from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.model.signals import Polyline, Signal
 
@@ -224,3 +226,21 @@ def test_polylines_are_what_the_core_reads() -> None:
         packed = signal.coefficients()
         assert packed["kind"] == "record" and (np.diff(packed["times"]) >= 0).all()
         assert packed["times"].shape == packed["values"].shape
+
+
+@pytest.mark.parametrize("alone", [True, False])
+def test_an_amplitude_is_read_once(alone: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The text of an amplitude is read once, alone or in a case; three places read it, each for a part of the result."""
+    read = []
+
+    def parse(value: Any, units: Any) -> Any:
+        if isinstance(value, str):
+            read.append(value)
+        return units_module.parse(value, units)
+
+    monkeypatch.setattr(signals, "parse", parse)
+    load = {"kind": "half_sine", "amplitude": "3 kN", "duration": "2 ms"}
+    structure = {"kind": "sdof", "mass": "2 kg", "frequency": "7 Hz"}
+    signal = rb.HalfSine(**load) if alone else rb.Case(structure=structure, load=load, duration="1 s").loads[0]
+    assert read == ["3 kN"]
+    assert (signal.amplitude, signal.unit, type(signal.amplitude)) == (3000.0, "N", float)
