@@ -46,7 +46,7 @@ class _Command(_PlainFlags, TyperCommand):
             return super().invoke(ctx)
         except MemoryError as error:
             advice = _LESS_MEMORY.get(self.name or "", "end other programs that need much memory")
-            raise ResourceError(f"not enough memory for 'rattlebox {self.name}'\n  try: {advice}") from error
+            raise ResourceError(f"not enough memory for 'rattlebox {self.name}'", advice) from error
 
 
 class _Group(_PlainFlags, TyperGroup):
