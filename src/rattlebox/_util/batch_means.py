@@ -53,7 +53,7 @@ class Interval(NamedTuple):
 
 
 def mean_interval(values: ArrayLike) -> Interval:
-    """Compute the mean of a correlated, stationary series and its 95 % confidence interval.
+    r"""Compute the mean of a correlated, stationary series and its 95 % confidence interval.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def mean_interval(values: ArrayLike) -> Interval:
     The variance of the mean is S(0) / N with the spectral density S at frequency zero. The lowest up to 32 ordinates of the
     periodogram I_j, at j cycles per series, are compared with spectra of a correlation that decays exponentially,
 
-        S_j = S(0) / (1 + (j / c)^2)
+    .. math:: S_j = \frac{S(0)}{1 + (j / c)^2}
 
     by Whittle's likelihood, with a prior uniform in log(c). The upper quartile of S(0) gives the interval by Student's t
     with 20 degrees of freedom. The series holds about pi c independent batches. No interval is given if c may be below 6

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: float) -> xarray.Dataset:
-    """Compute the finite-time Lyapunov exponent from the growth of small separations.
+    r"""Compute the finite-time Lyapunov exponent from the growth of small separations.
 
     Parameters
     ----------
@@ -40,9 +40,10 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
 
     Notes
     -----
-    The exponent is the slope of the least-squares line through the mean logarithmic growth of the separations d,
+    The exponent is the slope of the least-squares line through the mean logarithmic growth of the separations :math:`d` of
+    :math:`P` pairs,
 
-        g(t) = mean over the pairs of ln(d(t) / d(t_0))
+    .. math:: g(t) = \frac{1}{P} \sum \ln\frac{d(t)}{d(t_0)}
 
     from the first sample to the last one before the geometric mean of the separations reaches `saturation`. A positive
     exponent indicates chaos during the run.

@@ -57,7 +57,7 @@ def smooth_decay(time: ArrayLike, values: ArrayLike) -> SmoothDecay:
 
 
 def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: ArrayLike) -> xarray.Dataset:
-    """Compute the damping ratio and frequency of a free decay at given amplitudes.
+    r"""Compute the damping ratio and frequency of a free decay at given amplitudes.
 
     The damping at an amplitude is the mean over the part of the decay in which the envelope falls through a band around it,
     whose edges are halfway to the nearer neighbour on a logarithmic scale. The rest position, which a weight may shift, is
@@ -88,8 +88,11 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
 
     Notes
     -----
-    With the envelope A and the phase of the analytic signal, delta = ln(A_1 / A_2) / (phase_2 - phase_1) and
-    zeta = delta / sqrt(1 + delta^2), exact for a linear decay.
+    With the envelope :math:`A` and the phase :math:`\varphi` of the analytic signal,
+
+    .. math:: \zeta = \frac{\delta}{\sqrt{1 + \delta^2}}, \qquad \delta = \frac{\ln(A_1 / A_2)}{\varphi_2 - \varphi_1}
+
+    which is exact for a linear decay.
 
     References
     ----------
@@ -143,7 +146,7 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
 
 
 def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str | None = None) -> float:
-    """Return the damping ratio of the free decay in a run, at one amplitude.
+    r"""Return the damping ratio of the free decay in a run, at one amplitude.
 
     Studies take it as a measure: `functools.partial(analysis.equivalent_damping, amplitude=0.5e-3)`. One run of chaotic
     motion is one random sample; vary the start or the packing to estimate its scatter, as `rattlebox.damping_curve` does.
@@ -170,9 +173,13 @@ def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str |
 
     Notes
     -----
-    The energy E of the mode with the largest energy falls from E_1 to E_2 = E_1 / 4 about the amplitude in the time t:
-    zeta = ln(E_1 / E_2) / (2 omega t). The energy falls in two steps a cycle, so that the relative error of a smooth decay
-    is up to 2 zeta / ln 4: 1.4 % for a ratio of 0.01, 6 % for 0.04.
+    The energy of the mode with the largest energy falls from :math:`E_1` to :math:`E_2 = E_1 / 4` about the amplitude in
+    the time :math:`t`:
+
+    .. math:: \zeta = \frac{\ln(E_1 / E_2)}{2 \omega t}
+
+    The energy falls in two steps a cycle, so that the relative error of a smooth decay is up to :math:`2 \zeta / \ln 4`:
+    1.4 % for a ratio of 0.01, 6 % for 0.04.
 
     References
     ----------

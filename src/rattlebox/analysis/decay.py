@@ -19,7 +19,7 @@ _KAISER = 10.0
 
 
 def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
-    """Compute the amplitude of a decaying oscillation over time.
+    r"""Compute the amplitude of a decaying oscillation over time.
 
     Parameters
     ----------
@@ -44,10 +44,10 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
     -----
     The amplitude is the magnitude of the analytic signal,
 
-        A(t) = abs(x(t) + i H[x](t)),    H[x]_k = sum over odd n of 2 w_n x_(k - n) / (pi n)
+    .. math:: A(t) = |x(t) + i H[x](t)|, \qquad H[x]_k = \sum_{n\ \text{odd}} \frac{2 w_n x_{k-n}}{\pi n}
 
-    with a Hilbert transformer H of four cycles and a Kaiser window w. It depends only on the neighbourhood of each sample. A
-    transform of the whole record would let large amplitudes at the start leak into small ones at the end.
+    with a Hilbert transformer :math:`H` of four cycles and a Kaiser window :math:`w`. It depends only on the neighbourhood
+    of each sample. A transform of the whole record would let large amplitudes at the start leak into small ones at the end.
 
     References
     ----------
@@ -71,7 +71,7 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
 def damping_ratio(
     time: ArrayLike, values: ArrayLike, *, method: Literal["hilbert", "decrement"] = "hilbert"
 ) -> xarray.Dataset:
-    """Compute the damping ratio of a free decay over time and amplitude.
+    r"""Compute the damping ratio of a free decay over time and amplitude.
 
     Parameters
     ----------
@@ -98,8 +98,14 @@ def damping_ratio(
 
     Notes
     -----
-    "hilbert": zeta = -A' / sqrt(A'^2 + (A phi')^2) with the envelope A and the phase phi of the analytic signal (see
-    `decay_envelope`). "decrement": zeta = delta / sqrt(4 pi^2 + delta^2) with delta = ln(x_k / x_(k+2)) of the extremes x.
+    "hilbert", with the envelope :math:`A` and the phase :math:`\varphi` of the analytic signal (see `decay_envelope`), and
+    "decrement", with the extremes :math:`x_k`:
+
+    .. math::
+
+        \zeta = -\frac{\dot A}{\sqrt{\dot A^2 + (A \dot\varphi)^2}}, \qquad
+        \zeta = \frac{\delta}{\sqrt{4 \pi^2 + \delta^2}}, \quad \delta = \ln\frac{x_k}{x_{k+2}}
+
     Both are exact for a linear decay.
 
     References

@@ -43,7 +43,7 @@ def energy_shares(run: Run) -> xarray.DataArray:
 
 
 def specific_damping_capacity(dissipated: T, stored: T) -> T:
-    """Return the energy dissipated in a cycle over the largest energy stored in it.
+    r"""Return the energy dissipated in a cycle over the largest energy stored in it.
 
     Parameters
     ----------
@@ -62,7 +62,9 @@ def specific_damping_capacity(dissipated: T, stored: T) -> T:
 
     Notes
     -----
-    psi = D / U, with the energy D dissipated in a cycle and the largest stored energy U.
+    .. math:: \psi = \frac{D}{U}
+
+    with the energy :math:`D` dissipated in a cycle and the largest stored energy :math:`U`.
 
     References
     ----------
@@ -84,7 +86,7 @@ def specific_damping_capacity(dissipated: T, stored: T) -> T:
 
 
 def loss_factor(dissipated: T, stored: T) -> T:
-    """Return the loss factor, the specific damping capacity over 2 pi.
+    r"""Return the loss factor, the specific damping capacity over 2 pi.
 
     Parameters
     ----------
@@ -103,7 +105,9 @@ def loss_factor(dissipated: T, stored: T) -> T:
 
     Notes
     -----
-    eta = D / (2 pi U), with the energy D dissipated in a cycle and the largest stored energy U.
+    .. math:: \eta = \frac{D}{2 \pi U}
+
+    with the energy :math:`D` dissipated in a cycle and the largest stored energy :math:`U`.
 
     References
     ----------
@@ -119,7 +123,7 @@ def loss_factor(dissipated: T, stored: T) -> T:
 
 
 def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, frequency: float) -> xarray.Dataset:
-    """Compute the power that a damper absorbs in harmonic motion, and its effective mass.
+    r"""Compute the power that a damper absorbs in harmonic motion, and its effective mass.
 
     Parameters
     ----------
@@ -146,9 +150,11 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
 
     Notes
     -----
-    P = F* V / 2, with the complex amplitudes F of the force and V of the velocity over the last whole number of cycles. The
-    real part is the absorbed power; the imaginary part is -pi f m abs(V)^2, with the effective mass m. The amplitudes are
-    least-squares fits of a mean, a cosine and a sine, which are exact for harmonic samples at any times.
+    .. math:: P = \tfrac{1}{2} F^* V
+
+    with the complex amplitudes :math:`F` of the force and :math:`V` of the velocity over the last whole number of cycles.
+    The real part is the absorbed power; the imaginary part is :math:`-\pi f m |V|^2`, with the effective mass :math:`m`.
+    The amplitudes are least-squares fits of a mean, a cosine and a sine, which are exact for harmonic samples at any times.
 
     References
     ----------

@@ -86,7 +86,7 @@ def peak_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:
 
 
 def rms_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:
-    """Return one minus the ratio of the root mean squares with and without a damper.
+    r"""Return one minus the ratio of the root mean squares with and without a damper.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def rms_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:
 
     Notes
     -----
-    1 - rms(with_damper) / rms(without), with rms(x)^2 the mean of x^2 over the samples.
+    .. math:: 1 - \frac{\text{rms}(x_{with})}{\text{rms}(x_{without})}, \qquad \text{rms}(x)^2 = \frac{1}{n} \sum_k x_k^2
 
     Examples
     --------

@@ -69,7 +69,7 @@ def _independent(length: int, shift: int, count: int) -> float:
 
 
 def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: float | None = None) -> xarray.Dataset:
-    """Estimate the one-sided power spectral density of a stationary random signal by Welch's average.
+    r"""Estimate the one-sided power spectral density of a stationary random signal by Welch's average.
 
     Parameters
     ----------
@@ -97,9 +97,12 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
     -----
     With K segments x_k of the length of a Hann window w, which overlap by 50 %, and the sampling rate f_s,
 
-        S(f) = 2 / (f_s sum(w^2)) mean over k of abs(sum over n of w_n x_k,n exp(-2 pi i f n / f_s))^2
+    .. math::
 
-    The interval is nu S / chi^2(0.975; nu) to nu S / chi^2(0.025; nu) with nu degrees of freedom: that of a Gaussian signal,
+        S(f) = \frac{2}{f_s \sum_n w_n^2} \frac{1}{K} \sum_k \left|\sum_n w_n x_{k,n} e^{-2 \pi i f n / f_s}\right|^2
+
+    The interval is :math:`\nu S / \chi^2_{0.975}(\nu)` to :math:`\nu S / \chi^2_{0.025}(\nu)` with :math:`\nu` degrees of
+    freedom: that of a Gaussian signal,
     for each frequency separately. Peaks narrower than two or three times the resolution are broadened: a mode of damping
     ratio z at f needs a resolution below z f / 2.
 
@@ -140,7 +143,7 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
 
 
 def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataArray:
-    """Compute the RMS value of a signal in each octave or third-octave band.
+    r"""Compute the RMS value of a signal in each octave or third-octave band.
 
     Parameters
     ----------
@@ -163,8 +166,9 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
 
     Notes
     -----
-    Base-ten bands: mid-band frequencies f = 1000 G^(k / b) for odd b and 1000 G^((2 k + 1) / (2 b)) for even b, with
-    G = 10^(3/10), and edges f G^(+-1 / (2 b)). The density is integrated as straight lines between its samples.
+    Base-ten bands: mid-band frequencies :math:`f = 1000\, G^{k/b}` for odd :math:`b` and
+    :math:`1000\, G^{(2k+1)/(2b)}` for even :math:`b`, with :math:`G = 10^{3/10}`, and edges :math:`f\, G^{\pm 1/(2b)}`. The
+    density is integrated as straight lines between its samples.
 
     References
     ----------
@@ -228,7 +232,7 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
 def transfer_function(
     time: ArrayLike, source: ArrayLike, response: ArrayLike, *, resolution: float | None = None
 ) -> xarray.Dataset:
-    """Estimate the frequency response function between two measured or computed signals, with its coherence.
+    r"""Estimate the frequency response function between two measured or computed signals, with its coherence.
 
     With a force as the source and a displacement, velocity or acceleration as the response it is a receptance, mobility
     or accelerance; with the same quantity of the base as the source it is a transmissibility.
@@ -256,10 +260,14 @@ def transfer_function(
 
     Notes
     -----
-    H1 = S_xy / S_xx of Welch averages: noise in the response does not bias it, noise in the source reduces it.
-    coherence = abs(S_xy)^2 / (S_xx S_yy); random error = sqrt((1 - coherence) / (2 n coherence)) with n independent
-    segments. For a damper whose damping depends on amplitude the result is the best linear approximation at this level, and
-    the coherence is below one even without noise.
+    .. math::
+
+        H_1 = \frac{S_{xy}}{S_{xx}}, \qquad \gamma^2 = \frac{|S_{xy}|^2}{S_{xx} S_{yy}}, \qquad
+        \varepsilon = \sqrt{\frac{1 - \gamma^2}{2 n \gamma^2}}
+
+    are the transfer function of Welch averages, the coherence and the random error with :math:`n` independent segments:
+    noise in the response does not bias :math:`H_1`, noise in the source reduces it. For a damper whose damping depends on
+    amplitude the result is the best linear approximation at this level, and the coherence is below one even without noise.
 
     References
     ----------
@@ -346,7 +354,7 @@ def transmissibility(
 
 
 def miles_rms(frequency: float, damping_ratio: float, density: float) -> float:
-    """Compute the RMS absolute acceleration of a linear oscillator on a base with a flat acceleration density.
+    r"""Compute the RMS absolute acceleration of a linear oscillator on a base with a flat acceleration density.
 
     Parameters
     ----------
@@ -369,8 +377,10 @@ def miles_rms(frequency: float, damping_ratio: float, density: float) -> float:
 
     Notes
     -----
-    sqrt(pi f W (1 + 4 z^2) / (4 z)), exact for a density that is flat over all frequencies. Miles' equation of 1954
-    neglects 4 z^2.
+    .. math:: a = \sqrt{\frac{\pi f W (1 + 4 \zeta^2)}{4 \zeta}}
+
+    with the density :math:`W`, exact if it is flat over all frequencies. Miles' equation of 1954 neglects
+    :math:`4 \zeta^2`.
 
     References
     ----------

@@ -29,7 +29,7 @@ def shock_response_spectrum(
     *,
     damping_ratio: float = 0.05,
 ) -> xarray.Dataset:
-    """Compute the peak response of linear oscillators to a base acceleration, frequency by frequency.
+    r"""Compute the peak response of linear oscillators to a base acceleration, frequency by frequency.
 
     Parameters
     ----------
@@ -59,7 +59,9 @@ def shock_response_spectrum(
 
     Notes
     -----
-    z'' + 2 zeta w z' + w^2 z = -a; absolute acceleration a + z'' = -(2 zeta w z' + w^2 z). The recursion is exact for
+    .. math:: \ddot z + 2 \zeta \omega \dot z + \omega^2 z = -a
+
+    with the absolute acceleration :math:`a + \ddot z = -(2 \zeta \omega \dot z + \omega^2 z)`. The recursion is exact for
     straight lines between samples (ramp invariant, ISO 18431-4), with at least 32 steps per period. Straight lines
     reduce the amplitude of a band-limited record by more than 3 % above a tenth of the sampling rate.
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def amplitude_spectrum(
     time: ArrayLike, values: ArrayLike, *, window: str | tuple[str, float] = "hann", padding: int = 1
 ) -> xarray.DataArray:
-    """Compute the amplitude spectrum of a signal, in the unit of the signal.
+    r"""Compute the amplitude spectrum of a signal, in the unit of the signal.
 
     Parameters
     ----------
@@ -44,9 +44,9 @@ def amplitude_spectrum(
 
     Notes
     -----
-    With the window w and the sampling rate f_s,
+    With the window :math:`w` and the sampling rate :math:`f_s`,
 
-        a(f) = 2 / sum(w) abs(sum over n of w_n x_n exp(-2 pi i f n / f_s))
+    .. math:: a(f) = \frac{2}{\sum_n w_n} \left|\sum_n w_n x_n e^{-2 \pi i f n / f_s}\right|
 
     without the factor of 2 at zero frequency, where it is the magnitude of the mean, and at half the sampling rate. A sine
     of amplitude a at the frequency of a bin has the amplitude a for any window; between two bins it is reduced by the

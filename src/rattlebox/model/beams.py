@@ -36,7 +36,7 @@ NEGLECTED = 0.05
 
 
 class Beam(DampedModes):
-    """Uniform Euler-Bernoulli beam in bending, represented by its lowest modes.
+    r"""Uniform Euler-Bernoulli beam in bending, represented by its lowest modes.
 
     Its points move along one line, perpendicular to the beam. The points "tip", the free second end (x = length), and
     "middle", at half the length, are predefined.
@@ -65,20 +65,25 @@ class Beam(DampedModes):
 
     Notes
     -----
-    The modes w(x) sin(omega t) satisfy E I w'''' = omega^2 rho A w, with E I w''' = -omega^2 m w at the end with a tip mass
-    m. With z = beta L, omega^2 = E I beta^4 / (rho A) and mu = m / (rho A L), z is a root of
+    The modes :math:`w(x) \sin(\omega t)` satisfy
 
-    ===============  ===================================================
-    clamped-clamped  cos z - sech z = 0
-    clamped-pinned   sin z - cos z tanh z = 0
-    pinned-pinned    sin z = 0
-    clamped-free     cos z + sech z + mu z (cos z tanh z - sin z) = 0
-    pinned-free      sin z - cos z tanh z + 2 mu z sin z tanh z = 0
-    free-free        cos z - sech z + mu z (cos z tanh z - sin z) = 0
-    ===============  ===================================================
+    .. math:: E I w'''' = \omega^2 \rho A w
 
-    Shear and rotary inertia lower the frequencies by about (beta r)^2 (1 + E / (kappa G)) / 2, with the radius of gyration r
-    and the shear coefficient kappa; a run has a warning if this exceeds 5 % and the cross-section is known.
+    with :math:`E I w''' = -\omega^2 m w` at the end with a tip mass :math:`m`. With :math:`z = \beta L`,
+    :math:`\omega^2 = E I \beta^4 / (\rho A)` and :math:`\mu = m / (\rho A L)`, :math:`z` is a root of
+
+    ===============  ======================================================================
+    clamped-clamped  :math:`\cos z - \text{sech} z = 0`
+    clamped-pinned   :math:`\sin z - \cos z \tanh z = 0`
+    pinned-pinned    :math:`\sin z = 0`
+    clamped-free     :math:`\cos z + \text{sech} z + \mu z (\cos z \tanh z - \sin z) = 0`
+    pinned-free      :math:`\sin z - \cos z \tanh z + 2 \mu z \sin z \tanh z = 0`
+    free-free        :math:`\cos z - \text{sech} z + \mu z (\cos z \tanh z - \sin z) = 0`
+    ===============  ======================================================================
+
+    Shear and rotary inertia lower the frequencies by about :math:`(\beta r)^2 (1 + E / (\kappa G)) / 2`, with the radius of
+    gyration :math:`r` and the shear coefficient :math:`\kappa`; a run has a warning if this exceeds 5 % and the
+    cross-section is known.
 
     References
     ----------

@@ -155,6 +155,12 @@ class Box(Cavity):
     ----------
     size
         Inner lengths [m].
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> print(f"{1e6 * rb.Box(size=('30 mm', '30 mm', '25 mm')).volume:.1f} cm^3")
+    22.5 cm^3
     """
 
     kind: Literal["box"] = "box"
@@ -280,6 +286,12 @@ class Cylinder(_Round):
         Inner length along the axis [m].
     axis
         "x", "y", "z" or three components; gravity usually acts along z.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> print(f"{1e6 * rb.Cylinder(diameter='40 mm', length='60 mm', axis='x').volume:.1f} cm^3")
+    75.4 cm^3
     """
 
     kind: Literal["cylinder"] = "cylinder"

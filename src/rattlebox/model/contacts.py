@@ -126,7 +126,7 @@ def _check_soft(restitution: Any) -> None:
 
 
 class Tsuji(Contact):
-    """Hertz contact with Tsuji's dashpot.
+    r"""Hertz contact with Tsuji's dashpot.
 
     Parameters
     ----------
@@ -139,14 +139,26 @@ class Tsuji(Contact):
 
     Notes
     -----
-    N = K d^(3/2) + alpha (m* K)^(1/2) d^(1/4) d', with Hertz's stiffness K = 4/3 E* R*^(1/2), the effective mass m* and the
-    overlap d. The restitution depends on alpha alone; `restitution_of_alpha` has the equation.
+    .. math:: N = K d^{3/2} + \alpha \sqrt{m^* K}\, d^{1/4} \dot d, \qquad K = \tfrac{4}{3} E^* \sqrt{R^*}
+
+    with the effective mass :math:`m^*` and the overlap :math:`d`. The restitution depends on :math:`\alpha` alone;
+    `restitution_of_alpha` has the equation.
 
     References
     ----------
     H. Hertz, J. reine angew. Math. 92 (1882) 156, doi:10.1515/crll.1882.92.156.
 
     Y. Tsuji, T. Tanaka, T. Ishida, Powder Technology 71 (1992) 239, doi:10.1016/0032-5910(92)88030-L.
+
+    Examples
+    --------
+    The ratio of the speeds of an impact is the restitution, but for the motion of the structure during the contact:
+
+    >>> import rattlebox as rb
+    >>> run = rb.simulate(rb.reference_case(contact=rb.Tsuji(restitution=0.6), duration="0.1 s"))
+    >>> impacts = run.arrays.impacts
+    >>> print(f"{impacts.separation_speed[0] / impacts.approach_speed[0]:.2f}")
+    0.60
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "alpha"),)
@@ -192,14 +204,14 @@ class Tsuji(Contact):
 
 
 class Linear(Contact):
-    """Linear spring and dashpot.
+    r"""Linear spring and dashpot.
 
     Parameters
     ----------
     stiffness
         k [N/m].
     contact_time
-        Duration of an undamped contact, pi (m*/k)^(1/2) [s], in place of the stiffness.
+        Duration of an undamped contact, :math:`\pi \sqrt{m^*/k}` [s], in place of the stiffness.
     restitution
         Restitution law, or a number for a constant restitution.
     damping
@@ -209,15 +221,25 @@ class Linear(Contact):
 
     Notes
     -----
-    N = k d + c d', with the overlap d. With the damping ratio zeta = c / (2 (k m*)^(1/2)) < 1, a contact that ends at zero
-    overlap has the restitution e = exp(-pi zeta / (1 - zeta^2)^(1/2)); one that ends at zero force has e = exp(-2 b cot b),
-    where zeta = cos b.
+    .. math:: N = k d + c \dot d, \qquad \zeta = \frac{c}{2 \sqrt{k m^*}}
+
+    with the overlap :math:`d`. Below :math:`\zeta = 1`, a contact that ends at zero overlap has the restitution
+    :math:`e = \exp(-\pi \zeta / \sqrt{1 - \zeta^2})`; one that ends at zero force has :math:`e = \exp(-2 b \cot b)`, where
+    :math:`\zeta = \cos b`.
 
     References
     ----------
     P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
 
     T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z (restitution).
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> pads = rb.Linear(contact_time="0.2 ms", restitution=0.5)
+    >>> impacts = rb.simulate(rb.reference_case(contact=pads, duration="0.1 s")).arrays.impacts
+    >>> print(f"{impacts.separation_speed[0] / impacts.approach_speed[0]:.2f}")
+    0.50
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("stiffness", "contact_time"), ("restitution", "damping"))
@@ -274,7 +296,7 @@ class Linear(Contact):
 
 
 class Thornton(Contact):
-    """Elastic, perfectly plastic contact with hysteresis, which dissipates by yielding.
+    r"""Elastic, perfectly plastic contact with hysteresis, which dissipates by yielding.
 
     Parameters
     ----------
@@ -284,10 +306,22 @@ class Thornton(Contact):
 
     Notes
     -----
-    Loading follows Hertz, F = K d^(3/2) with K = 4/3 E* R*^(1/2), up to the overlap d_y = R* (pi p_y / (2 E*))^2 at which
-    the pressure at the centre reaches p_y. Beyond it the force is linear, F = F_y + pi R* p_y (d - d_y). Unloading from
-    F_max and reloading follow Hertz with a larger effective radius, F = 4/3 E* R_p^(1/2) (d - d_p)^(3/2), with R_p = 4 E* /
-    (3 F_max) ((2 F_max + F_y) / (2 pi p_y))^(3/2) and the residual overlap d_p, at which F = 0.
+    Loading follows Hertz up to the overlap :math:`d_y` at which the pressure at the centre reaches :math:`p_y`, and is
+    linear beyond it:
+
+    .. math::
+
+        F &= \tfrac{4}{3} E^* \sqrt{R^*}\, d^{3/2}, & d &\le d_y = R^* \left(\frac{\pi p_y}{2 E^*}\right)^2 \\
+        F &= F_y + \pi R^* p_y (d - d_y), & d &> d_y
+
+    Unloading from :math:`F_{max}` and reloading follow Hertz with a larger effective radius,
+
+    .. math::
+
+        F = \tfrac{4}{3} E^* \sqrt{R_p}\, (d - d_p)^{3/2}, \qquad
+        R_p = \frac{4 E^*}{3 F_{max}} \left(\frac{2 F_{max} + F_y}{2 \pi p_y}\right)^{3/2}
+
+    with the residual overlap :math:`d_p`, at which :math:`F = 0`.
 
     References
     ----------
@@ -322,7 +356,7 @@ class Thornton(Contact):
 
 
 class PowerLaw(Contact):
-    """Contact law with powers of the overlap in the elastic force and in the dashpot.
+    r"""Contact law with powers of the overlap in the elastic force and in the dashpot.
 
     Parameters
     ----------
@@ -344,9 +378,15 @@ class PowerLaw(Contact):
 
     Notes
     -----
-    N = k d^n + c d^p d', with the overlap d. c is constant for the pair: unless p = (n - 1)/2, the restitution depends on
-    the speed V. For a given restitution, c = gamma m* V / L^(p + 1) with L = (m* V^2 / k)^(1/(n + 1)); gamma is the root of
-    e(gamma), which is computed from x'' + gamma x^p x' + x^n = 0, x(0) = 0, x'(0) = 1.
+    .. math:: N = k d^n + c d^p \dot d
+
+    with the overlap :math:`d`. The coefficient :math:`c` is constant for the pair: unless :math:`p = (n - 1)/2`, the
+    restitution depends on the speed :math:`V`. For a given restitution,
+
+    .. math:: c = \frac{\gamma m^* V}{L^{p + 1}}, \qquad L = \left(\frac{m^* V^2}{k}\right)^{1/(n + 1)}
+
+    where :math:`\gamma` is the root of :math:`e(\gamma)`, which is computed from
+    :math:`x'' + \gamma x^p x' + x^n = 0` with :math:`x(0) = 0` and :math:`x'(0) = 1`.
 
     References
     ----------

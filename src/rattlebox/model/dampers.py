@@ -53,6 +53,13 @@ class Sphere(Part):
         Name of a material in the library, or a Material.
     mass
         Mass [kg]; default density times volume.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> ball = rb.Sphere(diameter="20 mm", material="steel")
+    >>> print(f"{1e3 * ball.weight:.1f} g")
+    32.9 g
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("ball", "balls")

@@ -40,7 +40,7 @@ class Friction(Part):
 
 
 class Mindlin(Friction):
-    """Coulomb friction with Mindlin's tangential stiffness and the tangential displacement as history.
+    r"""Coulomb friction with Mindlin's tangential stiffness and the tangential displacement as history.
 
     Parameters
     ----------
@@ -51,10 +51,13 @@ class Mindlin(Friction):
 
     Notes
     -----
-    The tangential force is that of a spring and a dashpot and at most mu N. The stiffness is k_t = 8 G* (R* d)^(1/2), with
-    the overlap d and 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2. The history is the force of the spring, dF = k_t ds, with the
-    tangential displacement s; if k_t decreases during unloading, the spring force decreases in proportion, so that the
-    spring never gains energy.
+    The tangential force is that of a spring and a dashpot and at most :math:`\mu N`. The stiffness is
+
+    .. math:: k_t = 8 G^* \sqrt{R^* d}, \qquad \frac{1}{G^*} = \frac{2 - \nu_1}{G_1} + \frac{2 - \nu_2}{G_2}
+
+    with the overlap :math:`d`. The history is the force of the spring, :math:`dF = k_t\, ds`, with the tangential
+    displacement :math:`s`; if :math:`k_t` decreases during unloading, the spring force decreases in proportion, so that
+    the spring never gains energy.
 
     References
     ----------
@@ -126,7 +129,7 @@ class LinearSpring(Friction):
 
 
 class Rolling(Part):
-    """Rolling resistance: an elastic, perfectly plastic spring with a dashpot.
+    r"""Rolling resistance: an elastic, perfectly plastic spring with a dashpot.
 
     Parameters
     ----------
@@ -139,8 +142,10 @@ class Rolling(Part):
 
     Notes
     -----
-    The moment is k_r theta + c_r theta', with the rolling angle theta, and at most mu_r R* N (model C of the reference).
-    k_r is the stiffness times k_t R*^2, with the tangential stiffness k_t of the friction law.
+    .. math:: M = k_r \theta + c_r \dot\theta, \qquad |M| \le \mu_r R^* N
+
+    with the rolling angle :math:`\theta` (model C of the reference). :math:`k_r` is the stiffness times
+    :math:`k_t R^{*2}`, with the tangential stiffness :math:`k_t` of the friction law.
 
     References
     ----------

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Harmonic(Signal):
-    """Harmonic signal.
+    r"""Harmonic signal.
 
     Parameters
     ----------
@@ -40,7 +40,17 @@ class Harmonic(Signal):
 
     Notes
     -----
-    amplitude sin(2 pi frequency t + phase) for start <= t < stop, else 0. The phase is that at t = 0, not at the start.
+    .. math:: x = A \sin(2 \pi f t + \varphi)
+
+    for start <= t < stop, else 0. The phase :math:`\varphi` is that at t = 0, not at the start.
+
+    Examples
+    --------
+    The unit of the amplitude decides what moves:
+
+    >>> import rattlebox as rb
+    >>> [rb.Harmonic(amplitude=amplitude, frequency="50 Hz").unit for amplitude in ("5 N", "2 g", "1 mm")]
+    ['N', 'm/s^2', 'm']
     """
 
     kind: Literal["harmonic"] = "harmonic"
@@ -147,7 +157,7 @@ SweepRate = Annotated[
 
 
 class SineSweep(Polyline):
-    """Sine sweep of constant amplitude, upward or downward, with a constant sweep rate.
+    r"""Sine sweep of constant amplitude, upward or downward, with a constant sweep rate.
 
     Parameters
     ----------
@@ -164,8 +174,15 @@ class SineSweep(Polyline):
 
     Notes
     -----
-    With f = f_1 2^(r t) the phase is 2 pi f_1 (2^(r t) - 1) / (r ln 2), with f = f_1 + r t it is 2 pi (f_1 t + r t^2 / 2);
-    r is negative for a downward sweep. The sweep ends with the half cycle in which it reaches the last frequency.
+    The phase of a logarithmic and of a linear sweep is
+
+    .. math::
+
+        f &= f_1 2^{r t}: & \varphi &= 2 \pi f_1 \frac{2^{r t} - 1}{r \ln 2} \\
+        f &= f_1 + r t: & \varphi &= 2 \pi \left(f_1 t + \frac{r t^2}{2}\right)
+
+    with a negative :math:`r` for a downward sweep. The sweep ends with the half cycle in which it reaches the last
+    frequency.
 
     The sweep consists of straight lines between 32 points in each cycle, at equal steps of phase. Their values are divided
     by sinc^2(1/32), so that the amplitude of the fundamental is exact at all frequencies (see `Record`); the remaining

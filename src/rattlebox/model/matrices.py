@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Matrices(FilePart, DampedModes):
-    """Structure defined by its mass, damping and stiffness matrices.
+    r"""Structure defined by its mass, damping and stiffness matrices.
 
     The structure is transformed to the modes of the undamped structure; all modes are used. C is any symmetric, positive
     semidefinite matrix. If it is not diagonal in these modes, it couples them: flights are then computed as Taylor series,
@@ -53,8 +53,11 @@ class Matrices(FilePart, DampedModes):
 
     Notes
     -----
-    M z'' + C z' + K z = F - M r a, with the influence r and the acceleration a of the base. The modes solve K phi = omega^2
-    M phi with phi^T M phi = 1, and z = phi q. `Modal` has the equations of the modal displacements q and their sources.
+    .. math:: M \ddot z + C \dot z + K z = F - M r a
+
+    with the influence :math:`r` and the acceleration :math:`a` of the base. The modes solve
+    :math:`K \phi = \omega^2 M \phi` with :math:`\phi^T M \phi = 1`, and :math:`z = \phi q`. `Modal` has the equations of
+    the modal displacements q and their sources.
     """
 
     elementwise: ClassVar[bool] = False

@@ -16,7 +16,7 @@ from .units import Number, PositiveFrequency, PositiveTime, Whole, numbers, pars
 
 
 class EventDriven(Part):
-    """Exact flights and contacts integrated with error control: the default method of impact dampers.
+    r"""Exact flights and contacts integrated with error control: the default method of impact dampers.
 
     Parameters
     ----------
@@ -29,10 +29,14 @@ class EventDriven(Part):
 
     Notes
     -----
-    A flight is the closed solution of each mode, q'' + 2 a q' + k q = f(t), and a parabola of each ball; it ends at the
-    first root of a distance, which is bracketed with a bound of the relative acceleration so that no contact is missed. A
-    contact is integrated by DOP853. A single Hertz contact is integrated in x = d^(1/4), with the overlap d, which removes
-    the singularity of the dashpot at the first touch, by collocation at Gauss-Legendre nodes.
+    A flight is the closed solution of each mode,
+
+    .. math:: \ddot q + 2 a \dot q + k q = f(t)
+
+    and a parabola of each ball; it ends at the first root of a distance, which is bracketed with a bound of the relative
+    acceleration so that no contact is missed. A contact is integrated by DOP853. A single Hertz contact is integrated in
+    :math:`x = d^{1/4}`, with the overlap :math:`d`, which removes the singularity of the dashpot at the first touch, by
+    collocation at Gauss-Legendre nodes.
 
     References
     ----------
@@ -51,7 +55,7 @@ class EventDriven(Part):
 
 
 class TwoStep(Part):
-    """Fixed steps, long in flight and short in contact, as in discrete-element programs; for comparison.
+    r"""Fixed steps, long in flight and short in contact, as in discrete-element programs; for comparison.
 
     Parameters
     ----------
@@ -63,8 +67,9 @@ class TwoStep(Part):
 
     Notes
     -----
-    Each step integrates y' = f(t, y) of all modes and balls, with dt_contact if a contact is closed at its beginning and
-    dt_flight otherwise. A contact begins and ends at the end of a step: the overlap at its beginning is up to V dt_flight.
+    Each step integrates :math:`\dot y = f(t, y)` of all modes and balls, with dt_contact if a contact is closed
+    at its beginning and dt_flight otherwise. A contact begins and ends at the end of a step: the overlap at its beginning
+    is up to V dt_flight.
 
     References
     ----------
@@ -80,7 +85,7 @@ class TwoStep(Part):
 
 
 class Newton(Part):
-    """Instantaneous (hard) impacts, for comparison with theory.
+    r"""Instantaneous (hard) impacts, for comparison with theory.
 
     Parameters
     ----------
@@ -95,15 +100,24 @@ class Newton(Part):
 
     Notes
     -----
-    An impact exchanges momentum in no time: the bodies separate with v' = e(v) v, their approach speed v times the
-    restitution e. Impacts at the same time are resolved together: with the impulses p, p >= 0, v' >= e v and
-    p (v' - e v) = 0 for each of them.
+    An impact exchanges momentum in no time: the bodies separate with :math:`v' = e(v)\, v`, their approach speed
+    :math:`v` times the restitution :math:`e`. Impacts at the same time are resolved together, with impulses :math:`p`:
+
+    .. math:: p \ge 0, \qquad v' \ge e v, \qquad p\, (v' - e v) = 0
 
     References
     ----------
     C. Glocker and F. Pfeiffer (1995), Nonlinear Dynamics 7, 471-497, doi:10.1007/BF00121109.
 
     B. Brogliato (2016), Nonsmooth Mechanics, 3rd ed., Springer, doi:10.1007/978-3-319-28664-8.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.reference_case(contact=rb.Tsuji(restitution=0.5), method=rb.Newton(), duration="0.1 s")
+    >>> impacts = rb.simulate(case).arrays.impacts
+    >>> bool((impacts.separation_speed == 0.5 * impacts.approach_speed).all())
+    True
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
@@ -118,7 +132,7 @@ def _step(value: Any) -> Any:
 
 
 class Dem(Part):
-    """Discrete-element method with fixed steps: the method of particle dampers.
+    r"""Discrete-element method with fixed steps: the method of particle dampers.
 
     Parameters
     ----------
@@ -137,8 +151,10 @@ class Dem(Part):
 
     Notes
     -----
-    m x'' = sum of contact forces + m g and I w' = sum of moments of all particles, and the modes of the structure, are
-    integrated in steps by the velocity-Verlet method. Forces that depend on the velocity use one that is extrapolated from
+    .. math:: m_i \ddot x_i = \sum_j F_{ij} + m_i g, \qquad I_i \dot\omega_i = \sum_j M_{ij}
+
+    with the forces and moments of the contacts of each particle, and the modes of the structure, are integrated in steps
+    by the velocity-Verlet method. Forces that depend on the velocity use one that is extrapolated from
     the previous step, which keeps second order.
 
     References
@@ -223,6 +239,13 @@ class Output(Part):
     snapshots
         Number of snapshots of the particles, evenly spaced from 0 to the end, or their times [s], in runs with particle
         dampers and a snapshot file; default 101. An empty list is none.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> run = rb.simulate(rb.reference_case(duration="0.1 s", output=rb.Output(rate="2 kHz")))
+    >>> run.arrays.time[:3]
+    array([0.    , 0.0005, 0.001 ])
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("output",)

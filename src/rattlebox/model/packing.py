@@ -77,6 +77,23 @@ class Lattice(Packing):
     The lattice is the cubic or the face-centred one, whichever has the larger cell for the number of particles. With the
     distance a between neighbouring sites, a particle of radius R is displaced by up to noise (a/2 - R), evenly distributed
     in this sphere.
+
+    Examples
+    --------
+    The balls of a box without gravity, evenly spread:
+
+    >>> import rattlebox as rb
+    >>> damper = rb.ParticleDamper(
+    ...     particles=rb.Particles(material="steel", diameter="5 mm", count=48),
+    ...     cavity=rb.Box(size=("30 mm", "30 mm", "20 mm")),
+    ...     contact=rb.Tsuji(restitution=0.7),
+    ...     friction=0.2,
+    ...     gravity=(0, 0, 0),
+    ...     packing=rb.Lattice(seed=1),
+    ... )
+    >>> run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="1 ms"))
+    >>> run.arrays.particles.position.shape
+    (48, 3)
     """
 
     kind: Literal["lattice"] = "lattice"
@@ -155,6 +172,19 @@ class Settled(Bed):
     References
     ----------
     P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> damper = rb.ParticleDamper(
+    ...     particles=rb.Particles(material="steel", diameter="5 mm", count=100),
+    ...     cavity=rb.Box(size=("30 mm", "30 mm", "25 mm")),
+    ...     contact=rb.Tsuji(restitution=0.8),
+    ...     friction=0.2,
+    ...     packing=rb.Settled(seed=1),
+    ... )
+    >>> print(f"the bed fills {rb.measure_bed(damper).bed_fill:.2f} of the box")
+    the bed fills 0.58 of the box
     """
 
     kind: Literal["settled"] = "settled"

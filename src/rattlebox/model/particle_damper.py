@@ -216,6 +216,18 @@ class ParticleDamper(Part):
         more, and beds under their own weight are more compliant; a run has a warning if that affects the result.
     name
         Name in results and messages; default "damper", "damper2", ...
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> damper = rb.ParticleDamper(
+    ...     particles=rb.Particles(material="steel", diameter="5 mm", count=100),
+    ...     cavity=rb.Box(size=("30 mm", "30 mm", "25 mm")),
+    ...     contact=rb.Tsuji(restitution=0.8),
+    ...     friction=0.2,
+    ... )
+    >>> print(f"{1e3 * damper.contents.mass.sum():.1f} g of balls")
+    51.4 g of balls
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("damper", "dampers")

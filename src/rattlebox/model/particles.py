@@ -62,7 +62,7 @@ class _Bounded(Distribution):
 
 
 class NormalSizes(_Bounded):
-    """Normal distribution of diameters by number, truncated on both sides.
+    r"""Normal distribution of diameters by number, truncated on both sides.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ class NormalSizes(_Bounded):
 
     Notes
     -----
-    The density is proportional to exp(-(d - mean)^2 / (2 deviation^2)) between the smallest and the largest diameter d, and
-    0 outside.
+    The density is proportional to :math:`\exp(-(d - \mu)^2 / (2 \sigma^2))` between the smallest and the largest diameter
+    :math:`d`, with mean :math:`\mu` and deviation :math:`\sigma`, and 0 outside.
     """
 
     kind: Literal["normal"] = "normal"
@@ -88,7 +88,7 @@ class NormalSizes(_Bounded):
 
 
 class LogNormal(_Bounded):
-    """Log-normal distribution of diameters by number, truncated on both sides.
+    r"""Log-normal distribution of diameters by number, truncated on both sides.
 
     Parameters
     ----------
@@ -101,8 +101,8 @@ class LogNormal(_Bounded):
 
     Notes
     -----
-    The density of ln d is proportional to exp(-(ln(d / median) / ln s)^2 / 2) between the smallest and the largest diameter
-    d, and 0 outside.
+    The density of :math:`\ln d` is proportional to :math:`\exp(-(\ln(d / m) / \ln s)^2 / 2)` between the smallest and the
+    largest diameter :math:`d`, with median :math:`m` and geometric standard deviation :math:`s`, and 0 outside.
     """
 
     kind: Literal["log_normal"] = "log_normal"

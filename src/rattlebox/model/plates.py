@@ -27,7 +27,7 @@ Place = Annotated[tuple[Length, Length], Field(examples=[["0.1 m", "0.1 m"]])]
 
 
 class Plate(DampedModes):
-    """Thin rectangular plate in bending, simply supported on all edges, represented by its lowest modes.
+    r"""Thin rectangular plate in bending, simply supported on all edges, represented by its lowest modes.
 
     Its points move along one line, normal to the plate. The point "middle", the centre, is predefined.
 
@@ -46,11 +46,17 @@ class Plate(DampedModes):
 
     Notes
     -----
-    The modes sin(m pi x / a) sin(n pi y / b), m, n = 1, 2, ..., have the angular frequencies
-    pi^2 (m^2 / a^2 + n^2 / b^2) sqrt(D / (rho h)), D = E h^3 / (12 (1 - nu^2)). Edges do not deflect but rotate freely.
+    The modes :math:`\sin(m \pi x / a) \sin(n \pi y / b)`, :math:`m, n = 1, 2, \ldots`, have the angular frequencies
 
-    Shear and rotary inertia lower the frequencies by about k^2 h^2 (1 / 12 + 1 / (5 (1 - nu))) / 2, with the wave number
-    k^2 = pi^2 (m^2 / a^2 + n^2 / b^2); a run has a warning if this exceeds 5 % and the thickness is known.
+    .. math::
+
+        \omega = \pi^2 \left(\frac{m^2}{a^2} + \frac{n^2}{b^2}\right) \sqrt{\frac{D}{\rho h}}, \qquad
+        D = \frac{E h^3}{12 (1 - \nu^2)}
+
+    Edges do not deflect but rotate freely.
+
+    Shear and rotary inertia lower the frequencies by about :math:`k^2 h^2 (1/12 + 1 / (5 (1 - \nu))) / 2`, with the wave
+    number :math:`k^2 = \pi^2 (m^2 / a^2 + n^2 / b^2)`; a run has a warning if this exceeds 5 % and the thickness is known.
 
     References
     ----------

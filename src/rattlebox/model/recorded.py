@@ -165,7 +165,7 @@ def _as_time_zero(value: Any) -> Any:
 
 
 class Record(FilePart, Sampled):
-    """A record with linear interpolation between its points; it must cover the whole run.
+    r"""A record with linear interpolation between its points; it must cover the whole run.
 
     Parameters
     ----------
@@ -197,12 +197,21 @@ class Record(FilePart, Sampled):
 
     Notes
     -----
-    Linear interpolation between samples at a rate R multiplies the amplitude at frequency f by
-    sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, and adds images at k R +- f of amplitude sinc^2(k +- f / R). The
-    amplitude falls by 1 % at 18 samples per period, by 3 % at 10 and by 19 % at 4. A run has a warning if this changes the
-    response of a mode by more than 2 %.
+    Linear interpolation between samples at a rate :math:`R` multiplies the amplitude at frequency :math:`f` by
+
+    .. math:: \text{sinc}^2\frac{f}{R} = \left(\frac{\sin(\pi f / R)}{\pi f / R}\right)^2
+
+    and adds images at :math:`k R \pm f` of amplitude :math:`\text{sinc}^2(k \pm f / R)`. The amplitude falls by 1 % at 18
+    samples per period, by 3 % at 10 and by 19 % at 4. A run has a warning if this changes the response of a mode by more
+    than 2 %.
 
     The acceleration of the base is used as it is, without a correction of the baseline: its mean and drift remain.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> rb.Record(times=[0, 0.1, 0.2], values=[0, 1, 0], unit="g").values
+    (0.0, 9.80665, 0.0)
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("times", "values")

@@ -68,7 +68,7 @@ class Restitution(Part):
 
 
 class Constant(Restitution):
-    """Constant restitution (Newton's law of restitution).
+    r"""Constant restitution (Newton's law of restitution).
 
     Parameters
     ----------
@@ -77,7 +77,9 @@ class Constant(Restitution):
 
     Notes
     -----
-    V' = e V, with the approach speed V and the rebound speed V'.
+    .. math:: V' = e V
+
+    with the approach speed :math:`V` and the rebound speed :math:`V'`.
 
     References
     ----------
@@ -103,7 +105,7 @@ class Constant(Restitution):
 
 
 class Tabulated(Restitution):
-    """Restitution from a table, linear in the speed between points and constant outside them.
+    r"""Restitution from a table, linear in the speed between points and constant outside them.
 
     Parameters
     ----------
@@ -114,8 +116,9 @@ class Tabulated(Restitution):
 
     Notes
     -----
-    e = e_k + (e_(k+1) - e_k) (V - V_k) / (V_(k+1) - V_k) for V_k <= V < V_(k+1), the first value below V_1 and the last
-    value above the last speed.
+    .. math:: e = e_k + (e_{k+1} - e_k) \frac{V - V_k}{V_{k+1} - V_k}, \qquad V_k \le V < V_{k+1}
+
+    and the first value below :math:`V_1`, the last value above the last speed.
     """
 
     elementwise: ClassVar[bool] = False
@@ -142,7 +145,7 @@ class Tabulated(Restitution):
 
 
 class JacksonGreen(Restitution):
-    """Restitution of elasto-plastic impacts by Jackson, Green and Marghitu, from yield stress and elastic constants.
+    r"""Restitution of elasto-plastic impacts by Jackson, Green and Marghitu, from yield stress and elastic constants.
 
     Parameters
     ----------
@@ -156,14 +159,16 @@ class JacksonGreen(Restitution):
 
     Notes
     -----
-    With the approach speed over the critical speed, w = V / V_c, the law is a fit to finite-element results::
+    With the approach speed over the critical speed, :math:`w = V / V_c`, the law is a fit to finite-element results:
 
-        e = 1                                                                     w < 1
-        e = 1 - 0.1 ln w ((w - 1) / 59)^0.156                                1 <= w < 60
-        e = 1 - 0.1 ln 60 - 0.11 ln(w / 60) (w - 60)^(2.36 eps_y)           60 <= w <= 1000
+    .. math::
 
-    eps_y = S_y / E is the yield strain of the body that yields first, the one with the lower hardness C S_y,
-    C = 1.295 exp(0.736 nu); `critical_speed` has the equation of V_c.
+        e &= 1, & w &< 1 \\
+        e &= 1 - 0.1 \ln w \left(\frac{w - 1}{59}\right)^{0.156}, & 1 \le w &< 60 \\
+        e &= 1 - 0.1 \ln 60 - 0.11 \ln\frac{w}{60}\, (w - 60)^{2.36 \varepsilon_y}, & 60 \le w &\le 1000
+
+    :math:`\varepsilon_y = S_y / E` is the yield strain of the body that yields first, the one with the lower hardness
+    :math:`C S_y`, :math:`C = 1.295 \exp(0.736 \nu)`; `critical_speed` has the equation of :math:`V_c`.
 
     References
     ----------
@@ -226,7 +231,7 @@ def yield_pressure(pair: Pair, given: float | None, need: str) -> float:
 
 
 class ThorntonRestitution(Restitution):
-    """Restitution of an elastic, perfectly plastic contact in closed form.
+    r"""Restitution of an elastic, perfectly plastic contact in closed form.
 
     Parameters
     ----------
@@ -235,8 +240,13 @@ class ThorntonRestitution(Restitution):
 
     Notes
     -----
-    e = (6 3^(1/2) / 5)^(1/2) (1 - r^2/6)^(1/2) (r / (r + 2 (6/5 - r^2/5)^(1/2)))^(1/4) with r = V_y / V, and e = 1 for
-    V <= V_y; `yield_speed` has the equation of V_y. The contact `Thornton` has this restitution.
+    .. math::
+
+        e = \sqrt{\frac{6 \sqrt 3}{5}} \sqrt{1 - \frac{r^2}{6}}
+        \left(\frac{r}{r + 2 \sqrt{6/5 - r^2/5}}\right)^{1/4}, \qquad r = \frac{V_y}{V}
+
+    and :math:`e = 1` for :math:`V \le V_y`; `yield_speed` has the equation of :math:`V_y`. The contact `Thornton` has this
+    restitution.
 
     References
     ----------
@@ -271,7 +281,7 @@ class ThorntonRestitution(Restitution):
 
 
 class Johnson(Restitution):
-    """Restitution of a fully plastic impact.
+    r"""Restitution of a fully plastic impact.
 
     Parameters
     ----------
@@ -280,8 +290,10 @@ class Johnson(Restitution):
 
     Notes
     -----
-    e = (V / V_0)^(-1/4), at most 1, for V much larger than V_0 = 3.8^4 (Y/E*)^2 (2 Y R*^3 / m*)^(1/2), with the yield stress
-    Y of the body that yields first.
+    .. math:: e = (V / V_0)^{-1/4}, \qquad V_0 = 3.8^4 \left(\frac{Y}{E^*}\right)^2 \sqrt{\frac{2 Y R^{*3}}{m^*}}
+
+    at most 1, for speeds :math:`V` much larger than :math:`V_0`, with the yield stress :math:`Y` of the body that yields
+    first.
 
     References
     ----------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class ShearBuilding(DampedModes):
-    """Shear building: floors that move along one line, each on the columns of the storey below it.
+    r"""Shear building: floors that move along one line, each on the columns of the storey below it.
 
     Its points are the floors, "storey 1" to "storey n" from the ground up. It has all n modes.
 
@@ -34,9 +34,12 @@ class ShearBuilding(DampedModes):
 
     Notes
     -----
-    m_i x_i'' + k_i (x_i - x_{i-1}) - k_{i+1} (x_{i+1} - x_i) = -m_i a(t), with x_i relative to the ground, which accelerates
-    with a. With equal masses and stiffnesses the angular frequencies are
-    2 sqrt(k / m) sin((2 j - 1) pi / (2 (2 n + 1))), j = 1, ..., n.
+    .. math:: m_i \ddot x_i + k_i (x_i - x_{i-1}) - k_{i+1} (x_{i+1} - x_i) = -m_i a
+
+    with :math:`x_i` relative to the ground, which accelerates with :math:`a`. With equal masses and stiffnesses the angular
+    frequencies are
+
+    .. math:: \omega_j = 2 \sqrt{\frac{k}{m}} \sin\frac{(2 j - 1) \pi}{2 (2 n + 1)}, \qquad j = 1, \ldots, n
 
     References
     ----------

@@ -43,7 +43,7 @@ class Shock(Signal):
 
 
 class HalfSine(Shock):
-    """A half-sine pulse.
+    r"""A half-sine pulse.
 
     Parameters
     ----------
@@ -54,11 +54,24 @@ class HalfSine(Shock):
 
     Notes
     -----
-    amplitude sin(pi (t - start) / D) for start <= t < start + D, else 0. The velocity changes by 2 amplitude D / pi.
+    .. math:: f = A \sin\frac{\pi (t - t_0)}{D}, \qquad t_0 \le t < t_0 + D
+
+    and 0 otherwise, with the amplitude :math:`A`, the start :math:`t_0` and the duration :math:`D`. The velocity changes by
+    :math:`2 A D / \pi`.
 
     References
     ----------
     IEC 60068-2-27 (2008), Environmental testing, test Ea: shock.
+
+    Examples
+    --------
+    A pulse whose force changes the velocity of 20 kg by 0.16 m/s:
+
+    >>> import rattlebox as rb
+    >>> pulse = rb.HalfSine(amplitude="5 kN", duration="1 ms")
+    >>> run = rb.simulate(rb.Case(structure=rb.SDOF(mass="20 kg", stiffness=0), load=pulse, duration="2 ms"))
+    >>> print(f"{run.motion.velocity[-1].item():.3f} m/s")
+    0.159 m/s
     """
 
     kind: Literal["half_sine"] = "half_sine"
@@ -91,7 +104,7 @@ class HalfSine(Shock):
 
 
 class Sawtooth(Shock, Polyline):
-    """A sawtooth pulse: a linear rise to the peak at the end, or a linear fall from the peak at the beginning.
+    r"""A sawtooth pulse: a linear rise to the peak at the end, or a linear fall from the peak at the beginning.
 
     Parameters
     ----------
@@ -104,8 +117,10 @@ class Sawtooth(Shock, Polyline):
 
     Notes
     -----
-    amplitude (t - start) / D with a terminal peak, amplitude (1 - (t - start) / D) with an initial one, for
-    start <= t < start + D. The velocity changes by amplitude D / 2. IEC 60068-2-27 and MIL-STD-810 use the pulse with a
+    .. math:: f = A \frac{t - t_0}{D}, \qquad t_0 \le t < t_0 + D
+
+    with a terminal peak, :math:`A (1 - (t - t_0) / D)` with an initial one; amplitude :math:`A`, start :math:`t_0`,
+    duration :math:`D`. The velocity changes by :math:`A D / 2`. IEC 60068-2-27 and MIL-STD-810 use the pulse with a
     terminal peak.
 
     References

@@ -147,22 +147,24 @@ class StructurePart(Part):
 
 
 class SDOF(StructurePart):
-    """Single degree of freedom with the point "mass".
+    r"""Single degree of freedom with the point "mass".
 
     Parameters
     ----------
     mass
         M [kg].
     stiffness, frequency
-        K [N/m], 0 for a free body; or the undamped natural frequency sqrt(K / M) / (2 pi) [Hz].
+        K [N/m], 0 for a free body; or the undamped natural frequency :math:`\sqrt{K/M} / (2\pi)` [Hz].
     damping, damping_ratio
-        C [N s/m] or C / (2 sqrt(K M)), which may exceed 1; default undamped.
+        C [N s/m] or :math:`C / (2 \sqrt{K M})`, which may exceed 1; default undamped.
     displacement, velocity
         Initial displacement and velocity relative to the base [m], [m/s].
 
     Notes
     -----
-    M z'' + C z' + K z = F - M a, with the displacement z relative to the base, which accelerates with a.
+    .. math:: M \ddot z + C \dot z + K z = F - M a
+
+    with the displacement :math:`z` relative to the base, which accelerates with :math:`a`.
 
     Examples
     --------
@@ -221,7 +223,7 @@ class SDOF(StructurePart):
 
 
 class DampedModes(StructurePart):
-    """Damping of structures whose modes are computed.
+    r"""Damping of structures whose modes are computed.
 
     Parameters
     ----------
@@ -232,8 +234,9 @@ class DampedModes(StructurePart):
 
     Notes
     -----
-    Rayleigh damping is C = alpha M + beta K; the damping ratio at the angular frequency omega is
-    alpha / (2 omega) + beta omega / 2.
+    Rayleigh damping is :math:`C = \alpha M + \beta K`; the damping ratio at the angular frequency :math:`\omega` is
+
+    .. math:: \zeta = \frac{\alpha}{2 \omega} + \frac{\beta \omega}{2}
 
     References
     ----------
@@ -302,7 +305,7 @@ def _one_each(value: Any) -> Any:
 
 
 class Modal(FilePart, StructurePart):
-    """Structure defined by its modes, in the case or in a file.
+    r"""Structure defined by its modes, in the case or in a file.
 
     Parameters
     ----------
@@ -337,10 +340,13 @@ class Modal(FilePart, StructurePart):
 
     Notes
     -----
-    q'' + D q' + w^2 q = phi^T F - p a, with the modal displacements q, the angular frequencies w, the shapes phi, the
-    participation p = phi^T M r and the acceleration a of the base, along which a rigid structure moves by r. A point moves
-    by phi q. The modes are those of the undamped structure; D is diagonal, 2 zeta w, unless it is given as a matrix. Modes
-    that are left out add their inertia to the force on the base, (m - p^T p) a, if the total mass m = r^T M r is known.
+    .. math:: \ddot q + D \dot q + \omega^2 q = \phi^T F - p\, a, \qquad p = \phi^T M r
+
+    with the modal displacements :math:`q`, the angular frequencies :math:`\omega`, the shapes :math:`\phi`, the
+    participation :math:`p` and the acceleration :math:`a` of the base, along which a rigid structure moves by :math:`r`. A
+    point moves by :math:`\phi q`. The modes are those of the undamped structure; :math:`D` is diagonal,
+    :math:`2 \zeta \omega`, unless it is given as a matrix. Modes that are left out add their inertia to the force on the
+    base, :math:`(m - p^T p)\, a`, if the total mass :math:`m = r^T M r` is known.
 
     References
     ----------
@@ -348,6 +354,15 @@ class Modal(FilePart, StructurePart):
     couple).
 
     A. K. Chopra (2017): Dynamics of Structures, 5th edition, Pearson, chapters 12 and 13, ISBN 978-0-13-455512-6.
+
+    Examples
+    --------
+    Two modes that move the tip, with shapes per square root of mass:
+
+    >>> import rattlebox as rb
+    >>> bar = rb.Modal(frequencies=["30 Hz", "180 Hz"], damping_ratio="1 %", shapes={"tip": [0.4, -0.7]})
+    >>> [round(frequency) for frequency in bar.natural_frequencies]
+    [30, 180]
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("frequencies", "damping_ratios", "shapes", "participation")
@@ -599,7 +614,7 @@ class Fixed(StructurePart):
 
 
 class Shaker(StructurePart):
-    """A cavity that moves as prescribed. Its only point is called "cavity"; it is the base.
+    r"""A cavity that moves as prescribed. Its only point is called "cavity"; it is the base.
 
     Parameters
     ----------
@@ -608,8 +623,19 @@ class Shaker(StructurePart):
 
     Notes
     -----
-    The acceleration of the cavity is the sum of the signals; a displacement A sin(omega t + phi) is the acceleration
-    -A omega^2 sin(omega t + phi).
+    The acceleration of the cavity is the sum of the signals; a displacement :math:`A \sin(\omega t + \varphi)` is the
+    acceleration :math:`-A \omega^2 \sin(\omega t + \varphi)`.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> ball = rb.ImpactDamper(
+    ...     ball=rb.Sphere(diameter="20 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    ... )
+    >>> shaker = rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz"))
+    >>> run = rb.simulate(rb.Case(structure=shaker, damper=ball, duration="1 s"))
+    >>> print(f"the cavity moves at up to {1e3 * abs(run.motion.base_velocity).max().item():.1f} mm/s")
+    the cavity moves at up to 62.8 mm/s
     """
 
     responds: ClassVar[bool] = False

@@ -25,7 +25,7 @@ _NO_COUPLING = 1e-12
 
 
 class TunedMass(Part):
-    """Tuned mass damper: a mass on a spring and a dashpot at a point of the structure.
+    r"""Tuned mass damper: a mass on a spring and a dashpot at a point of the structure.
 
     It moves along the line of the point, or along `direction` at a point in 3-D; its inertia perpendicular to that direction
     is neglected. The run records its motion as that of a point with its name.
@@ -49,10 +49,11 @@ class TunedMass(Part):
 
     Notes
     -----
-    m y'' + 2 zeta omega m (y' - z') + omega^2 m (y - z) = -m a, with the displacements y of the mass and z of the point
-    relative to the base, which accelerates with a, and the angular frequency omega of the mass on its spring. Spring and
-    dashpot act on the point with the opposite force. `den_hartog` and `warburton` have the equations and sources of optimal
-    dampers.
+    .. math:: m \ddot y + 2 \zeta \omega m (\dot y - \dot z) + \omega^2 m (y - z) = -m a
+
+    with the displacements :math:`y` of the mass and :math:`z` of the point relative to the base, which accelerates with
+    :math:`a`, and the angular frequency :math:`\omega` of the mass on its spring. Spring and dashpot act on the point with
+    the opposite force. `den_hartog` and `warburton` have the equations and sources of optimal dampers.
 
     Examples
     --------

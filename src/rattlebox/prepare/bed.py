@@ -124,7 +124,7 @@ def loose_note(damper: ParticleDamper, name: str, fill: float, acceleration: flo
 
 
 def measure_bed(damper: ParticleDamper) -> BedMeasures:
-    """Measure the fill of a damper, by the volume of its particles and by the volume of their bed.
+    r"""Measure the fill of a damper, by the volume of its particles and by the volume of their bed.
 
     Parameters
     ----------
@@ -143,11 +143,11 @@ def measure_bed(damper: ParticleDamper) -> BedMeasures:
 
     Notes
     -----
-    The surface of the bed is that of a liquid in the cavity with the same centre of mass, sum(R^3 z) / sum(R^3) over the
-    particles; for level layers of equal spheres this is the top of the highest layer. The density is the fill ratio over the
-    bed fill. The density of the bulk is the share of points in spheres, of the points of the bed that are two diameters away
-    from walls and surface; its standard error is estimated from eight parts of equal volume. Volumes are counted on at least
-    65 000 evenly spread points, with a relative error below 0.3 %.
+    The surface of the bed is that of a liquid in the cavity with the same centre of mass,
+    :math:`\sum R^3 z / \sum R^3` over the particles; for level layers of equal spheres this is the top of the highest
+    layer. The density is the fill ratio over the bed fill. The density of the bulk is the share of points in spheres, of
+    the points of the bed that are two diameters away from walls and surface; its standard error is estimated from eight
+    parts of equal volume. Volumes are counted on at least 65 000 evenly spread points, with a relative error below 0.3 %.
 
     Examples
     --------

@@ -61,7 +61,7 @@ def pack_restitution(law: Restitution | None, pair: Pair) -> _core.Restitution:
 
 
 def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
-    """Return the restitution for a damping coefficient of Tsuji's law.
+    r"""Return the restitution for a damping coefficient of Tsuji's law.
 
     Parameters
     ----------
@@ -77,10 +77,14 @@ def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDA
 
     Notes
     -----
-    With zeta = alpha/sqrt(5), a contact that ends at zero overlap has e = exp(-pi zeta / sqrt(1 - zeta^2)). One that ends at
-    zero force has e = exp(-2 b cot b), where zeta = cos b, and e = exp(-2 h coth h), where zeta = cosh h, above zeta = 1.
-    Both follow from the exact solution of Tsuji's equation, a linear oscillator in overlap^(5/4) at every speed, and are
-    therefore those of a linear contact with the damping ratio zeta.
+    With :math:`\zeta = \alpha / \sqrt 5`, a contact that ends at zero overlap has
+
+    .. math:: e = \exp\left(-\frac{\pi \zeta}{\sqrt{1 - \zeta^2}}\right)
+
+    One that ends at zero force has :math:`e = \exp(-2 b \cot b)`, where :math:`\zeta = \cos b`, and
+    :math:`e = \exp(-2 h \coth h)`, where :math:`\zeta = \cosh h`, above :math:`\zeta = 1`. Both follow from the exact
+    solution of Tsuji's equation, a linear oscillator in :math:`d^{5/4}` at every speed, with the overlap :math:`d`, and are
+    therefore those of a linear contact with the damping ratio :math:`\zeta`.
 
     References
     ----------
@@ -100,7 +104,7 @@ def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDA
 
 
 def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
-    """Return the damping coefficient of Tsuji's law for a restitution, the exact inverse of `restitution_of_alpha`.
+    r"""Return the damping coefficient of Tsuji's law for a restitution, the exact inverse of `restitution_of_alpha`.
 
     Parameters
     ----------
@@ -116,8 +120,11 @@ def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray
 
     Notes
     -----
-    For a contact that ends at zero overlap, alpha = -sqrt(5) ln e / sqrt(pi^2 + ln^2 e). For one that ends at zero force,
-    the equation of `restitution_of_alpha` is solved by Newton's method.
+    For a contact that ends at zero overlap,
+
+    .. math:: \alpha = -\frac{\sqrt 5 \ln e}{\sqrt{\pi^2 + \ln^2 e}}
+
+    For one that ends at zero force, the equation of `restitution_of_alpha` is solved by Newton's method.
 
     References
     ----------

@@ -40,7 +40,7 @@ def calibrate(
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
-    """Calibrate contact parameters from measurements: values with 95 % intervals.
+    r"""Calibrate contact parameters from measurements: values with 95 % intervals.
 
     `Drops` and `BounceTimes` give the restitution in closed form and need no case. `RingDown` and `ShakerLoss` are compared
     with simulations of a case over one to three of its parameters.
@@ -106,7 +106,7 @@ def calibrate(
     For losses, a polynomial of first to third degree in the parameters (the degree with the smallest leave-one-out error) is
     fitted to the simulated values of each datum, and
 
-        chi^2 = (y - f)^T (D + S)^-1 (y - f)
+    .. math:: \chi^2 = (y - f)^T (D + S)^{-1} (y - f)
 
     with the measured values y, the polynomials f, the variances D of the measurement, and the covariance S of the
     leave-one-out errors, which contain the scatter of random packings: the measured damper is one of them. The interval of a

@@ -43,7 +43,7 @@ NO_PERIOD, NOT_FINISHED, TRANSIENT = 0, -1, -2
 
 @dataclass(frozen=True, config=CONFIG)
 class Basins(Study):
-    """Compute basins of attraction under a harmonic load: the steady motion of each initial state.
+    r"""Compute basins of attraction under a harmonic load: the steady motion of each initial state.
 
     Motions are compared by their stroboscopic states, one per cycle. Two motions belong to the same attractor if they have
     the same period and pass through the same states. Motions without impacts belong to the same attractor, wherever the
@@ -94,7 +94,7 @@ class Basins(Study):
     With the state s_k at the end of cycle k, over the range of the motion, the period is the smallest number n of cycles for
     which
 
-        max over k and components of abs(s_(k + n) - s_k) <= tolerance
+    .. math:: \max_k |s_{k+n} - s_k| \le \text{tolerance}
 
     and which does not contract: the differences d_k = s_(k + n) - s_k are fitted by d_(k + 2n) = a d_(k + n) + b d_k. With
     the roots m of m^2 = a m + b, the distance to the periodic motion is at most max abs(d_k) / min abs(m - 1) over the last
@@ -103,7 +103,7 @@ class Basins(Study):
     smallest divisor of n for which max abs(s_(k + n) - s_k) <= apart. Two motions of period n have the same attractor if for
     one of the shifts j = 0 ... n - 1
 
-        max over k and components of abs(s_k - r_(k + j)) <= apart
+    .. math:: \max_k |s_k - r_{k+j}| \le \text{apart}
 
     The range is the amplitude of the structure at the strobes, for velocities times the angular frequency; for balls
     the largest approach speed, and the length that belongs to it, at most the gap.

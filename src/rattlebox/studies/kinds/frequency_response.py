@@ -46,7 +46,7 @@ _MEASURES = "peak", "rms"
 
 @dataclass(frozen=True, config=CONFIG)
 class FrequencyResponse(Study):
-    """Compute the steady motion under a harmonic load over frequency, at one or several levels of the load.
+    r"""Compute the steady motion under a harmonic load over frequency, at one or several levels of the load.
 
     If two steady motions coexist at a frequency, an upward and a downward sweep often reach both: each sweep starts from the
     initial state of the case, and each further frequency from the final state of the one before, with all particles and
@@ -101,7 +101,7 @@ class FrequencyResponse(Study):
     -----
     The first harmonic of the displacement x over the evaluated cycles, of the length t, is
 
-        A = 2 / t abs(integral of x exp(-2 pi i f t) dt)
+    .. math:: A = \frac{2}{t} \left|\int x\, e^{-2 \pi i f \tau} d\tau\right|
 
     with whose phase that of the load is subtracted. `rattlebox.analysis.mean_interval` describes the intervals.
 

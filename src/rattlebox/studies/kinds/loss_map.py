@@ -39,7 +39,7 @@ CYCLES = (50, 50)
 
 @dataclass(frozen=True, config=CONFIG)
 class LossMap(Study):
-    """Compute loss and effective mass of a damper on a shaker over amplitude and frequency.
+    r"""Compute loss and effective mass of a damper on a shaker over amplitude and frequency.
 
     In the first harmonic, the force that drives the damper is its apparent mass m' - i m'' times the acceleration of the
     cavity. For the structure, m' is an added mass, and pi m'' V^2 is the loss per cycle at the velocity amplitude V.
@@ -83,10 +83,11 @@ class LossMap(Study):
     -----
     With the complex amplitudes F of the force that drives the damper and a of the acceleration of the cavity,
 
-        m' - i m'' = F / a,   loss factor m'' / abs(m'),   reduced loss W / (m V^2)
+    .. math:: m' - i m'' = \frac{F}{a}, \qquad \eta = \frac{m''}{|m'|}, \qquad w = \frac{W}{m V^2}
 
-    where W is the energy that the damper takes from the shaker in a cycle. For particles it is the work of the walls, in
-    which the potential energy of a bed that sinks is not included; `rb.analysis.shaken_cavity` has the test of steadiness.
+    with the loss factor :math:`\eta` and the reduced loss :math:`w`. W is the energy that the damper takes from the shaker
+    in a cycle. For particles it is the work of the walls, in which the potential energy of a bed that sinks is not
+    included; `rb.analysis.shaken_cavity` has the test of steadiness.
 
     References
     ----------

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, config=CONFIG)
 class Lyapunov(Study):
-    """Compute the largest finite-time Lyapunov exponent of a case, or of each variant along some axes.
+    r"""Compute the largest finite-time Lyapunov exponent of a case, or of each variant along some axes.
 
     Parameters
     ----------
@@ -94,7 +94,10 @@ class Lyapunov(Study):
     the angular frequency of the cycle or of the fastest mode. With the distance d_k to which d_0 grows in step k of the
     length t, the exponent is the weighted average
 
-        lambda = sum over k of w_k ln(d_k / d_0) / (t sum over k of w_k),   w_k ~ exp(-1 / (s (1 - s))),   0 < s < 1
+    .. math::
+
+        \lambda = \frac{\sum_k w_k \ln(d_k / d_0)}{t \sum_k w_k}, \qquad
+        w_k \sim \exp\left(-\frac{1}{s (1 - s)}\right), \quad 0 < s < 1
 
     where s is the place of the step in the motion. This weight converges much faster for regular motion than an even one.
 

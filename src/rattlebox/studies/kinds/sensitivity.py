@@ -62,7 +62,7 @@ class _Crossed(RandomDesign):
 
 @dataclass(frozen=True, config=CONFIG)
 class Sensitivity(Study):
-    """Compute the shares of the variance of a measure that several parameters cause (Sobol indices).
+    r"""Compute the shares of the variance of a measure that several parameters cause (Sobol indices).
 
     The parameters vary independently within their bounds. The first-order index of a parameter is the share of the variance
     that disappears when it is fixed; the total index is the share that remains when all others are fixed. They differ if
@@ -109,7 +109,7 @@ class Sensitivity(Study):
     -----
     With the measure Y, the parameter x_i and all others x_~i, the first-order index S and the total index T are
 
-        S_i = V[E(Y | x_i)] / V[Y],   T_i = E[V(Y | x_~i)] / V[Y]
+    .. math:: S_i = \frac{V[E(Y | x_i)]}{V[Y]}, \qquad T_i = \frac{E[V(Y | x_{\sim i})]}{V[Y]}
 
     References
     ----------
