@@ -9,7 +9,7 @@ from docutils.statemachine import StringList
 from latex2mathml.converter import convert
 from sphinx.util.math import get_node_equation_number
 
-sys.path.insert(0, str(Path(__file__).parent))  # for the module of the gallery
+sys.path.insert(0, str(Path(__file__).parent))  # for the modules of the gallery and of the reference
 
 import gallery_of_examples
 import typer
@@ -31,21 +31,28 @@ release = rattlebox.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
+    "reference_pages",
 ]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 exclude_patterns = ["_build", "validation/verification_table.md", "validation/paper_table.md"]
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_favicon = "_static/favicon.svg"
 html_title = f"Rattlebox {release}"
 html_show_copyright = False
 html_math_renderer = "mathml"
 bibtex_bibfiles = ["theory/sources.bib"]
 bibtex_reference_style = "author_year"
 math_eqref_format = "({number})"
+autosummary_generate = False
+default_role = "code-or-link"
+napoleon_use_rtype = False
+napoleon_use_param = False  # parameters that share a description stay on one line
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 plot_gallery = "False"  # `make gallery` runs the scripts
@@ -65,6 +72,7 @@ sphinx_gallery_conf = {
     "write_computation_times": False,
     "within_subsection_order": "FileNameSortKey",
     "parallel": 2,
+    "nested_sections": False,
 }
 
 
@@ -148,6 +156,16 @@ class Commands(Lines):
         return lines
 
 
+class Script(Lines):
+    """The cells of a script of the gallery, given by its name."""
+
+    required_arguments = 1
+
+    def lines(self):
+        """Return text and code in turns."""
+        return gallery_of_examples.cells(self.arguments[0])
+
+
 def formula(latex, display):
     """Return a formula as MathML, with what browsers lay out otherwise than TeX.
 
@@ -176,12 +194,13 @@ def setup(app):
     Browsers draw MathML; MathJax would need the network.
     """
     gallery_of_examples.prepare()
-    app.connect("source-read", gallery_of_examples.show_figure)
+    app.connect("source-read", gallery_of_examples.show)
     app.connect("source-read", fill_in)
     app.add_directive("schema", SchemaTable)
     app.add_directive("statuses", Statuses)
     app.add_directive("validity-limits", ValidityLimits)
     app.add_directive("commands", Commands)
+    app.add_directive("script", Script)
 
     def inline(self, node):
         self.body.append(formula(node.astext(), "inline"))
@@ -189,7 +208,10 @@ def setup(app):
 
     def block(self, node):
         self.body.append(self.starttag(node, "div", CLASS="math"))
-        self.body.append(formula(node.astext(), "block"))
+        latex = node.astext()
+        if r"\\" in latex and r"\begin" not in latex:  # as LaTeX does with several lines in a docstring
+            latex = rf"\begin{{align*}}{latex}\end{{align*}}"
+        self.body.append(formula(latex, "block"))
         if node["number"]:
             self.body.append(f'<span class="eqno">({get_node_equation_number(self, node)})</span>')
         self.body.append("</div>")

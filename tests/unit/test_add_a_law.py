@@ -63,8 +63,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("copy")
     for name in ("core", "src"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
-    (folder / "docs" / "reference").mkdir(parents=True)
-    shutil.copy(ROOT / "docs" / "reference" / "case_file.md", folder / "docs" / "reference")
+    shutil.copytree(ROOT / "docs" / "reference" / "case", folder / "docs" / "reference" / "case")
     shutil.copy(ROOT / "CMakeLists.txt", folder)
     carry_out(folder)
     return folder

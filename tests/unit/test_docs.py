@@ -66,7 +66,8 @@ PAGES = (
     *(pytest.param(page, marks=pytest.mark.slow) for page in SLOW_PAGES),
 )
 FRONT = ("README.md", "docs/tutorials/start.md")
-FIELDS = DOCS / "reference" / "case_file.md"
+REFERENCE = DOCS / "reference"
+FIELDS = [REFERENCE / "case_file.md", *sorted((REFERENCE / "case").glob("*.md"))]
 
 
 OTHER_WORDS = (
@@ -97,6 +98,11 @@ SEARCHES = (
 )
 
 
+def read(page):
+    """Return the text of a page."""
+    return page.read_text(encoding="utf-8")
+
+
 def examples(page):
     """Return pairs of code and the output on the page."""
     pattern = r"^```python\n(.*?)^```$(?:\n\n```text\n(.*?)^```$)?"
@@ -118,7 +124,7 @@ def test_examples_print_the_output_on_the_page(name, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "page", ["docs/tutorials/start.md", "docs/reference/api.md", "docs/theory/laws.md", "README.md"]
+    "page", ["docs/tutorials/start.md", "docs/reference/api/errors.md", "docs/theory/laws.md", "README.md"]
 )
 def test_examples_of_other_pages_run(page, tmp_path, monkeypatch):
     """The examples run, and print the text that follows them; "..." stands for lines such as the computing time."""
@@ -139,10 +145,18 @@ def matches(printed, message):
 
 
 def test_every_public_name_has_a_page():
-    """Each public name is on the page of the API, of the fields of a case, or of analysis."""
-    names = ("reference/api", "reference/case_file", "how-to/analysis")
-    pages = "".join((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in names)
-    assert [name for name in rb.__all__ if not re.search(rf"\b{name}\b", pages)] == []
+    """Each public name of the package and of its two subpackages has an entry on one page of the reference."""
+    pages = [page for folder in ("api", "case") for page in (REFERENCE / folder).glob("*.md")]
+    entries = re.findall(r"^(?:\.\. py:data:: |  +)?(rattlebox\.[\w.]+)", "\n".join(map(read, pages)), re.MULTILINE)
+    errors = [
+        name for name in rb.__all__ if isinstance(getattr(rb, name), type) and issubclass(getattr(rb, name), Exception)
+    ]
+    known = {*entries, *(f"rattlebox.{name}" for name in errors), "rattlebox.analysis", "rattlebox.plots"}
+    assert len(entries) == len(set(entries))
+    names = [f"rattlebox.{name}" for name in rb.__all__]
+    for place in ("analysis", "plots"):  # a name of both is documented once
+        names += [f"rattlebox.{place}.{name}" for name in getattr(rb, place).__all__ if name not in rb.__all__]
+    assert [name for name in names if name not in known] == []
 
 
 def section(docstring: str, title: str) -> str:
@@ -174,6 +188,29 @@ def test_docstrings_of_public_functions_are_complete():
     assert len(functions) > 100 and not lacks
 
 
+def test_the_most_used_classes_have_an_example():
+    """The sixteen classes that pages and scripts use most have examples in their docstrings, which tests run."""
+    pages = [page for page in DOCS.rglob("*.md") if not {"_build", "gallery"} & set(page.parts)]
+    text = "".join(map(read, [*pages, *(ROOT / "examples").rglob("*.py")]))
+    classes = [name for name in rb.__all__ if isinstance(getattr(rb, name), type)]
+    used = sorted(classes, key=lambda name: -len(re.findall(rf"\brb\.{name}\(", text)))
+    assert [name for name in used[:16] if ">>>" not in getattr(rb, name).__doc__] == []
+
+
+def test_formulas_of_docstrings_are_rendered():
+    """No displayed formula of the notes of a public name is in plain letters, which the pages would show as they are."""
+    plain = re.compile(r"^ {4,}[^\s>.:-][^:`]* = [^`]*(?:\^|\bsqrt\(|\bpi\b|\babs\()", re.MULTILINE)
+    wrong = []
+    for module in (rb, rb.analysis):
+        for name in module.__all__:
+            if not callable(getattr(module, name)):
+                continue
+            notes = section(getattr(module, name).__doc__ or "", "Notes")
+            shown = re.sub(r"\.\. math::.*?(?=\n\S|\Z)", "", notes, flags=re.DOTALL)
+            wrong += [f"{name}: {line.strip()}" for line in plain.findall(shown)]
+    assert wrong == []
+
+
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
 def test_laws_and_methods_state_equation_and_source(law):
     """Each law and method that a case can name has an equation in its notes, and names the DOI or ISBN of its source."""
@@ -182,8 +219,8 @@ def test_laws_and_methods_state_equation_and_source(law):
 
 
 def test_every_field_of_a_case_is_described():
-    """The docstring of each part, which the page of fields includes, lists all its fields."""
-    shown = re.findall(r"autoclass:: rattlebox\.(\w+)$", FIELDS.read_text(encoding="utf-8"), re.MULTILINE)
+    """The docstring of each part, which a page of fields includes, lists all its fields."""
+    shown = re.findall(r"^rattlebox\.(\w+)(?::.*)?$", "\n".join(map(read, FIELDS)), re.MULTILINE)
     parts = [getattr(rb, name) for name in shown]
     public = [getattr(rb, name) for name in rb.__all__]
     assert {part for part in public if isinstance(part, type) and issubclass(part, Part)} <= set(parts)
@@ -194,8 +231,8 @@ def test_every_field_of_a_case_is_described():
 
 
 def test_cases_on_the_page_of_fields_run(tmp_path):
-    """The case files on the page of fields are complete and run."""
-    files = re.findall(r"^```toml\n(.*?)^```$", FIELDS.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    """The case files on the pages of fields are complete and run."""
+    files = re.findall(r"^```toml\n(.*?)^```$", "\n".join(map(read, FIELDS)), re.MULTILINE | re.DOTALL)
     assert len(files) == 3
     for number, content in enumerate(files):
         case = rb.Case.from_toml(content)
