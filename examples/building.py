@@ -23,8 +23,15 @@ from rattlebox.analysis import drift
 MASS, TOP = 2500.0, "storey 5"  # 1 % of the building [kg]
 SIZE = (6 * MASS / 16 / (np.pi * 7850)) ** (1 / 3)  # diameter of each of sixteen steel balls [m]
 
+# %%
+# The building has five equal storeys. The record of the ground is read from a file, with its unit.
+
 tower = rb.ShearBuilding(masses=["50 t"] * 5, stiffnesses=["60 MN/m"] * 5, damping_ratio="2 %")
 quake = rb.Record(file=Path(__file__).parent / "data" / "ground_motion.at2")
+
+# %%
+# Three dampers of 2.5 t each stand on the top floor: a tuned mass, one ball, and a layer of sixteen balls.
+
 pads = rb.Linear(contact_time="5 ms", restitution=0.5)
 tuned = rb.TunedMass.warburton(tower, mass=MASS, point=TOP)
 ball = rb.ImpactDamper(
@@ -39,9 +46,16 @@ balls = rb.ParticleDamper(
     point=TOP,
     direction="x",
 )
+
+# %%
+# `rb.compare` runs the building with each of them.
+
 dampers = {"bare": {}, "tuned mass": {"tuned_mass": tuned}, "one ball": {"damper": ball}, "16 balls": {"damper": balls}}
 common = {"structure": tower, "base": quake, "duration": "23.9 s", "output": rb.Output(rate="200 Hz")}
 result = rb.compare({name: rb.Case(**common, **damper) for name, damper in dampers.items()})
+
+# %%
+# A drift is the displacement of a floor relative to the one below. Peak and RMS value tell different stories.
 
 figure, panels = plt.subplots(1, 2, figsize=(7, 3), sharey=True, layout="constrained")
 floors, rms = [None, *(f"storey {k}" for k in range(1, 6))], {}
@@ -55,4 +69,8 @@ panels[0].set(xlabel="Peak drift (mm)", ylabel="Storey", yticks=range(1, 6), xli
 panels[1].set(xlabel="RMS drift (mm)", xlim=0)
 panels[1].legend(frameon=False)
 figure.savefig("building.png", dpi=200)
+
+# %%
+# The numbers of the tutorial.
+
 assert np.allclose([row[0] for row in rms.values()], [7.0, 4.8, 5.6, 6.1], rtol=0.05)

@@ -23,6 +23,10 @@ CYCLES = (6, 18)
 RANGES = {"damper.contact.restitution": (0.8, 0.97), "damper.friction": (0.0, 0.6)}
 
 
+# %%
+# The same box serves as the experiment, with the true values, and as the model, with unknown ones.
+
+
 def box(restitution=0.8, friction=0.3, seed=0):
     """Return the box on a shaker with the parameters and the random packing of a seed."""
     return rb.Case(
@@ -39,6 +43,10 @@ def box(restitution=0.8, friction=0.3, seed=0):
     )
 
 
+# %%
+# The experiment: heights of rebounds, and losses at four levels, both with random errors.
+
+
 def measurements():
     """Return a drop test, and losses of the box of the experiment."""
     rng = np.random.default_rng(1)
@@ -48,6 +56,10 @@ def measurements():
     return rb.Drops("300 mm", (rebounds, "mm")), rb.ShakerLoss(
         LEVELS, HERTZ, reduced_loss=measured, error="2 %", cycles=CYCLES
     )
+
+
+# %%
+# The drop test gives the restitution with its interval, which narrows the fit of the losses.
 
 
 def calibrations(drops, losses, **options):
@@ -61,20 +73,25 @@ def calibrations(drops, losses, **options):
     ]
 
 
+# %%
+# Both fits side by side: values with intervals, and regions in which restitution and friction agree with the data.
+
+
 @rb.plots.figure_style("page")
 def main():
-    """Compute the numbers, check them and draw the figure."""
+    """Compute the numbers, draw the figure and check them."""
     drops, losses = measurements()
     results = calibrations(drops, losses)
     for name, result in zip(("losses alone", "with the drop test"), results, strict=True):
-        for value, path in zip((RESTITUTION, FRICTION), RANGES, strict=True):
+        for path in RANGES:
             one = result.sel(parameter=path)
             print(f"{name}, {path}: {float(one.value):.3f} ({float(one.lower):.3f} to {float(one.upper):.3f})")
-            assert one.lower <= value <= one.upper
-    alone, both = ((result.upper - result.lower).sel(parameter="damper.friction") for result in results)
-    assert both < 0.6 * alone
-    assert "the data cannot separate" in results[0].undetermined[0] and not results[1].undetermined
+    draw(losses, results)
+    check(results)
 
+
+def draw(losses, results):
+    """Draw losses and regions."""
     figure, panels = plt.subplots(1, 2, figsize=(7.5, 3.2), layout="constrained")
     places = [float(level.split()[0]) for level in LEVELS]
     panels[0].errorbar(places, losses.loss, 1.96 * losses.error, fmt="ok", ms=4, label="measured")
@@ -97,6 +114,21 @@ def main():
     panels[1].set(xlabel="Restitution", ylabel="Friction", xlim=RANGES["damper.contact.restitution"], ylim=(0, 0.6))
     panels[1].legend(loc="upper left")
     figure.savefig("calibration.png", dpi=150)
+
+
+# %%
+# All intervals hold the true values, and the drop test narrows that of the friction.
+
+
+def check(results):
+    """Raise if an interval misses a true value."""
+    for result in results:
+        for value, path in zip((RESTITUTION, FRICTION), RANGES, strict=True):
+            one = result.sel(parameter=path)
+            assert one.lower <= value <= one.upper
+    alone, both = ((result.upper - result.lower).sel(parameter="damper.friction") for result in results)
+    assert both < 0.6 * alone
+    assert "the data cannot separate" in results[0].undetermined[0] and not results[1].undetermined
 
 
 if __name__ == "__main__":

@@ -18,6 +18,10 @@ import rattlebox as rb
 FRICTIONS = (0.0, 0.3, 1.0)
 
 
+# %%
+# A fill is a share of the cavity's volume that the bed takes up, with its voids.
+
+
 def cylinder(bed_fill, packing, friction=0.3, **size):
     """Return a damper whose bed fills a part of a cylinder."""
     return rb.ParticleDamper(
@@ -29,9 +33,13 @@ def cylinder(bed_fill, packing, friction=0.3, **size):
     )
 
 
+# %%
+# The same cylinder poured and shaken down, and a wider one to measure the density far from walls.
+
+
 @rb.plots.figure_style("page")
 def main():
-    """Compute the numbers, check them and draw the figure."""
+    """Measure the beds, draw the figure and check the numbers."""
     beds = {
         "poured, 90 %": rb.measure_bed(cylinder(0.9, rb.Settled(seed=1))),
         "shaken down, 90 %": rb.measure_bed(cylinder(0.9, rb.Compacted(seed=1))),
@@ -39,17 +47,22 @@ def main():
     }
     for name, bed in beds.items():
         print(f"{name}: {bed.count} balls, of the cavity {bed.fill_ratio:.3f} are balls and {bed.bed_fill:.2f} bed")
-    assert [bed.count for bed in beds.values()] == [399, 417, 450]
-    assert all(bed.full_count == 450 for bed in beds.values())
     wide = {"diameter": "48 mm", "length": "48 mm"}
     poured = [rb.measure_bed(cylinder(0.8, rb.Settled(seed=1), friction, **wide)) for friction in FRICTIONS]
     shaken = rb.measure_bed(cylinder(0.8, rb.Compacted(seed=1), **wide))
     for friction, bed in zip(FRICTIONS, poured, strict=True):
         print(f"poured with friction {friction}: {bed.bulk_density:.3f} ± {bed.bulk_error:.3f} far from walls")
     print(f"shaken down: {shaken.bulk_density:.3f} ± {shaken.bulk_error:.3f} far from walls")
-    for bed, known in zip((*poured, shaken), (0.64, 0.60, 0.57, 0.62), strict=True):
-        assert abs(bed.bulk_density - known) < bed.bulk_error + 0.01
+    draw(beds, poured, shaken)
+    check(beds, poured, shaken)
 
+
+# %%
+# Bars show both fills of each bed; the curve shows how friction keeps a poured bed loose.
+
+
+def draw(beds, poured, shaken):
+    """Draw fills and densities."""
     figure, panels = plt.subplots(1, 2, figsize=(7.5, 3), layout="constrained")
     for shift, part in ((-0.2, "bed_fill"), (0.2, "fill_ratio")):
         places = [k + shift for k in range(len(beds))]
@@ -70,6 +83,18 @@ def main():
     panels[1].margins(x=0.03)
     panels[1].legend()
     figure.savefig("fills.png", dpi=200)
+
+
+# %%
+# The numbers of the page.
+
+
+def check(beds, poured, shaken):
+    """Raise if a number has changed."""
+    assert [bed.count for bed in beds.values()] == [399, 417, 450]
+    assert all(bed.full_count == 450 for bed in beds.values())
+    for bed, known in zip((*poured, shaken), (0.64, 0.60, 0.57, 0.62), strict=True):
+        assert abs(bed.bulk_density - known) < bed.bulk_error + 0.01
 
 
 if __name__ == "__main__":

@@ -27,6 +27,10 @@ ONE_G = G / (2 * math.pi * HERTZ) ** 2  # amplitude of the shaker with an accele
 SPACE, EARTH = (0.0, 0.0, 0.0), (0.0, 0.0, -G)
 
 
+# %%
+# The box holds three layers of balls and is two balls higher than the bed.
+
+
 def box(amplitude, gravity, **options):
     """Return the case of the box on a shaker that moves vertically with this amplitude [m]."""
     balls = rb.ParticleDamper(
@@ -41,6 +45,10 @@ def box(amplitude, gravity, **options):
     )
     motion = rb.Harmonic(amplitude=(amplitude, "m"), frequency=HERTZ, direction="z")
     return rb.Case(structure=rb.Shaker(motion=motion), damper=balls, **{"duration": "1 s", **options})
+
+
+# %%
+# A box without any free height, for comparison.
 
 
 def full_box(packed):
@@ -59,11 +67,19 @@ def full_box(packed):
     return rb.Case(structure=rb.Shaker(motion=motion), damper=balls, duration="1 s")
 
 
+# %%
+# Loss and effective mass are measured over whole cycles of the steady motion.
+
+
 def losses(amplitudes, gravity, cycles=(10, 10), case=None):
     """Return the loss map at these amplitudes [m]."""
     shaken = case or box(BEST, gravity)
     study = rb.loss_map(shaken, list(amplitudes), [HERTZ], cycles=cycles, samples=1 + 64 * cycles[1])
     return study.isel({"structure.motion.frequency": 0}).rename({"structure.motion.amplitude": "amplitude"})
+
+
+# %%
+# Snapshots of all balls over two cycles show the motion.
 
 
 def heights(amplitude, gravity, skip=10, cycles=2, each=64):
@@ -79,6 +95,10 @@ def heights(amplitude, gravity, skip=10, cycles=2, each=64):
     return time, moved, in_box + moved[:, None]
 
 
+# %%
+# Four motions, and the two maps to which they belong.
+
+
 def draw(panel, time, moved, balls):
     """Draw paths of the centres of all balls between floor and lid."""
     floor, lid = (1e3 * (moved + end * HEIGHT / 2) for end in (-1, 1))
@@ -90,7 +110,7 @@ def draw(panel, time, moved, balls):
 
 @rb.plots.figure_style("page")
 def main():
-    """Compute the numbers, check them and draw the figure."""
+    """Compute the numbers, draw the figure and check them."""
     regimes = {
         "locked\n0.7 g": (0.7 * ONE_G, EARTH),
         "bouncing\n2.2 g": (2.2 * ONE_G, EARTH),
@@ -129,7 +149,15 @@ def main():
         panel.set(xlabel="Amplitude of the box ($L$/π)", xlim=0)
     panels[0].legend(loc="lower right")
     figure.savefig("regimes.png", dpi=140)
+    check(maps, full)
 
+
+# %%
+# The numbers of the guide.
+
+
+def check(maps, full):
+    """Raise if a number has changed."""
     space, earth = (study.assign(mass=study.effective_mass / study.particle_mass) for study in maps.values())
     assert not any(study.warnings.any() for study in maps.values())
     locked, bouncing = earth.isel(amplitude=slice(0, 2)), earth.isel(amplitude=slice(3, 6))
