@@ -163,6 +163,7 @@ class Script(Lines):
 
     def lines(self):
         """Return text and code in turns."""
+        self.state.document.settings.env.note_dependency(f"../examples/{self.arguments[0]}.py")
         return gallery_of_examples.cells(self.arguments[0])
 
 
@@ -177,7 +178,10 @@ def formula(latex, display):
         lambda match: f"<mi>{chr(0x1D400 + ord(match[1]) - (65 if match[1] < 'a' else 71))}</mi>",
         text,
     )
-    text = text.replace("<mo>&#x0002F;</mo>", '<mo lspace="0" rspace="0">/</mo>')
+    text = text.replace("<mo>&#x0002F;</mo>", '<mo lspace="0" rspace="0">/</mo>').replace("&#x00028;", "(")
+    text = re.sub(r"<mover>(<mi>\w</mi><mo>&#x0(?:02D9|00A8);)", r'<mover accent="true">\1', text)
+    function = "sin|cos|tan|cot|sinh|cosh|tanh|coth|exp|ln|log|max|min"
+    text = re.sub(rf"(<m[io]>(?:{function})</m[io]>)(?=<m[infrs])", r'\1<mspace width="0.17em"/>', text)
     sign = r'\1<mo form="prefix" lspace="0" rspace="0">&#x02212;</mo>'
     return re.sub(r"(<mrow>|<math[^>]*>|<mo[^>]*>[=(,]</mo>)<mo>&#x02212;</mo>", sign, text)
 
