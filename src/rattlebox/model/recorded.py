@@ -210,8 +210,8 @@ class Record(FilePart, Sampled):
     Examples
     --------
     >>> import rattlebox as rb
-    >>> rb.Record(times=[0, 0.1, 0.2], values=[0, 1, 0], unit="g").values
-    (0.0, 9.80665, 0.0)
+    >>> print(f"{max(rb.Record(times=[0, 0.1, 0.2], values=[0, 1, 0], unit='g').values):.5f} m/s^2")
+    9.80665 m/s^2
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("times", "values")
