@@ -123,9 +123,10 @@ def _steady_counts(data: xr.Dataset, model: str) -> set[int]:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return the load, the agreement of the starts, and the numbers of contacts."""
+    """Return the agreement of the starts, and the number of different counts; 1 if all runs are steady, or none."""
     low, _, high = data.mean_spread.transpose("quantile", ...)
     numbers = set().union(*(_steady_counts(data, model) for model in data.model.values))
+    some = {m: 0 < _steady(data.sel(model=m)).mean() < 1 for m in data.model.values}
     return {
         "members": MEMBERS,
         "none": 100 * ((high - low) == 0).mean(),
@@ -133,13 +134,8 @@ def values(data: xr.Dataset) -> dict[str, Any]:
         "apart": APART,
         "ends": data.frequency[[0, -1]],
         "numbers": ", ".join(map(str, sorted(numbers))),
+        "bifurcation": {m: len(_steady_counts(data, m)) if some[m] else 1 for m in some},
     }
 
 
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the number of different counts; one if all runs are steady, or none."""
-    some = {m: 0 < _steady(data.sel(model=m)).mean() < 1 for m in data.model.values}
-    return {"bifurcation": {m: len(_steady_counts(data, m)) if some[m] else 1 for m in some}}
-
-
-FIGURE = Reproduction("contacts_per_cycle", data, draw, 0.85, cases, values, cells)
+FIGURE = Reproduction("contacts_per_cycle", data, draw, 0.85, cases, values)

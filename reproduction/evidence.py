@@ -222,30 +222,13 @@ def _text(values: Mapping[str, Estimate], form: str, models: Sequence[str] = tup
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return losses, contacts and shares of plastic impacts as text."""
+    """Return losses, contacts and shares of plastic impacts as text, and the values of all claims."""
     loss, first = _estimates(data, "loss", scale=100), _ratio(data, "first")
     share = 100 * data.plastic_share.sel(quantile=0.5)
     plastic = {m: [f"{float(share.sel(shown=m, until=t)):.0f}" for t in (1.0, DURATION)] for m in (STEEL, RIGID)}
     points = 100 * np.ptp(data.loss.sel(pulse=STRONG).median("member").values, axis=1)
     thornton = 100 * data.thornton.median("fewer")
     constant_e = 0.99117
-    return {
-        "until": data.plastic_until.sel(pulse=STRONG, case=1, model=RIGID).median("member"),
-        "members": MEMBERS,
-        "plastic": "; ".join(f"{SHORT[m]} {' and '.join(plastic[m])} %" for m in plastic),
-        "contacts": _text(_estimates(data, "contacts"), ".0f"),
-        "first": _text(first, ".2g", (STEEL, RIGID)),
-        "once": 1 / (1 - constant_e**2),
-        "total": 100 / loss[CONSTANT_E].value,
-        "loss": _text(loss, ".2g"),
-        "points": ", ".join(f"{points[k]:.2g} ({SHORT[m]})" for k, m in enumerate(MODELS)),
-        "thornton": [float(thornton.sel(wall=wall)) for wall in (STEEL, RIGID)],
-        "walls": _text(loss, ".2g", (STEEL, STIFF)),
-    }
-
-
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the values of all claims on impacts, losses and start positions."""
     loss = _estimates(data, "loss", scale=100)
     strong, weak = data.sel(pulse=STRONG), data.sel(pulse=WEAK)
     models = [str(model) for model in data.model.values]
@@ -263,6 +246,17 @@ def cells(data: xr.Dataset) -> dict[str, Any]:
         for m in data.shown.values
     }
     return {
+        "until": data.plastic_until.sel(pulse=STRONG, case=1, model=RIGID).median("member"),
+        "members": MEMBERS,
+        "plastic": "; ".join(f"{SHORT[m]} {' and '.join(plastic[m])} %" for m in plastic),
+        "contacts": _text(_estimates(data, "contacts"), ".0f"),
+        "first": _text(first, ".2g", (STEEL, RIGID)),
+        "once": 1 / (1 - constant_e**2),
+        "total": 100 / loss[CONSTANT_E].value,
+        "loss": _text(loss, ".2g"),
+        "points": ", ".join(f"{points[k]:.2g} ({SHORT[m]})" for k, m in enumerate(MODELS)),
+        "thornton": [float(thornton.sel(wall=wall)) for wall in (STEEL, RIGID)],
+        "walls": _text(loss, ".2g", (STEEL, STIFF)),
         "fast": lowest,
         "vastly": {m: 1 - low for m, low in lowest.items()},
         "predominantly": {m: _estimates(data, "plastic_until")[m] for m in WALLS},
@@ -284,4 +278,4 @@ def cells(data: xr.Dataset) -> dict[str, Any]:
     }
 
 
-FIGURE = Reproduction("evidence", data, draw, 0.42, cases, values, cells)
+FIGURE = Reproduction("evidence", data, draw, 0.42, cases, values)

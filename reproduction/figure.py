@@ -33,8 +33,9 @@ class Reproduction:
     paint: Callable[[StyledFigure, xr.Dataset], None]
     height: float  # over the width
     cases: Callable[[], Mapping[str, Case]]
-    values: Callable[[xr.Dataset], Mapping[str, Any]]  # numbers of caption, notes and lessons
-    cells: Callable[[xr.Dataset], Mapping[str, Any]] = field(default=lambda data: {})  # of its claims
+    values: Callable[
+        [xr.Dataset], Mapping[str, Any]
+    ]  # numbers of caption, notes and lessons, and of claims by their id
     film: Callable[[xr.Dataset], str] = field(default=lambda data: "")  # as an SVG element
 
     @property
@@ -71,26 +72,27 @@ class Reproduction:
                 axes.set_title(rf"$\bf{{({letter})}}$ {axes.get_title('left')}".rstrip(), loc="left")
         return figure
 
-    def _fill(self, data: xr.Dataset, texts: Sequence[str]) -> list[str]:
-        """Return texts with the numbers of the data: the `values` of the figure, and its variables of one number or row."""
+    def _fill(self, data: xr.Dataset, values: Mapping[str, Any], texts: Sequence[str]) -> list[str]:
+        """Return texts with the numbers of the data: its variables of one number or row, attributes, and values."""
         rows = {str(name): variable for name, variable in data.variables.items() if variable.ndim < 2}
-        every = {**rows, **data.attrs, **self.values(data)}
-        values = {k: np.asarray(v) if isinstance(v, xr.DataArray | xr.Variable) else v for k, v in every.items()}
-        return [text.format_map(values) for text in texts]
+        claims = {row["id"] for row in CLAIMS.get(self.key, ())}  # their values are no numbers of texts
+        every = {**rows, **data.attrs, **{name: value for name, value in values.items() if name not in claims}}
+        numbers = {k: np.asarray(v) if isinstance(v, xr.DataArray | xr.Variable) else v for k, v in every.items()}
+        return [text.format_map(numbers) for text in texts]
 
     def caption(self, data: xr.Dataset) -> str:
         """Return the message of the figure, then its symbols, in at most three lines of the page."""
-        return self._fill(data, [WORDS[self.key]["caption"]])[0]
+        return self._fill(data, self.values(data), [WORDS[self.key]["caption"]])[0]
 
     def lessons(self, data: xr.Dataset) -> Sequence[str]:
         """Return sentences for the summary of the page."""
-        return self._fill(data, WORDS[self.key].get("lessons", ()))
+        return self._fill(data, self.values(data), WORDS[self.key].get("lessons", ()))
 
     def claims(self, data: xr.Dataset) -> Sequence[Claim]:
         """Return the claims of the paper that the data test."""
-        rows, cells = CLAIMS.get(self.key, ()), self.cells(data)
-        texts = iter(self._fill(data, [row.get(name, "") for row in rows for name in ("quantity", "note")]))
-        return [claim_of(row, next(texts), next(texts), cells_of(cells.get(row["id"], {}))) for row in rows]
+        rows, values = CLAIMS.get(self.key, ()), self.values(data)
+        texts = iter(self._fill(data, values, [row.get(name, "") for row in rows for name in ("quantity", "note")]))
+        return [claim_of(row, next(texts), next(texts), cells_of(values.get(row["id"], {}))) for row in rows]
 
 
 def spread(

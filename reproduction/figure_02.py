@@ -95,19 +95,15 @@ def draw(figure: StyledFigure, data: xr.Dataset) -> None:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return the errors of simulated impacts and of the fits."""
+    """Return the errors of simulated impacts and of the fits, and the restitution of the printed coefficient."""
     off = 100 * data.deviation.sel(missed=0.01)
     return {
         "error": np.abs(data.simulated_missed / data.expected_missed - 1).max(),
         "off": 100 * data.deviation.sel(missed=1e-3, method="nearest"),
         "ranges": ", ".join(f"{x:g}" for x in data.fit_from.values),
         "errors": ", ".join(f"{x:.1g}" for x in off.values),
+        "coefficient": 1 - data.printed_missed,
     }
 
 
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the restitution that the printed coefficient stands for."""
-    return {"coefficient": 1 - data.printed_missed}
-
-
-FIGURE = Reproduction("figure_02", data, draw, 0.42, cases, values, cells)
+FIGURE = Reproduction("figure_02", data, draw, 0.42, cases, values)

@@ -200,20 +200,16 @@ def _distances(axes: Axes, data: xr.Dataset) -> None:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return the time of parting, the early distance, and losses in per cent."""
+    """Return the time of parting, losses in per cent, and the growth rate with two standard errors to each side."""
+    low, high = (float(data.exponent + sign * data.error) for sign in (-2, 2))
     return {
         "parted": data.parted.sel(other=_THEIRS),
         "scatter": 100 * data.scatter,
         "members": _MEMBERS,
         "early": 1e6 * data.distance.sel(other=_THEIRS, window=slice(0, 0.5)).max(),
         "share": 100 * data.impact_share,
+        "chaotic": exact(data.exponent)._replace(low=low, high=high),
     }
 
 
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the growth rate with two standard errors to each side."""
-    low, high = (float(data.exponent + sign * data.error) for sign in (-2, 2))
-    return {"chaotic": exact(data.exponent)._replace(low=low, high=high)}
-
-
-FIGURE = Reproduction("figure_04", data, draw, 0.8, cases, values, cells)
+FIGURE = Reproduction("figure_04", data, draw, 0.8, cases, values)

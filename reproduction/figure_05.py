@@ -90,15 +90,14 @@ def draw(figure: StyledFigure, data: xr.Dataset) -> None:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return the fastest impact."""
-    return {"fastest": data.largest_speed.max(), "members": _MEMBERS}
-
-
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the lowest restitution of slow impacts."""
+    """Return the fastest impact, and the lowest restitution of slow ones."""
     law = data.restitution.sel(law="Jackson-Green")
     slow = law.where(data.speed <= data.critical_speed, 1.0).min("speed")
-    return {"slow": {model: slow.sel(wall=model) for model in _WALLS}}
+    return {
+        "fastest": data.largest_speed.max(),
+        "members": _MEMBERS,
+        "slow": {model: slow.sel(wall=model) for model in _WALLS},
+    }
 
 
-FIGURE = Reproduction("figure_05", data, draw, 0.6, cases, values, cells)
+FIGURE = Reproduction("figure_05", data, draw, 0.6, cases, values)

@@ -99,13 +99,6 @@ def _draw(axes: Axes, data: xr.Dataset, name: str, colour: str) -> None:
     axes.set_xscale("log")
 
 
-def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return the losses in impacts of the three starts, by model."""
-    lost = 100 * data.impact.sel(quantile=0.5, amplitude=PRINTED)
-    losses = by_model(lambda m: ", ".join(two(x) for x in lost.sel(model=m)) + " %")
-    return {"members": MEMBERS, "losses": losses, "hedged": 100 * HEDGED}
-
-
 def _variation(*losses: NDArray[np.float64], case: int) -> NDArray[np.float64]:
     """Return the variation of a case over the amplitudes over the smaller one of the other cases."""
     by_case = np.array(np.broadcast_arrays(*losses)).reshape(len(START), -1, *np.shape(losses[0]))
@@ -116,17 +109,22 @@ def _variation(*losses: NDArray[np.float64], case: int) -> NDArray[np.float64]:
     return np.asarray(varies[case - 1] / np.fmin(*varies[others]))
 
 
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the consistency of case 2, and of case 3 if both are swapped."""
-    losses = data.impacts.sel(amplitude=slice(None, PRINTED))
-    samples = {model: losses.sel(model=model).values.reshape(-1, data.member.size) for model in ALL_MODELS}
+def values(data: xr.Dataset) -> dict[str, Any]:
+    """Return the losses of the three starts, the consistency of case 2, and of case 3 if both are swapped."""
+    lost = 100 * data.impact.sel(quantile=0.5, amplitude=PRINTED)
+    losses = by_model(lambda m: ", ".join(two(x) for x in lost.sel(model=m)) + " %")
+    printed = data.impacts.sel(amplitude=slice(None, PRINTED))
+    samples = {model: printed.sel(model=model).values.reshape(-1, data.member.size) for model in ALL_MODELS}
     orders = {AS_READ: 2, SWAPPED: 3}
     return {
+        "members": MEMBERS,
+        "losses": losses,
+        "hedged": 100 * HEDGED,
         "consistent": {
             (model, order): estimate(partial(_variation, case=case), *samples[model])
             for model, (order, case) in product(ALL_MODELS, orders.items())
-        }
+        },
     }
 
 
-FIGURE = Reproduction("figure_07de", data, draw, 0.62, cases, values, cells)
+FIGURE = Reproduction("figure_07de", data, draw, 0.62, cases, values)

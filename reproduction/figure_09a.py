@@ -122,18 +122,20 @@ def _portrait(axes: Axes, x: NDArray[np.float64], v: NDArray[np.float64], time: 
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return the pulse from which the centred ball has contacts, below which the system is linear, and contacts."""
+    """Return the pulse of first contact, contacts, and reach, decay and jumps over what they are compared with."""
     low, _, high = data.contacts.sel(model=CONSTANT_E).values
     touch = AMPLITUDE * GAP / float(data.reach)
     numbers = {"amplitude": AMPLITUDE, "duration": DURATION, "members": MEMBERS, "low": low, "high": high}
-    return {**numbers, "touch": touch, "reach": 1e3 * data.reach}
-
-
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return reach, decay and jumps over the quantities that they are compared with."""
     jump = data.jump.sel(case=[2, 3]).min("case")
     differs = {model: jump.sel(model=model) for model in data.model.values}
-    return {"touches": float(data.reach) / GAP, "focus": data.decay / (DAMPING / (2 * MASS)), "differs": differs}
+    return {
+        **numbers,
+        "touch": touch,
+        "reach": 1e3 * data.reach,
+        "touches": float(data.reach) / GAP,
+        "focus": data.decay / (DAMPING / (2 * MASS)),
+        "differs": differs,
+    }
 
 
-FIGURE = Reproduction("figure_09a", data, draw, 1.05, cases, values, cells)
+FIGURE = Reproduction("figure_09a", data, draw, 1.05, cases, values)

@@ -145,8 +145,13 @@ def _lower(data: xr.Dataset, model: str) -> float:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return the resonance, the band of the rattle, and the resolution [rad/s]."""
+    """Return resonances, the band of the rattle, the resolution [rad/s], and the share of lower amplitudes."""
     peak = data.peak.median("member")
+    peaks = {m: estimate(lambda x: x, data.peak.sel(model=m).values) for m in data.model.values}
+    medians = data.sel(quantile=0.5)
+    widths = {m: _width(medians.ball.sel(model=m)) / _width(medians.structure.sel(model=m)) for m in ALL_MODELS}
+    rises = {m: _hump(data, m)[0] for m in ALL_MODELS}
+    lower = {m: _lower(data, m) for m in WALLS}
     return {
         "low": peak.min(),
         "high": peak.max(),
@@ -157,17 +162,12 @@ def values(data: xr.Dataset) -> dict[str, Any]:
         "rattle": data.trips.sel(model=STEEL),
         "bins": data.sizes["frequency"],
         "last": data.frequency[-1],
+        "peak": peaks,
+        "natural": peaks,
+        "second": rises,
+        "range": widths,
+        "lower": lower,
     }
 
 
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return resonances, rise and width of the ball's band, and the share of lower amplitudes."""
-    peaks = {m: estimate(lambda x: x, data.peak.sel(model=m).values) for m in data.model.values}
-    medians = data.sel(quantile=0.5)
-    widths = {m: _width(medians.ball.sel(model=m)) / _width(medians.structure.sel(model=m)) for m in ALL_MODELS}
-    rises = {m: _hump(data, m)[0] for m in ALL_MODELS}
-    lower = {m: _lower(data, m) for m in WALLS}
-    return {"peak": peaks, "natural": peaks, "second": rises, "range": widths, "lower": lower}
-
-
-FIGURE = Reproduction("figure_10", data, draw, 0.85, cases, values, cells)
+FIGURE = Reproduction("figure_10", data, draw, 0.85, cases, values)

@@ -197,25 +197,24 @@ def _rows(axes: Axes, names: Sequence[str]) -> None:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return speeds, losses and the numbers that contradict each other."""
+    """Return speeds, losses, and the printed and corrected numbers."""
     steel, rigid = data.critical_speed[:, 0].values
     share = 100 * data.share.sel(level=0.5, start=1)
+    mass, ratios = 100 * data.mass_share, data.force.sel(unit="mm") / data.force.sel(unit="m")
+    radius, diameter = mass.sel(size="radius"), mass.sel(size="diameter")
+    as_gamma, as_alpha = (restitution_of_alpha(alpha) for alpha in (ALPHA**2 / float(data.gamma), ALPHA))
+    stiffness, damping = (ratios[1], ratios[0]), (as_gamma, as_alpha)
     return {
         "steel": steel,
         "times": data.first_speed / rigid,
         "shares": [two(share[0]), two(share[1])],
         "members": _MEMBERS,
         "clearance": 1e3 * data.clearance,
+        "mass": radius,
+        "diameter": (diameter, radius),
+        "stiffness": stiffness,
+        "damping": damping,
     }
 
 
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the printed numbers and the corrected ones."""
-    mass, ratios = 100 * data.mass_share, data.force.sel(unit="mm") / data.force.sel(unit="m")
-    radius, diameter = mass.sel(size="radius"), mass.sel(size="diameter")
-    as_gamma, as_alpha = (restitution_of_alpha(alpha) for alpha in (ALPHA**2 / float(data.gamma), ALPHA))
-    stiffness, damping = (ratios[1], ratios[0]), (as_gamma, as_alpha)
-    return {"mass": radius, "diameter": (diameter, radius), "stiffness": stiffness, "damping": damping}
-
-
-FIGURE = Reproduction("interpretations", data, draw, 0.5, cases, values, cells)
+FIGURE = Reproduction("interpretations", data, draw, 0.5, cases, values)

@@ -304,39 +304,32 @@ def best_fit(claims: Sequence[Claim]) -> str:
 
 def documentation(claims: Sequence[Claim]) -> str:
     """Return the matrix, the fit of each interpretation, the interpretations and the misprints as a Markdown page."""
-    claims = sorted(claims, key=lambda claim: place(claim.where))
-    lines = [
-        "<!-- `python -m reproduction` writes this file as figures/figure_claims.md. -->",
-        "### The matrix\n",
-        *_header("no.", "the paper says", "test: criterion", *SHORT.values(), "verdict"),
-    ]
-    for k, each in enumerate(map(row, claims), 1):
+    rows = []
+    for number, each in enumerate(map(row, sorted(claims, key=lambda claim: place(claim.where))), 1):
+        claim = each.claim
         marks = [text for cell in each.cells for text in (_entries(cell), *[""] * (cell.columns - 1))]
-        test = (
-            each.test
-            + (f": {each.criterion}" if each.criterion else "")
-            + (f"; {each.claim.note}" if each.claim.note else "")
-        )
+        said = f"{claim.statement} ({claim.where}{f'; printed {claim.printed}' if claim.printed else ''})"
+        test = each.test + (f": {each.criterion}" if each.criterion else "") + (f"; {claim.note}" if claim.note else "")
         restriction = f" ({each.restriction})" if each.restriction else ""
-        printed = f"; printed {each.claim.printed}" if each.claim.printed else ""
-        said = f"{each.claim.statement} ({each.claim.where}{printed})"
-        lines.append(_line(str(k), said, test, *marks, each.verdict + restriction))
-    lines += ["\n### Claims met under each interpretation\n"]
-    lines += _header("wall", "cases 2 and 3", "met", "in part", "undecided", "not met")
-    lines += [_line(SHORT[wall], order, *map(str, found.values())) for (wall, order), found in fit(claims).items()]
-    lines += [f"\n{best_fit(claims)}", "\n### Interpretations\n", *_header("printed", "read as", "reason")]
-    lines += [_line(*each) for each in CLAIMS["readings"]]
-    lines += ["\n### Misprints\n", *_header("printed", "should be", "shown by")]
-    lines += [_line(*each) for each in CLAIMS["misprints"]]
-    return "\n".join(lines) + "\n"
+        rows.append([str(number), said, test, *marks, each.verdict + restriction])
+    met = [[SHORT[wall], order, *map(str, counts.values())] for (wall, order), counts in fit(claims).items()]
+    return (
+        "<!-- `python -m reproduction` writes this file as figures/figure_claims.md. -->\n"
+        + _table("The matrix", ["no.", "the paper says", "test: criterion", *SHORT.values(), "verdict"], rows)
+        + _table(
+            "Claims met under each interpretation",
+            ["wall", "cases 2 and 3", "met", "in part", "undecided", "not met"],
+            met,
+        )
+        + f"{best_fit(claims)}\n\n"
+        + _table("Interpretations", ["printed", "read as", "reason"], CLAIMS["readings"])
+        + _table("Misprints", ["printed", "should be", "shown by"], CLAIMS["misprints"])
+    ).removesuffix("\n")
 
 
-def _header(*names: str) -> list[str]:
-    return [_line(*names), f"|{'---|' * len(names)}"]
-
-
-def _line(*texts: str) -> str:
-    return f"| {' | '.join(text.replace('*', chr(92) + '*') for text in texts)} |"
+def _table(heading: str, names: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = ["| " + " | ".join(text.replace("*", r"\*") for text in texts) + " |\n" for texts in (names, *rows)]
+    return f"### {heading}\n\n{lines[0]}|{'---|' * len(names)}\n{''.join(lines[1:])}\n"
 
 
 def _entries(cell: Cell) -> str:

@@ -299,30 +299,23 @@ def _slowest(part: xr.Dataset, model: str) -> Estimate:
 
 
 def values(data: xr.Dataset) -> dict[str, Any]:
-    """Return growth rates, decay rates with those of theory, and the motions that do not grow."""
-    strong, weak = _pulses(data)
-    grid = product(data.model.values, data.case.values)
+    """Return growth and decay rates with those of theory, and the motions that do not grow."""
+    (strong, weak), models = _pulses(data), data.model.values
+    grid = product(models, data.case.values)
     orderly = [f"{SHORT[m]}, case {k}" for m, k in grid if not strong.chaotic.sel(model=m, case=k)]
     regular = f"no growth to saturation: {', '.join(orderly)}; the motion there is regular" if orderly else ""
+    off_centre = weak.sel(case=[2, 3])
+    ratio = _rate(off_centre).mean("case") / _rate(strong).mean("case")
     return {
         "strong": strong.pulse,
         "weak": weak.pulse,
         "quick": [float(_rate(strong).min()), float(_rate(strong).max())],
         "slow": [two(_rate(weak).min()), two(_rate(weak).max())],
         "regular": regular,
-    }
-
-
-def cells(data: xr.Dataset) -> dict[str, Any]:
-    """Return the lowest growth rates, and the mean of cases 2 and 3 after the weak pulse over that after the strong."""
-    (strong, weak), models = _pulses(data), data.model.values
-    weak = weak.sel(case=[2, 3])
-    ratio = _rate(weak).mean("case") / _rate(strong).mean("case")
-    return {
         "chaotic": {m: _slowest(strong, m) for m in models},
-        "portraits": {m: _slowest(weak, m) for m in models},
+        "portraits": {m: _slowest(off_centre, m) for m in models},
         "low_loads": {m: ratio.sel(model=m) for m in models},
     }
 
 
-FIGURE = Reproduction("lyapunov", data, draw, 0.85, cases, values, cells)
+FIGURE = Reproduction("lyapunov", data, draw, 0.85, cases, values)

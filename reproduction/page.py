@@ -8,10 +8,12 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
 from math import sqrt
 from pathlib import Path
 from typing import Any, NamedTuple, get_args
 
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from .files import Files
@@ -60,12 +62,20 @@ class FigureFiles:
         return sum(files.runs for files in self.cases.values())
 
 
+@cache
+def templates() -> Environment:
+    """Return the templates of the page."""
+    loader = FileSystemLoader(Path(__file__).with_name("templates"))
+    spaces: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **spaces)
+    environment.filters["typeset"] = typeset
+    return environment
+
+
 def render(
     figures: Sequence[FigureFiles], *, table: str, missing: Sequence[str] = (), cores: int, workers: int, seconds: float
 ) -> str:
     """Return the page as self-contained HTML."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     from rattlebox import EventDriven, __version__
 
     pairs = sorted(((claim, figure) for figure in figures for claim in figure.claims), key=lambda x: place(x[0].where))
@@ -73,42 +83,42 @@ def render(
     anchors = {number: one for one in figures for number in (one.number, *one.number.split(", "))}
     rows = [(row(claim), anchors.get(claim.see, figure)) for claim, figure in pairs]
     counts = Counter(each.verdict for each, _ in rows)
-    loader = FileSystemLoader(Path(__file__).with_name("templates"))
-    spaces: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
-    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **spaces)
-    environment.filters["typeset"] = typeset
-    return environment.get_template("report.html").render(
-        generator=Markup(GENERATOR),
-        title="A particle damper, reproduced and judged",
-        paper=PAPER,
-        figures=figures,
-        missing=missing,
-        table=table,
-        groups=[
-            (heading, [f for f in figures if re.match(first, f.number) and f.name != FIRST])
-            for heading, first in _GROUPS.items()
-        ],
-        first=[f for f in figures if f.name == FIRST],
-        rows=rows,
-        unprinted=sum(each.verdict == "reproduced" and not each.claim.printed for each, _ in rows),
-        reproduced=counts["reproduced"],
-        counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict) if counts[verdict]],
-        lessons=[lesson for figure in figures for lesson in figure.lessons],
-        film="".join(figure.film for figure in figures),
-        fits=[(SHORT[wall], order, found) for (wall, order), found in fit(claims).items()],
-        best=best_fit(claims),
-        marks=MARKS,
-        models=[(SHORT[model], colour) for model, colour in COLOURS.items()],
-        resamples=RESAMPLES,
-        **{name: CLAIMS[name] for name in ("rule", "provenance", "equations", "readings", "misprints")},
-        system=system(),
-        version=__version__,
-        platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
-        created=datetime.now(UTC).isoformat(" ", timespec="minutes")[:16],
-        cores=cores,
-        workers=workers,
-        tolerance=EventDriven().tolerance,
-        seconds=seconds,
+    return (
+        templates()
+        .get_template("report.html")
+        .render(
+            generator=Markup(GENERATOR),
+            title="A particle damper, reproduced and judged",
+            paper=PAPER,
+            figures=figures,
+            missing=missing,
+            table=table,
+            groups=[
+                (heading, [f for f in figures if re.match(first, f.number) and f.name != FIRST])
+                for heading, first in _GROUPS.items()
+            ],
+            first=[f for f in figures if f.name == FIRST],
+            rows=rows,
+            unprinted=sum(each.verdict == "reproduced" and not each.claim.printed for each, _ in rows),
+            reproduced=counts["reproduced"],
+            counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict) if counts[verdict]],
+            lessons=[lesson for figure in figures for lesson in figure.lessons],
+            film="".join(figure.film for figure in figures),
+            fits=[(SHORT[wall], order, found) for (wall, order), found in fit(claims).items()],
+            best=best_fit(claims),
+            marks=MARKS,
+            models=[(SHORT[model], colour) for model, colour in COLOURS.items()],
+            resamples=RESAMPLES,
+            **{name: CLAIMS[name] for name in ("rule", "provenance", "equations", "readings", "misprints")},
+            system=system(),
+            version=__version__,
+            platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+            created=datetime.now(UTC).isoformat(" ", timespec="minutes")[:16],
+            cores=cores,
+            workers=workers,
+            tolerance=EventDriven().tolerance,
+            seconds=seconds,
+        )
     )
 
 
