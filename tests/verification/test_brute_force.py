@@ -206,7 +206,7 @@ def test_no_first_touch_of_some_is_missed(modes: int, harmonic: bool, share: flo
 @pytest.mark.slow
 @KINDS
 def test_no_first_touch_of_ten_thousand_is_missed(modes: int, harmonic: bool, share: float) -> None:
-    """The same for ten thousand flights."""
+    """The engine finds every first touch of ten thousand flights, and no others."""
     compare(modes, harmonic, int(10_000 * share))
 
 

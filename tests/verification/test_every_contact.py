@@ -164,7 +164,7 @@ def test_every_contact_of_sixty_cases_is_logged() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(20))
 def test_every_contact_of_ten_thousand_cases_is_logged(block: int) -> None:
-    """The same for ten thousand cases, in blocks."""
+    """The contacts of ten thousand random cases are those on a fine grid."""
     assert check(range(500 * block, 500 * (block + 1)))["from rest"] > 0
 
 

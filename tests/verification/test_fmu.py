@@ -423,7 +423,7 @@ def test_wrong_options_are_refused(options: dict[str, Any], named: str, tmp_path
 
 
 def test_a_missing_folder_is_not_created(tmp_path: Path) -> None:
-    """As of other files, a mistyped folder of an FMU is an error."""
+    """An FMU in a folder that does not exist is refused, and no folder is created."""
     with pytest.raises(rb.DataError, match="no folder"):
         rb.to_fmu(ball(), tmp_path / "missing" / "damper.fmu")
     assert list(tmp_path.iterdir()) == []

@@ -80,7 +80,7 @@ def test_diagnostics_count_from_the_begin() -> None:
 
 
 def test_a_state_of_other_particles_is_refused() -> None:
-    """A state belongs to its particles and loads."""
+    """A state of other particles or loads is refused."""
     _, end = continue_dem(case(1), None, threads=1)
     with pytest.raises(ValueError, match="state"):
         continue_dem(case(1, load=()), end, threads=1)

@@ -17,7 +17,7 @@ STUB = Path(rattlebox.__file__).parent / "core" / "_core.pyi"
 
 @pytest.mark.skipif(importlib.util.find_spec("nanobind") is None, reason="nanobind is not installed")
 def test_the_stub_is_current(tmp_path: Path) -> None:
-    """`make stub` would write the file that is there."""
+    """The stub in the repository equals a newly generated one."""
     made = tmp_path / "_core.pyi"
     program = [sys.executable, "-m", "nanobind.stubgen", "-q", "-m", _core.__name__, "-o", str(made)]
     subprocess.run(program, check=True, cwd=STUB.parents[2])
@@ -42,7 +42,7 @@ def test_fields_that_are_unknown_or_missing_are_refused() -> None:
 
 
 def test_fields_cannot_be_set() -> None:
-    """A part of a problem is replaced, not changed."""
+    """Fields of a problem are read-only; `replace` returns a changed copy."""
     force = _core.LinearForce(stiffness=1.0, mass=2.0, zero_overlap=0.0, fixed_contact_time=0.0)
     with pytest.raises(AttributeError):
         force.mass = 3.0  # type: ignore[misc]

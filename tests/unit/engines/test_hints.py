@@ -83,7 +83,7 @@ def fills() -> list[Any]:
 def test_hints_for_fills_lead_to_a_case_that_runs(
     cavity: str, particles: str, packing: str, gravity: str, way: int
 ) -> None:
-    """Whichever of the ways that a message names is taken, there are at most two messages before the cavity is filled."""
+    """Following any advice of the messages, at most two of them appear before the cavity is filled."""
     wanted = {
         "cavity": CAVITIES[cavity],
         "particles": PARTICLES[particles],
@@ -101,7 +101,7 @@ def test_hints_for_fills_lead_to_a_case_that_runs(
 
 
 def test_a_fill_that_a_hint_names_settles_and_runs() -> None:
-    """From 90 % of a can to a bed that has settled: the number in the hint is one that runs."""
+    """The number of particles in the hint for 90 % of a can settles and runs."""
     wanted = {
         "cavity": CAVITIES["can"],
         "particles": {"diameter": "8 mm", "count": 253},

@@ -43,7 +43,7 @@ def test_balls_that_rest_on_a_wall_touch_it(method: Any, gravity: Any) -> None:
 
 
 def test_each_damper_is_judged_by_itself() -> None:
-    """Of two dampers the one in which nothing happens is named."""
+    """The note names the one of two dampers in which no impact happens."""
     near, far = (
         rb.ImpactDamper(
             name=name,
@@ -121,7 +121,7 @@ def test_a_ball_that_nearly_touches_is_noted_with_its_distance() -> None:
 
 @pytest.mark.parametrize(("last", "noted"), [("50 m/s", 0), ("0.5 m/s", 1)])
 def test_impacts_faster_than_a_table_of_restitution_are_noted(last: str, noted: int) -> None:
-    """In both engines, once for a damper."""
+    """Impacts faster than a table of restitution are noted in both engines, once for a damper."""
     contact = rb.Tsuji(restitution=rb.Tabulated(speeds=("0.1 m/s", last), values=(0.9, 0.8)))
     result = [*notes(contact=contact, velocity=1.0), *particles_at("1 m/s", contact)]
     assert len([note for note in result if "table of restitution" in note]) == 2 * noted
@@ -159,7 +159,7 @@ def test_no_silent_extrapolation_of_a_measured_contact(method: Any) -> None:
 
 
 def test_no_silent_extrapolation_in_three_dimensions() -> None:
-    """The same holds for particles, whose walls alone may be measured."""
+    """Particles deeper than a measured curve are noted, also if only the walls have a measured contact."""
     for speed, count in ((1.0, 1), (0.02, 0)):
         damper = rb.ParticleDamper(
             particles=rb.Particles(material="steel", radius="10 mm", count=1),

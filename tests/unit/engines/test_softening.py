@@ -70,12 +70,12 @@ def test_a_resting_softened_bed_has_both_warnings(softening: float) -> None:
 
 @pytest.mark.parametrize(("amplitude", "softening"), [(49, 5), (49, 1), (5, 1)])
 def test_beds_that_softening_changes_little_have_none(amplitude: float, softening: float) -> None:
-    """Thrown beds with little softening, and all beds without."""
+    """Thrown beds with little softening, and beds without softening, have no warning."""
     assert warnings(rb.simulate(shaken(amplitude, 180, softening))) == []
 
 
 def test_motions_given_as_displacement_are_judged_alike() -> None:
-    """They are accelerations with the opposite sign."""
+    """A motion that is given as a displacement has the estimate of its acceleration."""
     motion = rb.Harmonic(amplitude=(12 / (2 * math.pi * 160) ** 2, "m"), frequency=160, direction="z")
     made = small(12, 160, 300)
     moved = rb.simulate(made.model_copy(update={"structure": rb.Shaker(motion=motion)}))
@@ -83,7 +83,7 @@ def test_motions_given_as_displacement_are_judged_alike() -> None:
 
 
 def test_each_damper_has_its_own_warnings() -> None:
-    """Named where there are several."""
+    """With several dampers, warnings name the damper."""
     case = small(5, 160, 1)
     hard = case.particle_dampers[0].model_copy(update={"name": "hard"})
     soft = hard.model_copy(update={"name": "soft", "softening": 300})
@@ -93,7 +93,7 @@ def test_each_damper_has_its_own_warnings() -> None:
 
 
 def test_the_loss_of_contacts_of_any_age_is_all_loss() -> None:
-    """Sampled in every eighth step it is that of the ledger; no contact is older than the run."""
+    """If contacts of any age last, their sampled loss is that of the ledger; no contact is older than the run."""
     prepared = prepare(small(12, 80, 100))
     packed, step = pack_particles(prepared), prepared.step
     shares = []
@@ -142,7 +142,7 @@ def test_the_resonance_depends_on_the_force_and_not_on_the_law() -> None:
 
 
 def test_the_resonance_falls_with_softening() -> None:
-    """With its cube root for Hertz contacts, with its square root for linear ones; no weight, no resonance."""
+    """The resonance falls with the cube root of softening for Hertz contacts, with its square root for linear ones."""
     hertz = small(5, 100, 1).particle_dampers[0]
     linear = small(5, 100, 1, contact=rb.Linear(stiffness="1 MN/m", restitution=0.6), friction=0).particle_dampers[0]
     assert bed_resonance(hertz, 1.0) / bed_resonance(hertz, 64.0) == pytest.approx(4)
@@ -193,14 +193,14 @@ def test_auto_on_a_structure_looks_at_its_modes() -> None:
 
 
 def test_auto_is_read_from_case_files_and_written() -> None:
-    """As text, in place of a number."""
+    """Case files state the automatic softening as the text "auto"."""
     case = small(10, 100, "auto")
     assert 'softening = "auto"' in case.to_toml()
     assert rb.Case.from_toml(case.to_toml()) == case
 
 
 def test_studies_and_loss_maps_mark_softened_variants() -> None:
-    """As they do with all other limits."""
+    """Flags of studies and loss maps contain the effects of softening."""
     case = small(5, 160, 300, cycles=6)
     result = rb.loss_map(case, [5.0, 49.0], [20.0, 160.0], cycles=(2, 4), progress=False)
     names = list(WARNINGS)
@@ -210,7 +210,7 @@ def test_studies_and_loss_maps_mark_softened_variants() -> None:
 
 
 def test_the_estimate_covers_computed_changes() -> None:
-    """Changes of the loss in a cycle over m V^2, from long runs (docs/theory/softening.md)."""
+    """The estimate is at least the change of the loss in a cycle over m V^2 in long runs (docs/theory/softening.md)."""
     carbide, steel = (
         shaken(5, 180, 1).particle_dampers[0],
         shaken(

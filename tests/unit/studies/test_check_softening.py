@@ -28,7 +28,7 @@ def case(amplitude: float, frequency: float, **changes: Any) -> rb.Case:
 
 
 def test_a_change_is_found_where_the_bed_stays_on_the_floor() -> None:
-    """There the loss grows with softening."""
+    """The loss of a bed that stays on the floor grows with softening."""
     result = rb.check_softening(
         case(12, 160), ["reduced_loss", "effective_mass"], cycles=(8, 16), packings=3, progress=False
     )
@@ -53,7 +53,7 @@ def test_what_the_runs_do_not_decide_is_neither_changed_nor_kept() -> None:
 
 
 def test_none_is_found_where_the_bed_is_thrown() -> None:
-    """At a level of five and a low frequency, with little softening."""
+    """A bed thrown at five times gravity has the same loss with little softening."""
     result = rb.check_softening(
         case(50, 60, softening=20), "reduced_loss", cycles=(8, 24), packings=4, softenings=(20, 2), progress=False
     )
@@ -62,7 +62,7 @@ def test_none_is_found_where_the_bed_is_thrown() -> None:
 
 
 def test_several_dampers_are_softened_together() -> None:
-    """In the ratio of their softenings, the largest as given, none below 1."""
+    """Dampers are softened in the ratio of their softenings, the largest to the value, none below 1."""
     one = case(30, 80, softening=100).particle_dampers[0].model_copy(update={"name": "one"})
     both = case(30, 80).model_copy(update={"dampers": (one, one.model_copy(update={"name": "two", "softening": 4.0}))})
     result = rb.check_softening(both, "impact_share", packings=2, softenings=(100, 10), cycles=(1, 2), progress=False)
@@ -88,6 +88,6 @@ def test_several_dampers_are_softened_together() -> None:
     ],
 )
 def test_what_does_not_fit_is_refused(changes: dict[str, Any], options: dict[str, Any], message: str) -> None:
-    """With what to do instead."""
+    """Arguments that do not fit are refused with advice."""
     with pytest.raises(rb.CaseError, match=message):
         rb.check_softening(case(12, 160, **changes), **{"cycles": (1, 1), "progress": False, **options})

@@ -88,6 +88,6 @@ def test_accelerations_and_the_force_on_the_base() -> None:
 
 @pytest.mark.parametrize("cases", [{}, case(), {"bare": 3}])
 def test_bad_input(cases: Any) -> None:
-    """Something else than cases by name is refused."""
+    """Arguments other than cases by name are refused."""
     with pytest.raises(rb.CaseError):
         rb.compare(cases)

@@ -114,7 +114,7 @@ def test_nothing_is_missed_in_any_cavity(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["box", "can askew"])
 def test_nothing_is_missed_among_many_sizes(name: str) -> None:
-    """The same with the largest sphere ten times the smallest."""
+    """No pair is missed if the largest sphere is ten times the smallest."""
     seen = follow(gas(CAVITIES[name], WIDE, 110, 1.0), checks=200)
     assert seen["pairs"] > 40 and seen["walls"] > 40
 
@@ -147,7 +147,7 @@ FIVE_SIZES = {"1.2 mm": 800, "1.9 mm": 600, "3 mm": 60, "7 mm": 8, "13 mm": 2}
     ],
 )
 def test_nothing_is_missed_among_a_few_large_and_many_small(cavity: str, sizes: dict[str, int]) -> None:
-    """The same with fine cells for the small spheres and coarse levels for the large ones."""
+    """No pair is missed with fine cells for the small spheres and coarse levels for the large ones."""
     seen = follow(of_sizes(CAVITIES[cavity], sizes, 2.0), checks=10)
     assert seen["pairs"] > 300 and seen["walls"] > 200 and seen["builds"] > 3
 
@@ -159,26 +159,26 @@ def test_each_pair_has_its_own_stiffness() -> None:
 
 
 def test_nothing_is_missed_by_the_fast() -> None:
-    """The same with spheres that cross many cells between two checks, so that lists are rebuilt often."""
+    """No pair is missed if spheres cross many cells between two checks, so that lists are rebuilt often."""
     seen = follow(gas(CAVITIES["long box"], ALIKE, 60, 8.0), checks=150)
     assert seen["pairs"] > 100 and seen["builds"] > 100
 
 
 def test_nothing_is_missed_where_most_rest_and_one_is_fast() -> None:
-    """The same with one sphere that flies through a bed at rest, whose lists would be valid for long."""
+    """No pair is missed if one sphere flies through a bed at rest, whose lists would be valid for long."""
     seen = follow(gas(CAVITIES["box"], ALIKE, 150, 1e-3, one=(3.0, 6.0, 9.0)), checks=80)
     assert seen["pairs"] > 20
 
 
 def test_nothing_is_missed_in_a_moving_cavity() -> None:
-    """The same in a light cavity that the spheres move."""
+    """No pair is missed in a light cavity that the spheres move."""
     light = rb.SDOF(mass=0.02, stiffness=2000.0, velocity=2.0)
     seen = follow(gas(CAVITIES["box"], ALIKE, 150, 0.5, structure=light, gravity=9.81), checks=80)
     assert seen["pairs"] > 150 and seen["walls"] > 100
 
 
 def test_nothing_is_missed_after_a_blow_within_one_step() -> None:
-    """The same with spheres at rest that are accelerated to 1 km/s in a microsecond."""
+    """No pair is missed if spheres at rest are accelerated to 1 km/s in a microsecond."""
     seen = follow(
         rb.Case(
             structure=rb.Shaker(
@@ -201,7 +201,7 @@ def test_nothing_is_missed_after_a_blow_within_one_step() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_nothing_is_missed_in_random_cases(seed: int) -> None:
-    """The same with random cavity, sizes, number, speed, gravity, structure and one fast sphere."""
+    """No pair is missed with random cavity, sizes, number, speed, gravity, structure and one fast sphere."""
     rng = np.random.default_rng(seed)
     sizes = WIDE if rng.random() < 0.3 else ALIKE
     most = 110 if sizes is WIDE else 300
