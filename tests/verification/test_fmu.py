@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import errno
+import gc
 import shutil
 import subprocess
 import zipfile
@@ -338,10 +339,43 @@ def test_contacts_beyond_the_model_are_reported_once(
         assert np.isfinite(own.get("stored")[0])
 
 
+class MallocInfo(ctypes.Structure):
+    """The structure `mallinfo2` of the C library."""
+
+    _fields_ = [
+        (name, ctypes.c_size_t)
+        for name in [
+            "arena",
+            "ordblks",
+            "smblks",
+            "hblks",
+            "hblkhd",
+            "usmblks",
+            "fsmblks",
+            "uordblks",
+            "fordblks",
+            "keepcost",
+        ]
+    ]
+
+
+def allocated_bytes() -> int:
+    """Return the number of bytes that `malloc` has given out and that were not freed."""
+    function = ctypes.CDLL(None).mallinfo2
+    function.restype = MallocInfo
+    info = function()
+    return int(info.uordblks + info.hblkhd)
+
+
+@pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "mallinfo2"), reason="the C library has no mallinfo2")
 @pytest.mark.parametrize("fmi", VERSIONS)
 @pytest.mark.parametrize("instances", [250, pytest.param(1000, marks=pytest.mark.slow)])
 def test_instances_leak_nothing(fmi: int, instances: int, tmp_path: Path) -> None:
-    """Instances one after the other, and as many states, take no more memory than the first ones: 4 kB each at most."""
+    """Instances one after the other, and as many states, leave no allocated memory behind: less than 200 bytes each.
+
+    The objects of FMPy refer to each other, so that only the garbage collector frees them, which it rarely does in a process
+    with many older objects: 40 to 90 kB an instance of the resident memory are theirs.
+    """
     file = rb.to_fmu(ball(), tmp_path / "damper.fmu", fmi=fmi)
     folder = fmpy.extract(str(file), str(tmp_path / "x"))
     description = fmpy.read_model_description(str(file))
@@ -359,13 +393,13 @@ def test_instances_leak_nothing(fmi: int, instances: int, tmp_path: Path) -> Non
             state = own.getFMUstate() if fmi == 2 else own.getFMUState()
             (own.freeFMUstate if fmi == 2 else own.freeFMUState)(state)
             (own.fmi2FreeInstance if fmi == 2 else own.fmi3FreeInstance)(own.component)
-        pages = int(Path("/proc/self/statm").read_text().split()[1])
-        return pages * 4096
+        gc.collect()
+        return allocated_bytes()
 
-    use(200)
+    use(50)
     # Other parts of the process may take memory at any time; a leak is seen in every part of the loop.
     sizes = [use(instances // 5) for _ in range(6)]
-    assert min(np.diff(sizes)) < 4e3 * instances / 5
+    assert min(np.diff(sizes)) < 200 * instances / 5
 
 
 def test_a_missing_resource_is_an_error(tmp_path: Path) -> None:
