@@ -87,7 +87,8 @@ def mean_interval(values: ArrayLike) -> Interval:
     scatter: near that limit the interval is up to 3.5 times as wide. There is also none if few ordinates, such as those of
     an oscillation of fewer than about 50 cycles, hold most of the power. If there is no interval, but the means of ten
     parts differ by less than 0.1 % of the mean, as at the end of a transient to periodic motion, half the interval is the
-    range of these ten.
+    range of these ten. The same holds for seven parts of a quarter of the series that are tapered by sin^4, which finds
+    squares of a steady sine of 12 cycles or more; half the interval is then at least the change of the mean by the taper.
 
     The guide [](/how-to/analysis.md) states how often the interval holds the mean, and where it does not.
 
@@ -154,7 +155,9 @@ def half_widths(series: NDArray[np.float64], least: ArrayLike = 0.0) -> tuple[Fl
             width, count = np.full(chosen.size, np.nan), np.full(chosen.size, np.nan)
         ten = np.array([part.mean(axis=1) for part in np.array_split(x, _PARTS, axis=1)])
         span = np.ptp(ten, axis=0)
-        close = ~np.isfinite(width) & (span <= _CLOSE * np.abs(mean))
+        periodic = _periodic_half_widths(x, mean)
+        span = np.where(span <= _CLOSE * np.abs(mean), span, periodic)
+        close = ~np.isfinite(width) & np.isfinite(span)
         width = np.where(constant, 0.0, np.where(close, span, width))
         count = np.where(constant, length, np.where(close, _PARTS, count))
         half[chosen] = width
@@ -191,6 +194,25 @@ _STUDENT = {14: 2.144786687917804, 16: 2.1199052992212546, 18: 2.100922040241038
 0.2 s of processor time to import, a quarter of a short command."""
 _DOUBT, _REFUSED = 0.8, 0.7
 """Probability of too low a corner frequency that is tolerated, times the number of ordinates, and of fewer ordinates."""
+
+
+def _periodic_half_widths(x: FloatArray, mean: FloatArray) -> FloatArray:
+    """Return half widths of periodic series of any number of periods; NaN for other series.
+
+    The means of parts of a periodic series differ by the part of a period at their ends, which a taper to zero removes. The
+    plain mean of the whole series differs from the tapered one, which is nearly exact, for the same reason.
+    """
+    length = x.shape[1]
+    part = length // 4
+    starts = np.arange(7) * (length - part) // 6
+
+    def tapered(values: FloatArray) -> FloatArray:
+        count = values.shape[1]
+        weight = np.sin(np.pi * (np.arange(count) + 0.5) / count) ** 4
+        return np.asarray(values @ (weight / weight.sum()))
+
+    span = np.ptp([tapered(x[:, start : start + part]) for start in starts], axis=0)
+    return np.where(span <= _CLOSE * np.abs(mean), np.maximum(span, np.abs(tapered(x) - mean)), np.nan)
 
 
 def _spectral_half_widths(x: FloatArray) -> tuple[FloatArray, FloatArray]:

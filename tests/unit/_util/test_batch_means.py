@@ -128,6 +128,20 @@ def test_an_oscillation_of_few_cycles_has_no_interval():
     assert not mean_interval((slow * np.sin(2 * np.pi * 30.3 * time / 600)) ** 2).is_long_enough
 
 
+@pytest.mark.parametrize("cycles", [12.3, 17.71, 40.5, 90.25])
+@pytest.mark.parametrize("per_cycle", [5.3, 11.0, 40.0])
+def test_a_periodic_square_of_a_few_cycles_has_an_interval(cycles, per_cycle):
+    """The square of a steady sine has a narrow interval that holds its exact mean, in windows of any number of cycles.
+
+    No test saw that such windows were refused as too short: the tests had whole cycles, or some hundred of them.
+    """
+    for phase in (0.0, 0.4, 1.3):
+        angle = 2 * np.pi * np.arange(round(cycles * per_cycle)) / per_cycle
+        result = mean_interval(3.0 * np.sin(angle + phase) ** 2)
+        assert result.lower - 1e-4 <= 1.5 <= result.upper + 1e-4
+        assert result.half_width < 0.6 * 1.5 / cycles
+
+
 def test_many_series_at_once():
     """Series that are evaluated together have the intervals that each has alone; one with a gap has none."""
     series = np.array([autoregressive(memory, 64, 1, seed=5)[0] for memory in np.linspace(0, 0.95, 30)])
