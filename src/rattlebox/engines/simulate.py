@@ -222,13 +222,16 @@ def _result(case: Case, raw: _core.Result) -> Run:
 
 def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tuple[str, str]:
     """Return the status and the message of a run."""
-    if raw.status == Status.finished:
+    if raw.status in (Status.finished, Status.law_domain, Status.no_rebound):
         ledger = Ledger(arrays)
         mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
         end = final_status(
             ledger, raw.energy_residual_limit, mass, permitted=raw.permitted_error, rounding=raw.energy_rounding
         )
-        return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
+        # A speed at which a law ends, of a motion that has gained energy, says nothing about the law.
+        if raw.status == Status.finished or end != Status.finished:
+            time = case.duration if raw.status == Status.finished else raw.stopped_at
+            return describe(end, time, "", ledger.energy_residual if end else 0.0, case.method.kind)
     counts = [len(damper.balls) for damper in case.impact_dampers]
     contact = contact_name(arrays.dampers, counts, raw.stopped_contact)
     return describe(raw.status, raw.stopped_at, contact, raw.stopped_value, case.method.kind)

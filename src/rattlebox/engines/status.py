@@ -23,8 +23,7 @@ MESSAGES: dict[Status, str] = {
     Status.interrupted: "The run was stopped at t = {time:.9g} s; the results up to this time are available.",
     Status.not_finite: "The solution became non-finite at t = {time:.9g} s.",
     Status.energy_error: (
-        "The run reached its end, but its energy balance has an error of {value:.2g} of the energy put in. Do not use its "
-        "results."
+        "At t = {time:.9g} s the energy balance has an error of {value:.2g} of the energy put in. Do not use the results."
     ),
     Status.escaped: "{contact} left its cavity at {value:.6g} m/s, at t = {time:.9g} s.",
     Status.no_rebound: (
