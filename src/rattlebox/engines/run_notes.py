@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -149,18 +149,32 @@ def _limit_of_table(contact: Contact, name: str, index: int) -> Iterator[Contact
         yield ContactLimit("speed", index, last, text)
 
 
+class Overlap(NamedTuple):
+    """An overlap over the smaller radius, and its limit for the contact law."""
+
+    ratio: float
+    limit: float
+
+
+def worst_overlap(damper: ImpactDamper, contacts: NDArray[np.int_], overlaps: NDArray[np.float64]) -> Overlap:
+    """Return the overlap [m] of some contacts of a damper that is largest against the limit of its contact law."""
+    radii, limits = _overlap_limits(damper)
+    ratios = overlaps / radii[contacts]
+    worst = int(np.nanargmax(ratios / limits[contacts]))
+    return Overlap(float(ratios[worst]), float(limits[contacts[worst]]))
+
+
 def _deep_overlaps(
     damper: ImpactDamper, name: str, contacts: NDArray[np.int_], overlaps: NDArray[np.float64]
 ) -> Iterator[str]:
     """Yield a warning if an overlap exceeds the limit for its contact law."""
-    radii, limits = _overlap_limits(damper)
-    ratios = overlaps / radii[contacts]
-    excess = ratios / limits[contacts]
-    if np.any(excess > 1):
-        worst = int(np.nanargmax(excess))
+    if np.isnan(overlaps).all():
+        return
+    ratio, limit = worst_overlap(damper, contacts, overlaps)
+    if ratio > limit:
         yield (
-            f"warning: overlaps in {name} reach {100 * ratios[worst]:.3g} % of the radius; the contact law holds below "
-            f"{100 * limits[contacts[worst]]:g} %: use a stiffer contact or slower impacts"
+            f"warning: overlaps in {name} reach {100 * ratio:.3g} % of the radius; the contact law holds below "
+            f"{100 * limit:g} %: use a stiffer contact or slower impacts"
         )
 
 

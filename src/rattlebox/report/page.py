@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from markupsafe import Markup, escape
 
 from rattlebox._util.exceptions import RattleboxError
+from rattlebox._util.templates import render as fill
 from rattlebox._util.text import printable
 from rattlebox.model.case import Case
 from rattlebox.plots.case import plot_case
@@ -149,20 +150,12 @@ def data_url(figure: Figure) -> str:
 
 def render(sections: list[Section], title: str) -> str:
     """Return the page as self-contained HTML."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
     from rattlebox import __version__
 
-    environment = Environment(
-        loader=PackageLoader("rattlebox.report"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
-    environment.filters["typeset"] = typeset
-    environment.filters["download"] = _download
-    return environment.get_template("report.html").render(
+    return fill(
+        "rattlebox.report",
+        "report.html",
+        {"typeset": typeset, "download": _download},
         generator=GENERATOR,
         title=title,
         sections=sections,

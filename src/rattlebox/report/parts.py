@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -66,4 +66,4 @@ class Kind:
     tables: Callable[[Any], Iterable[Table]] = nothing
     warnings: Callable[[Any], Iterable[str]] = nothing
     limits: Callable[[Any], Iterable[Limit]] = nothing
-    about: Callable[[Any], Iterable[str]] = field(default=nothing)
+    about: Callable[[Any], Iterable[str]] = nothing

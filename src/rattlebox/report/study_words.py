@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,15 +18,17 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.plots.labels import REPLICA, name_of, unit_of
 from rattlebox.prepare.softening import MAX_CHANGE
-from rattlebox.report.limits import ENERGY_BOUNDS, mode_limits
+from rattlebox.report.limits import ENERGY_BOUNDS, limit, mode_limits
 from rattlebox.report.numbers import with_interval
-from rattlebox.report.parts import Limit, Table
+from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
+from rattlebox.results.case_words import dampers_words
 from rattlebox.results.schema import OUTCOMES
 from rattlebox.studies.run.outcomes import status_counts, status_lines
 from rattlebox.studies.work.measures import INTERVAL
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 _MAX_AXIS_WORDS = 4
 """Most axes that a sentence lists with their ranges."""
@@ -36,6 +39,29 @@ def cases_of(study: xr.Dataset) -> Mapping[str, Case]:
     if not isinstance(study.attrs.get("case"), str):
         raise Hint("the dataset does not hold its case", "the argument case")
     return {"": Case.from_toml(study.attrs["case"])}
+
+
+def known_case(study: xr.Dataset) -> Case | None:
+    """Return the base case of a study; None if the dataset does not hold it, or it cannot be read."""
+    try:
+        return cases_of(study)[""]
+    except RattleboxError:
+        return None
+
+
+def system_words(study: xr.Dataset) -> str:
+    """Return a phrase about the case of a study; "the system" if it is unknown."""
+    case = known_case(study)
+    if case is None:
+        return "the system"
+    dampers = dampers_words(case)
+    return case.structure.words() + (f" with {dampers}" if dampers else "")
+
+
+def damper_words(study: xr.Dataset) -> str:
+    """Return a phrase about the dampers of a study; "the damper" if its case is unknown."""
+    case = known_case(study)
+    return "the damper" if case is None else dampers_words(case)
 
 
 def axes_of(study: xr.Dataset) -> list[xr.DataArray]:
@@ -180,56 +206,27 @@ def study_warnings(study: xr.Dataset) -> list[str]:
 
 def study_limits(study: xr.Dataset) -> Iterator[Limit]:
     """Yield the limits that all studies share."""
-    try:
-        case = next(iter(cases_of(study).values()))
-    except RattleboxError:
-        case = None
+    case = known_case(study)
     if "energy_residual" in study:
         residuals = study.energy_residual.values[np.isfinite(study.energy_residual.values)]
-        yield Limit(
-            "energy balance",
-            f"{residuals.max():.1e}, largest of all runs" if residuals.size else MISSING,
-            "" if case is None else ENERGY_BOUNDS[case.method.kind],
-            "Energy supplied minus energy stored and lost, over the energy supplied. Runs beyond the bound have no results.",
-        )
+        largest = f"{residuals.max():.1e}, largest of all runs" if residuals.size else MISSING
+        yield limit("study", "energy balance", largest, "" if case is None else ENERGY_BOUNDS[case.method.kind])
     if case is not None:
         yield from mode_limits(case)
-        soft = [damper.softening for damper in case.particle_dampers if damper.softening != 1]
-        if soft:
-            yield Limit(
-                "softening of contacts",
-                ", ".join(str(each) if isinstance(each, str) else f"{each:g}" for each in soft),
-                f"a change of the loss of {MAX_CHANGE:g} m V²",
-                "Moduli of contacts are divided by this factor, which changes the loss of beds that rest under their "
-                "weight; rb.check_softening compares.",
-            )
+        softenings = [damper.softening for damper in case.particle_dampers if damper.softening != 1]
+        if softenings:
+            factors = ", ".join(factor if isinstance(factor, str) else f"{factor:g}" for factor in softenings)
+            yield limit("study", "softening of contacts", factors, f"a change of the loss of {MAX_CHANGE:g} m V²")
     cycles = option_of(study, "cycles")
     if isinstance(cycles, list) and len(cycles) == 2:
-        yield Limit(
-            "steady motion",
-            f"{cycles[1]} cycles after {cycles[0]}",
-            "",
-            "Cycles that are skipped are the transient. A motion that is not steady after them counts as steady: compare "
-            "with more cycles.",
-        )
+        yield limit("study", "steady motion", f"{cycles[1]} cycles after {cycles[0]}")
     if repeated := replica_dims(study):
         count = math.prod(study.sizes[dim] for dim in repeated)
-        yield Limit(
-            "statistical error",
-            f"{count} random starts",
-            "",
-            "Intervals are those of the mean over the random starts (Student, 95 %).",
-        )
+        yield limit("replicas", "statistical error", f"{count} random starts")
     elif case is None or case.dampers:
         has_intervals = any(str(name).endswith(INTERVAL) for name in study.data_vars)
-        what = "Intervals are those of time averages in one run (95 %); o" if has_intervals else "O"
-        yield Limit(
-            "statistical error",
-            "1 run of each variant",
-            "",
-            f"{what}ther starts or packings may scatter more, since motion with impacts depends on the smallest change: add "
-            "seeds of packings, or replicas, as an axis.",
-        )
+        intervals = "Intervals are those of time averages in one run (95 %); o" if has_intervals else "O"
+        yield limit("study", "statistical error", "1 run of each variant", intervals=intervals)
 
 
 def option_of(study: xr.Dataset, name: str) -> Any:
@@ -276,3 +273,33 @@ def study_about(study: xr.Dataset) -> Iterator[str]:
     if "version" in attrs:
         created = f", started on {str(attrs['created'])[:16].replace('T', ' ')} UTC" if "created" in attrs else ""
         yield f"Computed by Rattlebox {attrs['version']}{created}."
+
+
+def picture(draw: Callable[..., Figure], caption: str) -> Callable[[xr.Dataset], list[Picture]]:
+    """Return a function that gives a study its only figure."""
+    return lambda study: [Picture(caption, partial(draw, study, size="page"))]
+
+
+def study_kind(
+    name: str,
+    question: Callable[[xr.Dataset], str],
+    answer: Callable[[xr.Dataset], Iterable[str]],
+    call: Callable[[xr.Dataset], Call | None],
+    pictures: Callable[[xr.Dataset], Iterable[Picture]],
+    **others: Callable[[xr.Dataset], Any],
+) -> Kind:
+    """Return the content of the report about a kind of study; parts that are left out are those of all studies."""
+    shared: dict[str, Callable[[xr.Dataset], Any]] = {
+        "cases": cases_of,
+        "tables": lambda study: [axis_table(study)],
+        "warnings": study_warnings,
+        "limits": study_limits,
+        "about": study_about,
+    }
+
+    def full_answer(study: xr.Dataset) -> Iterator[str]:
+        if unfinished := progress_sentence(study):
+            yield unfinished
+        yield from answer(study)
+
+    return Kind(name=name, question=question, answer=full_answer, call=call, pictures=pictures, **(shared | others))

@@ -13,14 +13,17 @@ from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import MISSING, amount
 from rattlebox.plots.calibration import plot_calibration
 from rattlebox.report import study_words as words
+from rattlebox.report.limits import limit
 from rattlebox.report.numbers import between
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.results.case_words import dampers_words
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from rattlebox.model.case import Case
+
+_INTERVALS = (("lower", "upper"), ("smallest", "largest"))
+"""Ends of the 95 % interval of a parameter, and of the range that was searched."""
 
 
 def _by_simulation(result: xr.Dataset) -> bool:
@@ -38,20 +41,16 @@ def _names(result: xr.Dataset) -> list[str]:
 def _question(result: xr.Dataset) -> str:
     if not _by_simulation(result):
         return f"Which restitution do {counted(result.sizes['impact'], 'measured impact')} show?"
-    measures = joined([each.replace("_", " ") for each in dict.fromkeys(result.measure.values.tolist())])
-    try:
-        system = dampers_words(words.cases_of(result)[""])
-    except ValueError:  # CaseError
-        system = "the damper"
+    measures = joined([name.replace("_", " ") for name in dict.fromkeys(result.measure.values.tolist())])
     data = counted(result.sizes["datum"], "measured value")
-    return f"Which {joined(_names(result))} of {system} follow from {data} of {measures}?"
+    return f"Which {joined(_names(result))} of {words.damper_words(result)} follow from {data} of {measures}?"
 
 
 def _answer(result: xr.Dataset) -> Iterator[str]:
-    for k, name in enumerate(_names(result)):
+    for k, parameter in enumerate(_names(result)):
         unit = str(result.unit.values[k])
-        value, lower, upper = (float(result[each][k]) for each in ("value", "lower", "upper"))
-        yield f"The {name} is {amount(value, unit, 3)} (95 % interval {between(lower, upper, unit)})."
+        value, lower, upper = (float(result[name][k]) for name in ("value", "lower", "upper"))
+        yield f"The {parameter} is {amount(value, unit, 3)} (95 % interval {between(lower, upper, unit)})."
     if not _by_simulation(result):
         slow, fast = float(result.approach_speed.min()), float(result.approach_speed.max())
         ends = amount(slow, "m/s", 3) + (f" to {amount(fast, 'm/s', 3)}" if fast > 1.001 * slow else "")
@@ -69,9 +68,8 @@ def _answer(result: xr.Dataset) -> Iterator[str]:
 
 def _list(value: Any) -> list[str]:
     """Return an attribute as a list of texts; a file holds a list of one as text."""
-    if value is None:
-        return []
-    return [str(each) for each in ([value] if isinstance(value, str) else value) if str(each)]
+    texts = [] if value is None else [value] if isinstance(value, str) else value
+    return [str(text) for text in texts if str(text)]
 
 
 def _pictures(result: xr.Dataset) -> Iterator[Picture]:
@@ -94,23 +92,23 @@ def _tables(result: xr.Dataset) -> Iterator[Table]:
         return
     rows: list[tuple[str, ...]] = []
     for k in range(result.sizes["parameter"]):
-        unit = str(result.unit.values[k])
         one = result.isel(parameter=k)
-        bounds = "yes" if bool(one.is_lower_bounded & one.is_upper_bounded) else "no"
-        searched = between(float(one.smallest), float(one.largest), unit)
-        interval = between(float(one.lower), float(one.upper), unit)
-        rows.append((str(result.parameter.values[k]), amount(float(one.value), unit, 3), interval, searched, bounds))
+        unit = str(one.unit.item())
+        is_bounded = bool(one.is_lower_bounded & one.is_upper_bounded)
+        intervals = [between(float(one[low]), float(one[high]), unit) for low, high in _INTERVALS]
+        value = amount(float(one.value), unit, 3)
+        rows.append((str(one.parameter.item()), value, *intervals, "yes" if is_bounded else "no"))
     header: tuple[str, ...] = ("parameter", "value", "95 % interval", "range", "bounded by the data")
     yield Table("Parameters", header, rows, numbers=True)
     rows = []
     for k in range(result.sizes["datum"]):
         one = result.isel(datum=k)
-        unit = "J" if str(one.measure.item()) == "loss_per_cycle" else "1"
-        hertz = float(one.frequency)
-        place = amount(float(one.amplitude), str(one.amplitude_unit.item()))
+        measure, frequency = str(one.measure.item()), float(one.frequency)
+        unit = "J" if measure == "loss_per_cycle" else "1"
+        at = amount(float(one.amplitude), str(one.amplitude_unit.item()))
         values = [amount(float(one[name]), unit, 3) for name in ("measured", "error", "check", "check_deviation")]
-        own = str(one.measure.item()).replace("_", " ")
-        rows.append((own, place, amount(hertz, "Hz") if np.isfinite(hertz) else MISSING, *values))
+        hertz = amount(frequency, "Hz") if np.isfinite(frequency) else MISSING
+        rows.append((measure.replace("_", " "), at, hertz, *values))
     header = ("measure", "amplitude", "frequency", "measured", "uncertainty", "simulated", "scatter of packings")
     note = "Simulated: mean of further packings at the result, which did not enter the fit."
     yield Table("Data", header, rows, note, numbers=True)
@@ -118,42 +116,16 @@ def _tables(result: xr.Dataset) -> Iterator[Table]:
 
 def _limits(result: xr.Dataset) -> Iterator[Limit]:
     if not _by_simulation(result):
-        yield Limit(
-            "statistical error",
-            counted(result.sizes["impact"], "impact"),
-            "",
-            "The interval is that of Student's t over the impacts. An error that all readings share is not in it.",
-        )
+        yield limit("impacts", "statistical error", counted(result.sizes["impact"], "impact"))
         exponent = float(result.exponent)
         if np.isfinite(exponent):
-            yield Limit(
-                "speed",
-                f"as v^{exponent:.2g} ± {float(result.exponent_interval):.2g}",
-                "",
-                "Exponent of a power law through the impacts. One value holds for its speeds only if this is 0.",
-            )
+            yield limit("impacts", "speed", f"as v^{exponent:.2g} ± {float(result.exponent_interval):.2g}")
         return
-    yield Limit(
-        "samples",
-        f"{result.attrs['samples']} samples, {result.attrs['checks']} checks",
-        "",
-        "Response surfaces through the samples, whose errors and the scatter of random packings are in the intervals.",
-    )
+    yield limit("calibrate", "samples", f"{result.attrs['samples']} samples, {result.attrs['checks']} checks")
     apart = np.abs(result.check - result.fitted) / np.hypot(result.error, result.scatter)
-    yield Limit(
-        "response surface",
-        f"{float(apart.max()):.2g} standard deviations, largest",
-        "",
-        "Difference from further packings at the result. Beyond about 1 use narrower ranges.",
-    )
-    yield Limit(
-        "model",
-        "assumed to be right",
-        "",
-        "Errors of all other inputs, such as fill, cavity, direction, softening and the damping without particles, shift "
-        "the values, which then repeat this measurement but hold for no other one.",
-    )
-    yield from (limit for limit in words.study_limits(result) if limit.name != "statistical error")
+    yield limit("calibrate", "response surface", f"{float(apart.max()):.2g} standard deviations, largest")
+    yield limit("calibrate", "model", "assumed to be right")
+    yield from (shared for shared in words.study_limits(result) if shared.name != "statistical error")
 
 
 def _call(result: xr.Dataset) -> Call:
@@ -161,19 +133,14 @@ def _call(result: xr.Dataset) -> Call:
     source = data[0] if len(data) == 1 else f"[{', '.join(data)}]"
     if not _by_simulation(result):
         return Call("calibrate", first=source)
-    ends = zip(result.parameter.values.tolist(), result.smallest.values, result.largest.values, strict=True)
-    arguments: dict[str, Any] = {"parameters": {path: (float(low), float(high)) for path, low, high in ends}}
-    known = json.loads(str(result.attrs["known"]))
-    if known:
+    ranges = zip(result.parameter.values.tolist(), result.smallest.values, result.largest.values, strict=True)
+    arguments: dict[str, Any] = {"parameters": {path: (float(low), float(high)) for path, low, high in ranges}}
+    if known := json.loads(str(result.attrs["known"])):
         arguments["known"] = {path: tuple(pair) for path, pair in known.items()}
     if logs := _list(result.attrs.get("log")):
         arguments["log"] = logs
-    return Call(
-        "calibrate",
-        arguments
-        | {"runs": int(result.attrs["runs"]), "checks": int(result.attrs["checks"]), "seed": int(result.attrs["seed"])},
-        first=source,
-    )
+    arguments |= {name: int(result.attrs[name]) for name in ("runs", "checks", "seed")}
+    return Call("calibrate", arguments, first=source)
 
 
 KIND = Kind(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, cast
 
@@ -15,20 +15,16 @@ from rattlebox.report.parts import Kind, Limit, Picture, Table
 from rattlebox.results.case_words import loads_words
 
 if TYPE_CHECKING:
-    from rattlebox.model.case import Case
     from rattlebox.results.run import Run
     from rattlebox.results.summary import Comparison
 
 _MAX_COLUMNS = 4
 """Most runs in a figure of a comparison."""
+_DISPLACEMENTS = {"rms": "RMS displacement", "peak": "peak displacement"}
 
 
 def _runs(comparison: Comparison) -> dict[str, Run]:
     return cast("dict[str, Run]", comparison.runs)
-
-
-def _cases(comparison: Comparison) -> Mapping[str, Case]:
-    return {name: run.case for name, run in _runs(comparison).items()}
 
 
 def _question(comparison: Comparison) -> str:
@@ -42,26 +38,26 @@ def _question(comparison: Comparison) -> str:
 
 
 def _answer(comparison: Comparison) -> Iterator[str]:
-    runs, names = _runs(comparison), list(comparison.runs)
+    reference, *others = comparison.runs
     for name, run in _runs(comparison).items():
         if not run.ok:
             yield f"{name} has the status {run.status}: {run.message}"
-    for name in names[1:]:
-        values = comparison.values[name]
-        found = []
-        for kind, words in (("rms", "RMS displacement"), ("peak", "peak displacement")):
-            changes = {key: value for key, value in values.items() if key.startswith(f"{kind}_reduction[")}
-            if changes:
-                key = max(changes, key=lambda each: _before(comparison, each))
-                share = float(changes[key])
-                point = key.partition("[")[2][:-1]
-                verb = "reduced" if share >= 0 else "increased"
-                found.append(f"the {words} of {point} is {verb} by {amount(abs(share), '%', 3)}")
-        if found:
-            yield f"With {name}, {joined(found)} against {names[0]}."
-    for name in names:
-        own = attached_points(runs[name])
-        yield f"{name}: {' '.join(result_sentences(comparison.values[name], own))}"
+    for name in others:
+        changes = [_change(comparison, name, kind, text) for kind, text in _DISPLACEMENTS.items()]
+        if any(changes):
+            yield f"With {name}, {joined(list(filter(None, changes)))} against {reference}."
+    for name, run in _runs(comparison).items():
+        yield f"{name}: {' '.join(result_sentences(comparison.values[name], attached_points(run)))}"
+
+
+def _change(comparison: Comparison, name: str, kind: str, text: str) -> str:
+    """Return a phrase about the point whose displacement is largest in the reference run; "" if there is none."""
+    changes = {key: float(v) for key, v in comparison.values[name].items() if key.startswith(f"{kind}_reduction[")}
+    if not changes:
+        return ""
+    key = max(changes, key=lambda key: _before(comparison, key))
+    verb = "reduced" if changes[key] >= 0 else "increased"
+    return f"the {text} of {key.partition('[')[2][:-1]} is {verb} by {amount(abs(changes[key]), '%', 3)}"
 
 
 def _before(comparison: Comparison, key: str) -> float:
@@ -74,42 +70,29 @@ def _pictures(comparison: Comparison) -> Iterator[Picture]:
     runs = list(_runs(comparison).items())
     for first in range(0, len(runs), _MAX_COLUMNS):
         some = dict(runs[first : first + _MAX_COLUMNS])
-        yield Picture(
-            f"Motion and energy of {joined(list(some))}, one column for each.",
-            partial(plot_comparison, some, size="page"),
-        )
+        caption = f"Motion and energy of {joined(list(some))}, one column for each."
+        yield Picture(caption, partial(plot_comparison, some, size="page"))
 
 
-def _tables(comparison: Comparison) -> Iterator[Table]:
-    yield Table("Summary", ("", *comparison.runs), comparison.lines(), numbers=True)
-
-
-def _warnings(comparison: Comparison) -> Iterator[str]:
-    for name, run in _runs(comparison).items():
-        yield from (f"{name}: {note}" for note in run.notes)
+def _about(name: str, run: Run) -> str:
+    origin = run.provenance
+    return f"{name}: Rattlebox {origin.version}, {origin.platform}, {amount(run.wall_time, 's', 3)}."
 
 
 def _limits(comparison: Comparison) -> Iterator[Limit]:
     for name, run in _runs(comparison).items():
-        for limit in run_limits(run):
-            yield limit._replace(name=f"{name}: {limit.name}")
-
-
-def _about(comparison: Comparison) -> Iterator[str]:
-    for name, run in _runs(comparison).items():
-        origin = run.provenance
-        yield f"{name}: Rattlebox {origin.version}, {origin.platform}, {amount(run.wall_time, 's', 3)}."
+        yield from (limit._replace(name=f"{name}: {limit.name}") for limit in run_limits(run))
 
 
 KIND = Kind(
     name="Comparison",
-    cases=_cases,
+    cases=lambda comparison: {name: run.case for name, run in _runs(comparison).items()},
     question=_question,
     answer=_answer,
     call=lambda comparison: None,
     pictures=_pictures,
-    tables=_tables,
-    warnings=_warnings,
+    tables=lambda comparison: [Table("Summary", ("", *comparison.runs), comparison.lines(), numbers=True)],
+    warnings=lambda comparison: [f"{name}: {note}" for name, run in _runs(comparison).items() for note in run.notes],
     limits=_limits,
-    about=_about,
+    about=lambda comparison: [_about(name, run) for name, run in _runs(comparison).items()],
 )

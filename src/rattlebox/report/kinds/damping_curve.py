@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,17 +12,16 @@ from rattlebox._util.phrases import joined
 from rattlebox._util.quantities import MISSING, amount
 from rattlebox.plots.damping_curve import plot_damping_curve
 from rattlebox.report import study_words as words
+from rattlebox.report.limits import limit
 from rattlebox.report.numbers import between
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
-from rattlebox.results.case_words import dampers_words
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from rattlebox.model.case import Case
 
-Curves = Any
-"""One dataset, or datasets by name."""
+    Curves = xr.Dataset | Mapping[str, xr.Dataset]
 
 _WAYS = {
     "decay": "the decay of the envelope in free vibration",
@@ -32,7 +31,8 @@ _WAYS = {
 
 
 def _named(curves: Curves) -> dict[str, xr.Dataset]:
-    return dict(curves) if isinstance(curves, Mapping) and not hasattr(curves, "data_vars") else {"": curves}
+    """Return the curves by name; the name of a single one is empty."""
+    return {"": curves} if hasattr(curves, "data_vars") else dict(curves)
 
 
 def _cases(curves: Curves) -> Mapping[str, Case]:
@@ -44,14 +44,11 @@ def _question(curves: Curves) -> str:
     first = next(iter(named.values()))
     ends = f"{amount(float(first.amplitude.min()), 'm')} to {amount(float(first.amplitude.max()), 'm')}"
     what = f"mode {first.attrs['mode']} ({amount(float(first.attrs['frequency']), 'Hz')})"
-    try:
-        case = words.cases_of(first)[""]
-        system = case.structure.words()
-        system += f" with {dampers_words(case)}" if len(named) == 1 and case.dampers else ""
-    except ValueError:  # CaseError
-        system = "the structure"
-    if len(named) > 1:
-        system += f" with {joined(list(named))}"
+    case = words.known_case(first)
+    if len(named) == 1:
+        system = words.system_words(first) if case else "the structure"
+    else:
+        system = f"{case.structure.words() if case else 'the structure'} with {joined(list(named))}"
     return f"Which damping ratio does {what} of {system} have at amplitudes from {ends}?"
 
 
@@ -76,13 +73,10 @@ def _at(curve: xr.Dataset, k: int) -> str:
 
 
 def _pictures(curves: Curves) -> Iterator[Picture]:
-    caption = (
-        "Damping ratio over the amplitude of vibration. Bands are 95 % intervals of the mean over the random starts; the "
-        "grey line is the structure alone."
-    )
-    named = _named(curves)
     yield Picture(
-        caption, partial(plot_damping_curve, named if len(named) > 1 else next(iter(named.values())), size="page")
+        "Damping ratio over the amplitude of vibration. Bands are 95 % intervals of the mean over the random starts; the "
+        "grey line is the structure alone.",
+        partial(plot_damping_curve, curves, size="page"),
     )
 
 
@@ -109,39 +103,27 @@ def _warnings(curves: Curves) -> Iterator[str]:
 def _limits(curves: Curves) -> Iterator[Limit]:
     first = next(iter(_named(curves).values()))
     way = str(first.attrs.get("way", ""))
-    yield Limit(
-        "method",
-        _WAYS.get(way, way),
-        "",
-        "The damping ratio of a linear oscillator with the same loss. Methods differ where the response is not nearly "
-        "harmonic, or where the amplitude falls through the range in a few cycles: compare two values of way.",
-    )
-    yield Limit(
-        "statistical error",
-        f"{first.sizes.get('packing', 1)} random starts",
-        "",
-        "Intervals are those of the mean over the random starts (Student, 95 %).",
-    )
-    yield from (limit for limit in words.study_limits(first) if limit.name != "statistical error")
+    yield limit("damping_curve", "method", _WAYS.get(way, way))
+    yield limit("replicas", "statistical error", f"{first.sizes.get('packing', 1)} random starts")
+    yield from (shared for shared in words.study_limits(first) if shared.name != "statistical error")
 
 
 def _call(curves: Curves) -> Call | None:
     named = _named(curves)
     if len(named) > 1:
         return None
-    curve = next(iter(named.values()))
-    packings = {"packings": int(curve.sizes["packing"])} if "packing" in curve.sizes else {}
-    return Call(
-        "damping_curve",
-        {
-            "amplitudes": curve.amplitude.values.tolist(),
-            "way": str(curve.attrs["way"]),
-            "mode": int(curve.attrs["mode"]),
-            "point": str(curve.attrs["point"]),
-            **packings,
-            **({"cycles": [int(n) for n in curve.attrs["cycles"]]} if "cycles" in curve.attrs else {}),
-        },
-    )
+    (curve,) = named.values()
+    arguments = {
+        "amplitudes": curve.amplitude.values.tolist(),
+        "way": str(curve.attrs["way"]),
+        "mode": int(curve.attrs["mode"]),
+        "point": str(curve.attrs["point"]),
+    }
+    if "packing" in curve.sizes:
+        arguments["packings"] = int(curve.sizes["packing"])
+    if "cycles" in curve.attrs:
+        arguments["cycles"] = [int(number) for number in curve.attrs["cycles"]]
+    return Call("damping_curve", arguments)
 
 
 KIND = Kind(

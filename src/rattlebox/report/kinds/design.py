@@ -15,10 +15,9 @@ from rattlebox.model.case import Case
 from rattlebox.plots.design import plot_design
 from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
-from rattlebox.report.kinds.sweep import KIND as SWEEP
-from rattlebox.report.kinds.sweep import system_words
+from rattlebox.report.limits import limit
 from rattlebox.report.numbers import with_interval
-from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
+from rattlebox.report.parts import Call, Limit, Picture, Table
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.run.budget import duration
 from rattlebox.studies.work.measures import INTERVAL, MEASURES
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _MAX_ROWS = 12
+_EXTREME = {"max": "largest", "min": "smallest"}
 
 
 def _goals(study: xr.Dataset) -> list[str]:
@@ -48,13 +48,10 @@ def _cases(study: xr.Dataset) -> Mapping[str, Case]:
 
 
 def _question(study: xr.Dataset) -> str:
-    goals = [
-        f"{'largest' if study[name].attrs['goal'] == 'max' else 'smallest'} {name_of(study[name])}"
-        for name in _goals(study)
-    ]
-    paths = joined([name_of(study[path]) for path in _parameters(study)])
-    give = "gives" if len(_parameters(study)) == 1 else "give"
-    return f"Which {paths} {give} the {joined(goals)} of {system_words(study)}?"
+    goals = [f"{_EXTREME[study[name].attrs['goal']]} {name_of(study[name])}" for name in _goals(study)]
+    parameters = [name_of(study[path]) for path in _parameters(study)]
+    give = "gives" if len(parameters) == 1 else "give"
+    return f"Which {joined(parameters)} {give} the {joined(goals)} of {words.system_words(study)}?"
 
 
 def _answer(study: xr.Dataset) -> Iterator[str]:
@@ -78,7 +75,7 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
             values = study[name].sel(trial=study.front.values).values
             pick = values.argmax() if study[name].attrs["goal"] == "max" else values.argmin()
             best = study.sel(trial=int(study.front[int(np.asarray(pick))]))
-            results = joined([f"{name_of(study[each])} {_value(study, best, each)}" for each in goals])
+            results = joined([f"{name_of(study[goal])} {_value(study, best, goal)}" for goal in goals])
             yield f"The best {name_of(study[name])} has {_choice(study, best)}: {results}."
     robust, packings = str(study.attrs.get("robust", "")), study.sizes.get("packing", 1)
     if robust and packings > 1:
@@ -92,12 +89,8 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
 
 def _choice(study: xr.Dataset, trial: xr.Dataset) -> str:
     """Return the parameters of a trial as text."""
-    return joined(
-        [
-            f"{name_of(study[path])} {words.axis_value(study[path], trial[path].values[()])}"
-            for path in _parameters(study)
-        ]
-    )
+    values = ((study[path], trial[path].values[()]) for path in _parameters(study))
+    return joined([f"{name_of(parameter)} {words.axis_value(parameter, value)}" for parameter, value in values])
 
 
 def _value(study: xr.Dataset, trial: xr.Dataset, name: str) -> str:
@@ -111,12 +104,10 @@ def _unit(study: xr.Dataset, name: str) -> str:
 
 
 def _pictures(study: xr.Dataset) -> Iterator[Picture]:
-    several = len(_goals(study)) > 1
-    caption = (
-        "Trials over the first two objectives with the Pareto front, and the parameters along the front."
-        if several
-        else "Objective of each trial with the best value so far, and the objective over each parameter."
-    )
+    if len(_goals(study)) > 1:
+        caption = "Trials over the first two objectives with the Pareto front, and the parameters along the front."
+    else:
+        caption = "Objective of each trial with the best value so far, and the objective over each parameter."
     yield Picture(caption, partial(plot_design, study, size="page"))
 
 
@@ -128,10 +119,8 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
         cells = [_cell(study[path], one[path].values[()]) for path in paths]
         rows.append((str(int(trial)), *cells, *(_value(study, one, name) for name in goals)))
     note = f"{study.front.size - _MAX_ROWS} more are in the dataset." if study.front.size > _MAX_ROWS else ""
-    if rows:
-        yield Table(
-            "Best trials", ("trial", *(name_of(study[name]) for name in (*paths, *goals))), rows, note, numbers=True
-        )
+    header = ("trial", *(name_of(study[name]) for name in (*paths, *goals)))
+    yield Table("Best trials", header, rows, note, numbers=True)
 
 
 def _cell(variable: xr.DataArray, value: Any) -> str:
@@ -141,28 +130,23 @@ def _cell(variable: xr.DataArray, value: Any) -> str:
 
 
 def _limits(study: xr.Dataset) -> Iterator[Limit]:
-    trials = counted(study.trial.size, "trial")
     parameters = words.option_of(study, "parameters") or {}
-    if parameters and all(not each["bounds"] for each in parameters.values()):
-        meaning = "Only the listed choices were tried, in all or in some of their combinations."
-    else:
-        meaning = (
-            "The search is random. Better designs may lie between the trials: compare with more trials or another seed."
-        )
-    yield Limit("search", trials, "", meaning)
+    only_choices = parameters and not any(parameter["bounds"] for parameter in parameters.values())
+    yield limit("choices" if only_choices else "design", "search", counted(study.trial.size, "trial"))
     yield from words.study_limits(study)
 
 
 def _about(study: xr.Dataset) -> Iterator[str]:
-    times = {name: study.attrs.get(name) for name in ("predicted_cpu_time", "cpu_time", "wall_time")}
-    if times["wall_time"] is not None:
-        used = f"{duration(times['cpu_time'])} of processor time in " if times["cpu_time"] is not None else ""
-        predicted = times["predicted_cpu_time"]
+    predicted, cpu, wall = (study.attrs.get(name) for name in ("predicted_cpu_time", "cpu_time", "wall_time"))
+    if wall is not None:
+        used = "" if cpu is None else f"{duration(cpu)} of processor time in "
         before = (
-            "" if predicted is None else f"; {duration(predicted)} of processor time were predicted before the start"
+            f"; {duration(predicted)} of processor time were predicted before the start"
+            if predicted is not None
+            else ""
         )
-        yield f"The trials took {used}{duration(times['wall_time'])}{before}."
-    yield from SWEEP.about(study)
+        yield f"The trials took {used}{duration(wall)}{before}."
+    yield from words.study_about(study)
 
 
 def _call(study: xr.Dataset) -> Call | None:
@@ -172,39 +156,38 @@ def _call(study: xr.Dataset) -> Call | None:
     except (KeyError, TypeError, ValueError):
         return None
     # A pair in a list would be a choice of two values: bounds have a table of their own in study files.
-    bounds: dict[str, Any] = {}
-    for path, each in parameters.items():
-        if each["bounds"]:
-            low, high = each["bounds"]
-            bounds[path] = {"from": low, "to": high, **({"spacing": "log"} if each["log"] else {})}
-        elif "together" in each:
+    space: dict[str, Any] = {}
+    for path, parameter in parameters.items():
+        if parameter["bounds"]:
+            low, high = parameter["bounds"]
+            space[path] = {"from": low, "to": high, **({"spacing": "log"} if parameter["log"] else {})}
+        elif "together" in parameter:
             # A path is no name of parameters that vary together in a study file.
-            bounds.setdefault(each["together"].replace(".", "_"), {})[path] = each["choices"]
+            space.setdefault(parameter["together"].replace(".", "_"), {})[path] = parameter["choices"]
         else:
-            bounds[path] = each["choices"]
+            space[path] = parameter["choices"]
     varied = [path for path, column in trial["columns"].items() if column["varies_along"] not in ([], ["packing"])]
     remarks = (f"levels and starts: add those of {joined(varied)}",) if varied else ()
     if not all(name in MEASURES or name in (ADDED_MASS, DAMPING_RATIO) for name in objective):
         return None
-    given = {"parameters": bounds, "objective": objective, "trials": int(study.trial.size)}
-    given |= words.option_of(study, "curve") or {}
-    given |= {name: value for name, value in (words.option_of(study, "options") or {}).items() if value}
+    arguments = {"parameters": space, "objective": objective, "trials": int(study.trial.size)}
+    arguments |= words.option_of(study, "curve") or {}
+    arguments |= {name: value for name, value in (words.option_of(study, "options") or {}).items() if value}
     for name, usual in (("packings", 1), ("robust", "worst"), ("max_added_mass", None), ("seed", 0)):
         value = words.option_of(study, name)
         if value not in (None, usual) or name == "packings":
-            given[name] = value
-    return Call("design", given, "design", remarks)
+            arguments[name] = value
+    return Call("design", arguments, "design", remarks)
 
 
-KIND = Kind(
-    name="Design",
+KIND = words.study_kind(
+    "Design",
+    _question,
+    _answer,
+    _call,
+    _pictures,
     cases=_cases,
-    question=_question,
-    answer=_answer,
-    call=_call,
-    pictures=_pictures,
     tables=_tables,
-    warnings=SWEEP.warnings,
     limits=_limits,
     about=_about,
 )

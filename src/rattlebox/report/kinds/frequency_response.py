@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from rattlebox._util.quantities import MISSING, amount
 from rattlebox.plots.response import plot_frequency_response
 from rattlebox.report import study_words as words
-from rattlebox.report.kinds.sweep import KIND as SWEEP
-from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
-from rattlebox.report.parts import Call, Kind, Picture, Table
+from rattlebox.report.arguments import measures_argument, options_of
+from rattlebox.report.parts import Call, Table
 from rattlebox.studies.work.orbits import Motion
 
 if TYPE_CHECKING:
@@ -22,7 +20,7 @@ if TYPE_CHECKING:
 
 def _question(response: xr.Dataset) -> str:
     low, high = (words.axis_value(response.frequency, end) for end in response.frequency.values[[0, -1]])
-    return f"Which steady motion does {system_words(response)} have from {low} to {high}, at {_levels(response)}?"
+    return f"Which steady motion does {words.system_words(response)} have from {low} to {high}, at {_levels(response)}?"
 
 
 def _levels(response: xr.Dataset) -> str:
@@ -30,49 +28,48 @@ def _levels(response: xr.Dataset) -> str:
     return f"a level of {levels[0]}" if len(levels) == 1 else f"levels of {', '.join(levels)}"
 
 
-def _peaks(response: xr.Dataset) -> Iterator[tuple[str, str, float, float, float]]:
-    """Yield level, direction, and frequency [Hz], amplitude [m] and bare amplitude [m] of the largest amplitude."""
-    for level in response.level.values:
-        for direction in response.direction.values:
-            line = response.amplitude.sel(level=level, direction=direction).values
-            bare = float(response.bare_amplitude.sel(level=level).max())
-            if not np.isfinite(line).any():
-                yield words.axis_value(response.level, level), str(direction), np.nan, np.nan, bare
-                continue
-            k = int(np.nanargmax(line))
-            yield (
-                words.axis_value(response.level, level),
-                str(direction),
-                float(response.frequency[k]),
-                float(line[k]),
-                bare,
-            )
+class _Peak(NamedTuple):
+    """Largest amplitude [m] of a sweep, its frequency [Hz], and the largest amplitude without dampers [m]."""
+
+    level: str
+    direction: str
+    frequency: float
+    amplitude: float
+    bare: float
+
+
+def _peaks(response: xr.Dataset, level: float) -> Iterator[_Peak]:
+    """Yield the peak of each direction at a level."""
+    at_level = response.sel(level=level)
+    name, bare = words.axis_value(response.level, level), float(at_level.bare_amplitude.max())
+    for direction in response.direction.values:
+        line = at_level.amplitude.sel(direction=direction).values
+        known = np.isfinite(line).any()
+        k = int(np.nanargmax(line)) if known else 0
+        frequency, amplitude = (float(response.frequency[k]), float(line[k])) if known else (np.nan, np.nan)
+        yield _Peak(name, str(direction), frequency, amplitude, bare)
 
 
 def _answer(response: xr.Dataset) -> Iterator[str]:
-    if unfinished := words.progress_sentence(response):
-        yield unfinished
     for level in response.level.values:
-        lines = response.amplitude.sel(level=level)
-        if not np.isfinite(lines.values).any():
-            continue
-        flat = lines.values.ravel()
-        k = np.unravel_index(int(np.nanargmax(flat)), lines.shape)
-        peak, bare = float(lines.values[k]), float(response.bare_amplitude.sel(level=level).max())
-        at = response.frequency.values[k[lines.dims.index("frequency")]]
-        times = f", {peak / bare:.2g} times the {amount(bare, 'm')} without damper" if bare > 0 else ""
-        yield (
-            f"At a level of {words.axis_value(response.level, level)} the largest amplitude is {amount(peak, 'm')} at "
-            f"{amount(float(at), 'Hz')}{times}."
-        )
+        known = [peak for peak in _peaks(response, level) if np.isfinite(peak.amplitude)]
+        if known:
+            peak = max(known, key=lambda peak: peak.amplitude)
+            times = ""
+            if peak.bare > 0:
+                times = f", {peak.amplitude / peak.bare:.2g} times the {amount(peak.bare, 'm')} without damper"
+            yield (
+                f"At a level of {peak.level} the largest amplitude is {amount(peak.amplitude, 'm')} at "
+                f"{amount(peak.frequency, 'Hz')}{times}."
+            )
     if {"up", "down"} <= set(map(str, response.direction.values)):
         yield from _agreement(response.amplitude)
     irregular = float((response.period == 0).mean())
     if irregular > 0:
-        where = amount(irregular, "%", 2)
+        share = amount(irregular, "%", 2)
         transient = float((response.motion == Motion.TRANSIENT).mean()) if "motion" in response else 0.0
         still = f", at {amount(transient, '%', 2)} because it is still transient" if transient else ""
-        yield f"At {where} of the points the motion is not periodic{still}; amplitudes there are first harmonics."
+        yield f"At {share} of the points the motion is not periodic{still}; amplitudes there are first harmonics."
 
 
 def _agreement(amplitude: xr.DataArray) -> Iterator[str]:
@@ -92,32 +89,18 @@ def _agreement(amplitude: xr.DataArray) -> Iterator[str]:
         )
 
 
-def _pictures(response: xr.Dataset) -> Iterator[Picture]:
-    yield Picture(
-        "Amplitude of the first harmonic and impacts per cycle over frequency. Solid lines: upward; dashed: downward; "
-        "shaded: two coexisting motions; crosses: motion that is not periodic; grey: structure without dampers.",
-        partial(plot_frequency_response, response, size="page"),
-    )
-
-
 def _tables(response: xr.Dataset) -> Iterator[Table]:
-    rows = [
-        (
-            level,
-            direction,
-            amount(frequency, "Hz"),
-            amount(peak, "m"),
-            amount(bare, "m"),
-            f"{peak / bare:.3g}" if bare > 0 and np.isfinite(peak) else MISSING,
-        )
-        for level, direction, frequency, peak, bare in _peaks(response)
-    ]
+    rows = []
+    peaks = (peak for level in response.level.values for peak in _peaks(response, level))
+    for level, direction, frequency, peak, bare in peaks:
+        ratio = f"{peak / bare:.3g}" if bare > 0 and np.isfinite(peak) else MISSING
+        rows.append((level, direction, amount(frequency, "Hz"), amount(peak, "m"), amount(bare, "m"), ratio))
     header = ("level", "sweep", "frequency of the peak", "largest amplitude", "without dampers", "ratio")
     yield Table("Peaks of the response", header, rows, numbers=True)
 
 
 def _call(response: xr.Dataset) -> Call:
-    directions = [str(each) for each in response.direction.values]
+    directions = response.direction.values.tolist()
     measures, remarks = measures_argument(response, ("peak", "rms", "impacts_per_cycle"))
     return Call(
         "frequency_response",
@@ -133,15 +116,15 @@ def _call(response: xr.Dataset) -> Call:
     )
 
 
-KIND = Kind(
-    name="Frequency response",
-    cases=words.cases_of,
-    question=_question,
-    answer=_answer,
-    call=_call,
-    pictures=_pictures,
+KIND = words.study_kind(
+    "Frequency response",
+    _question,
+    _answer,
+    _call,
+    words.picture(
+        plot_frequency_response,
+        "Amplitude of the first harmonic and impacts per cycle over frequency. Solid lines: upward; dashed: downward; "
+        "shaded: two coexisting motions; crosses: motion that is not periodic; grey: structure without dampers.",
+    ),
     tables=_tables,
-    warnings=SWEEP.warnings,
-    limits=SWEEP.limits,
-    about=SWEEP.about,
 )

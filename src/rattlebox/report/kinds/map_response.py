@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -13,11 +13,16 @@ from rattlebox._util.quantities import MISSING, amount
 from rattlebox.model.case import Case
 from rattlebox.plots.labels import unit_of
 from rattlebox.plots.map_response import plot_response_from_map
+from rattlebox.report.limits import limit
 from rattlebox.report.parts import Kind, Limit, Picture, Table
 
 if TYPE_CHECKING:
     import xarray as xr
+    from numpy.typing import NDArray
 
+    Array = NDArray[np.float64]
+
+_NAME = "response_from_map"
 _MAX_ROWS = 16
 
 
@@ -38,33 +43,40 @@ def _answer(response: xr.Dataset) -> Iterator[str]:
         ratios = response.damping_ratio.sel(mode=mode)
         if not np.isfinite(ratios.values).any():
             continue
-        low = ratios.min("map_amplitude")
+        least = ratios.min("map_amplitude")
+        best, words = _place(response, least, np.nanargmax)
+        # The interval is that of the amplitude at which the damping ratio is least.
+        weakest = ratios.isel(best).argmin("map_amplitude")
+        half = response.damping_ratio_interval.sel(mode=mode).isel(best)[weakest]
         unit = unit_of(response.map_amplitude)
         ends = " to ".join(amount(float(end), unit) for end in response.map_amplitude.values[[0, -1]])
-        best = np.unravel_index(int(np.nanargmax(low.values)), low.shape)
-        at, number = (response[name].values[place] for name, place in zip(low.dims, best, strict=True))
-        least = ratios.sel(at=at, number=number).argmin("map_amplitude")
-        half = response.damping_ratio_interval.sel(mode=mode, at=at, number=number)[least]
-        around = _half(half, low.values[best], "%")
         yield (
             f"Mode {mode}: the least damping ratio over amplitudes of the damper from {ends} is largest, "
-            f"{amount(float(low.values[best]), '%', 3)}{around}, with {counted(int(number), 'damper')} at {at}."
+            f"{_with_half(float(least.isel(best)), float(half), '%', 3)}, {words}."
         )
     peaks = response.peak.isel(level=-1)
     if np.isfinite(peaks.values).any():
-        least = np.unravel_index(int(np.nanargmin(peaks.values)), peaks.shape)
-        at, number = (response[name].values[place] for name, place in zip(peaks.dims, least, strict=True))
-        around = _half(response.peak_interval.isel(level=-1).values[least], peaks.values[least], "m")
+        best, words = _place(response, peaks, np.nanargmin)
+        half = response.peak_interval.isel(level=-1).isel(best)
         level = amount(float(response["level"][-1]), unit_of(response["level"]))
         yield (
             f"At {level} the peak amplitude of {response.attrs['point']} is smallest, "
-            f"{amount(float(peaks.values[least]), 'm')}{around}, with {counted(int(number), 'damper')} at {at}."
+            f"{_with_half(float(peaks.isel(best)), float(half), 'm')}, {words}."
         )
 
 
-def _half(value: Any, of: float, unit: str) -> str:
-    """Return half of a 95 % interval as text; nothing if it is unknown or negligible."""
-    return f" ± {amount(float(value), unit, 2)} (95 % interval of the map)" if value > 1e-4 * of else ""
+def _place(response: xr.Dataset, values: xr.DataArray, pick: Callable[[Array], Any]) -> tuple[dict[Hashable, int], str]:
+    """Return the indices of the picked arrangement of dampers, and a phrase about it."""
+    indices = np.unravel_index(int(pick(values.values)), values.shape)
+    best = {dim: int(index) for dim, index in zip(values.dims, indices, strict=True)}
+    one = response.isel(best)
+    return best, f"with {counted(int(one.number), 'damper')} at {one['at'].item()}"
+
+
+def _with_half(value: float, half: float, unit: str, digits: int = 4) -> str:
+    """Return a value with half of its 95 % interval, unless this is unknown or negligible."""
+    text = amount(value, unit, digits)
+    return f"{text} ± {amount(half, unit, 2)} (95 % interval of the map)" if half > 1e-4 * value else text
 
 
 def _pictures(response: xr.Dataset) -> Iterator[Picture]:
@@ -77,31 +89,24 @@ def _pictures(response: xr.Dataset) -> Iterator[Picture]:
 
 
 def _tables(response: xr.Dataset) -> Iterator[Table]:
-    rows = []
-    modes = [
-        mode for mode in response["mode"].values.tolist() if np.isfinite(response.damping_ratio.sel(mode=mode)).any()
-    ]
+    rows, ratios = [], response.damping_ratio
+    modes = [mode for mode in response["mode"].values.tolist() if np.isfinite(ratios.sel(mode=mode)).any()]
     for at in response["at"].values:
         for number in response.number.values:
-            one = response.sel(at=at, number=number)
-            ratios = [one.damping_ratio.sel(mode=mode).values for mode in modes]
-            shares = [_range(values) for values in ratios]
-            peak = float(one.peak.isel(level=-1))
-            half = float(one.peak_interval.isel(level=-1))
-            text = amount(peak, "m") if np.isfinite(peak) else MISSING
-            rows.append((str(at), str(number), text, amount(half, "m", 2) if np.isfinite(half) else MISSING, *shares))
-    header = (
-        "points",
-        "number",
-        "peak at the highest level",
-        "± (95 %)",
-        *(f"damping ratio, mode {mode}" for mode in modes),
-    )
+            one = response.sel(at=at, number=number).isel(level=-1)
+            shares = [_range(one.damping_ratio.sel(mode=mode).values) for mode in modes]
+            rows.append((str(at), str(number), _known(one.peak), _known(one.peak_interval, 2), *shares))
+    header = ("points", "number", "peak at the highest level", "± (95 %)")
+    header += tuple(f"damping ratio, mode {mode}" for mode in modes)
     note = f"{len(rows) - _MAX_ROWS} more are in the dataset." if len(rows) > _MAX_ROWS else ""
     yield Table("Dampers", header, rows[:_MAX_ROWS], note, numbers=True)
 
 
-def _range(values: np.ndarray) -> str:
+def _known(length: xr.DataArray, digits: int = 4) -> str:
+    return amount(float(length), "m", digits) if np.isfinite(length) else MISSING
+
+
+def _range(values: Array) -> str:
     known = values[np.isfinite(values)]
     return f"{amount(float(known.min()), '%', 3)} to {amount(float(known.max()), '%', 3)}" if known.size else MISSING
 
@@ -113,41 +118,18 @@ def _warnings(response: xr.Dataset) -> Iterator[str]:
 def _limits(response: xr.Dataset) -> Iterator[Limit]:
     share = response.first_harmonic_share.values
     known = share[np.isfinite(share)]
-    yield Limit(
-        "first harmonic",
-        f"{amount(float(known.min()), '%', 3)}, least share" if known.size else "unknown",
-        "95 %",
-        "The dampers act as in harmonic motion of their cavity. Motions with other harmonics above 5 % are marked.",
-    )
-    yield Limit(
-        "mass of the dampers",
-        amount(float(response.mass_ratio.max()), "%", 3),
-        "15 %",
-        "Share of the effective mass of the structure for an impact. Impacts on a lighter structure are weaker than on the "
-        "shaker of the map.",
-    )
-    error = response.peak_interpolation_error.values
-    worst = amount(float(np.nanmax(error)), "%", 2) if np.isfinite(error).any() else "unknown"
-    yield Limit(
-        "interpolation of the map",
-        worst,
-        "",
-        "Largest relative change of the peak with half of the map: compute more of it.",
-    )
+    least = f"{amount(float(known.min()), '%', 3)}, least share" if known.size else "unknown"
+    yield limit(_NAME, "first harmonic", least, "95 %")
+    yield limit(_NAME, "mass of the dampers", amount(float(response.mass_ratio.max()), "%", 3), "15 %")
+    yield limit(_NAME, "interpolation of the map", _worst(response.peak_interpolation_error))
     if "softening" in response.attrs:
-        change = response.peak_softening_error.values
-        worst = amount(float(np.nanmax(change)), "%", 2) if np.isfinite(change).any() else "unknown"
-        yield Limit(
-            "softening of the map",
-            worst,
-            "",
-            f"Largest relative change of the peak without the estimated effect of softening {response.attrs['softening']}. "
-            "If it is unknown or large, compare with rb.check_softening.",
-        )
+        softening = str(response.attrs["softening"])
+        yield limit(_NAME, "softening of the map", _worst(response.peak_softening_error), softening=softening)
 
 
-def _call(response: xr.Dataset) -> None:
-    """Return None: a response needs the dataset of its map, which the page does not hold."""
+def _worst(errors: xr.DataArray) -> str:
+    """Return the largest of some relative errors."""
+    return amount(float(errors.max()), "%", 2) if np.isfinite(errors).any() else "unknown"
 
 
 KIND = Kind(
@@ -155,7 +137,7 @@ KIND = Kind(
     cases=_cases,
     question=_question,
     answer=_answer,
-    call=_call,
+    call=lambda response: None,  # a response needs the dataset of its map, which the page does not hold
     pictures=_pictures,
     tables=_tables,
     warnings=_warnings,

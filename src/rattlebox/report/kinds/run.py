@@ -36,17 +36,9 @@ _NEGLIGIBLE = 5e-4
 """Share of the energy that is not mentioned."""
 
 
-def _cases(run: Run) -> Mapping[str, Case]:
-    return {"": run.case}
-
-
 def _question(run: Run) -> str:
     case = readable_case(run)
-    return (
-        f"How does the structure move within {amount(run.arrays.time[-1], 's')}?"
-        if case is None
-        else case_question(case)
-    )
+    return case_question(case) if case else f"How does the structure move within {amount(run.arrays.time[-1], 's')}?"
 
 
 def case_question(case: Case) -> str:
@@ -69,9 +61,8 @@ def _answer(run: Run) -> Iterator[str]:
 def attached_points(run: Run) -> list[str]:
     """Return the names of the points of tuned masses."""
     case = readable_case(run)
-    if case is None:
-        return []
-    return [part.label(number, len(case.tuned_masses)) for number, part in enumerate(case.tuned_masses)]
+    masses = () if case is None else case.tuned_masses
+    return [part.label(number, len(masses)) for number, part in enumerate(masses)]
 
 
 def result_sentences(values: Mapping[str, Value], leave_out: Sequence[str] = ()) -> Iterator[str]:
@@ -80,54 +71,44 @@ def result_sentences(values: Mapping[str, Value], leave_out: Sequence[str] = ())
     prefix, hidden = "peak_displacement[", {f"peak_displacement[{name}]" for name in leave_out}
     peaks = {name: value for name, value in numbers.items() if name.startswith(prefix) and name not in hidden}
     if peaks:
-        name = max(peaks, key=lambda each: peaks[each])
-        point = name.partition("[")[2][:-1]
+        largest = max(peaks, key=lambda name: peaks[name])
+        point = largest.partition("[")[2][:-1]
         steady = numbers.get(f"steady_rms_displacement[{point}]")
         half = numbers.get(f"steady_rms_displacement_error[{point}]", math.nan)
-        yield f"The peak displacement of {point} is {amount(peaks[name], 'm')}."
+        yield f"The peak displacement of {point} is {amount(peaks[largest], 'm')}."
         if steady is not None:
             interval = "95 % interval" if math.isfinite(half) else "the run is too short for a 95 % interval"
-            yield (
-                f"In the second half of the run its RMS displacement is {with_interval(steady, half, 'm')}"
-                f" ({interval})."
-            )
+            value = with_interval(steady, half, "m")
+            yield f"In the second half of the run its RMS displacement is {value} ({interval})."
         else:
             yield f"Its RMS displacement over the run is {amount(numbers[f'rms_displacement[{point}]'], 'm')}."
     if "equivalent_damping_ratio" in numbers:
         ratio, at = numbers["equivalent_damping_ratio"], numbers["damping_amplitude"]
         yield f"The free decay has a damping ratio of {amount(ratio, '%', 3)} at an amplitude of {amount(at, 'm')}."
-    supplied = numbers.get("supplied_energy", 0.0)
-    lost = [channel for channel in _LOSSES if numbers.get(f"share_{channel}", 0.0) > _NEGLIGIBLE]
-    verbs = ["is lost "] + [""] * len(lost)
-    parts = [
-        f"{amount(numbers[f'share_{channel}'], '%', 3)} {verb}{_LOSSES[channel]}"
-        for channel, verb in zip(lost, verbs, strict=False)
-    ]
-    if supplied > 0 and parts:
-        left = numbers.get("share_motion", 0.0)
+    supplied, left = numbers.get("supplied_energy", 0.0), numbers.get("share_motion", 0.0)
+    shares = {words: numbers.get(f"share_{channel}", 0.0) for channel, words in _LOSSES.items()}
+    lost = [f"{amount(share, '%', 3)} {words}" for words, share in shares.items() if share > _NEGLIGIBLE]
+    if supplied > 0 and lost:
+        lost[0] = lost[0].replace("% in", "% is lost in", 1)
         rest = f"; {amount(left, '%', 3)} is left in the motion" if left > _NEGLIGIBLE else ""
-        yield f"Of the {amount(supplied, 'J')} supplied, {joined(parts)}{rest}."
+        yield f"Of the {amount(supplied, 'J')} supplied, {joined(lost)}{rest}."
     if "steady_loss_power" in numbers:
         half = numbers.get("steady_loss_power_error", math.nan)
         yield f"The mean power lost in the second half is {with_interval(numbers['steady_loss_power'], half, 'W')}."
     if "impacts" in numbers:
-        hits = counted(int(numbers["impacts"]), "impact")
+        count = int(numbers["impacts"])
         speed, force = (numbers.get(name, math.nan) for name in ("largest_approach_speed", "peak_contact_force"))
         most = f", the fastest at {amount(speed, 'm/s')}" if math.isfinite(speed) else ""
         most += f", with a peak force of {amount(force, 'N')}" if math.isfinite(force) else ""
-        yield f"There are {hits}{most}." if int(numbers["impacts"]) != 1 else f"There is {hits}{most}."
+        yield f"There {'is' if count == 1 else 'are'} {counted(count, 'impact')}{most}."
 
 
 def _pictures(run: Run) -> Iterator[Picture]:
-    figures = run.plot
-    for name in (each for each in _CAPTIONS if each in dir(figures)):
-        # Without PyVista, which takes seconds to load, and half as wide, which takes a quarter of the time.
-        options = {"renderer": "plain", "size": "column"} if name == "particles" else {"size": "page"}
-        yield Picture(_CAPTIONS[name], partial(getattr(figures, name), **options))
-
-
-def _tables(run: Run) -> Iterator[Table]:
-    yield Table("Summary", (), run.summary().lines(), numbers=True)
+    for name, caption in _CAPTIONS.items():
+        if name in dir(run.plot):
+            # Without PyVista, which takes seconds to load, and half as wide, which takes a quarter of the time.
+            options = {"renderer": "plain", "size": "column"} if name == "particles" else {"size": "page"}
+            yield Picture(caption, partial(getattr(run.plot, name), **options))
 
 
 def _about(run: Run) -> Iterator[str]:
@@ -140,12 +121,12 @@ def _about(run: Run) -> Iterator[str]:
 
 KIND = Kind(
     name="Run",
-    cases=_cases,
+    cases=lambda run: {"": run.case},
     question=_question,
     answer=_answer,
     call=lambda run: Call("simulate"),
     pictures=_pictures,
-    tables=_tables,
+    tables=lambda run: [Table("Summary", (), run.summary().lines(), numbers=True)],
     warnings=lambda run: run.notes,
     limits=run_limits,
     about=_about,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,9 +11,9 @@ from rattlebox._util.phrases import joined
 from rattlebox._util.quantities import amount
 from rattlebox.plots.sensitivity import plot_sensitivity
 from rattlebox.report import study_words as words
-from rattlebox.report.kinds.sweep import KIND as SWEEP
-from rattlebox.report.kinds.sweep import measures_argument, options_of, system_words
-from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
+from rattlebox.report.arguments import measures_argument, options_of
+from rattlebox.report.limits import limit
+from rattlebox.report.parts import Call, Limit, Table
 from rattlebox.studies.work.measures import MEASURES
 
 if TYPE_CHECKING:
@@ -25,7 +24,7 @@ def _question(study: xr.Dataset) -> str:
     measures = joined([str(name).replace("_", " ") for name in study.measure.values])
     return (
         f"Which of {joined([str(path) for path in study.parameter.values])} cause the variation of {measures} of "
-        f"{system_words(study)}?"
+        f"{words.system_words(study)}?"
     )
 
 
@@ -62,13 +61,7 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
 
 def _limits(study: xr.Dataset) -> Iterator[Limit]:
     left = int(study.left_out.max()) if "left_out" in study else 0
-    yield Limit(
-        "sampling",
-        f"{study.attrs.get('n', '?')} base points, {left} left out",
-        "",
-        "Intervals are from a bootstrap over the base points. The indices hold for independent parameters within "
-        "their bounds.",
-    )
+    yield limit("sensitivity", "sampling", f"{study.attrs.get('n', '?')} base points, {left} left out")
     yield from words.study_limits(study)
 
 
@@ -81,24 +74,18 @@ def _call(study: xr.Dataset) -> Call | None:
     if averaged:
         remarks += (f"levels and starts: add those of {joined(averaged)}",)
     options = options_of(study, "log", "confidence", "seed", "skip", "cycles", "samples", "point")
-    given = {"bounds": bounds, "measure": measures, "n": int(study.attrs["n"]), **options}
-    return Call("sensitivity", given, "" if remarks else "sensitivity", remarks)
+    arguments = {"bounds": bounds, "measure": measures, "n": int(study.attrs["n"]), **options}
+    return Call("sensitivity", arguments, "" if remarks else "sensitivity", remarks)
 
 
-KIND = Kind(
-    name="Sensitivity",
-    cases=words.cases_of,
-    question=_question,
-    answer=_answer,
-    call=_call,
-    pictures=lambda study: [
-        Picture(
-            "Share of the variance that each parameter causes alone, and with its interactions.",
-            partial(plot_sensitivity, study, size="page"),
-        )
-    ],
+KIND = words.study_kind(
+    "Sensitivity",
+    _question,
+    _answer,
+    _call,
+    words.picture(
+        plot_sensitivity, "Share of the variance that each parameter causes alone, and with its interactions."
+    ),
     tables=_tables,
-    warnings=SWEEP.warnings,
     limits=_limits,
-    about=SWEEP.about,
 )

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,71 +13,65 @@ from rattlebox.plots.basins import plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation
 from rattlebox.plots.lyapunov import plot_lyapunov
 from rattlebox.report import study_words as words
-from rattlebox.report.kinds.sweep import KIND as SWEEP
-from rattlebox.report.kinds.sweep import axes_argument, measures_argument, options_of, system_words
-from rattlebox.report.parts import Call, Kind, Picture
+from rattlebox.report.arguments import axes_argument, call_with_measures, options_of
+from rattlebox.report.parts import Call
 from rattlebox.studies.work.orbits import Motion
 
 if TYPE_CHECKING:
     import xarray as xr
+    from numpy.typing import NDArray
+
+_TRANSIENT = -2
+"""Stands for the period of a motion that is still transient."""
+_ALWAYS = ("impacts", "impacts_per_cycle")
+"""Measures that bifurcations and basins always have."""
 
 
 def _bifurcation_question(study: xr.Dataset) -> str:
-    return f"Which steady motions does {system_words(study)} have over {words.axes_words(study.drop_dims('cycle'))}?"
+    return (
+        f"Which steady motions does {words.system_words(study)} have over {words.axes_words(study.drop_dims('cycle'))}?"
+    )
 
 
 def _bifurcation_answer(study: xr.Dataset) -> Iterator[str]:
-    if unfinished := words.progress_sentence(study):
-        yield unfinished
     if "period" not in study:
         return
     finished = study.status.values == 0
     shown = np.where(_transient(study), _TRANSIENT, study.period.values)[finished]
     periods, counts = np.unique(shown, return_counts=True)
-    for period, count in sorted(zip(periods.tolist(), counts.tolist(), strict=True), key=lambda each: -each[1]):
-        what = (
-            f"a period of {counted(int(period), 'cycle')}"
-            if period > 0
-            else "no period, or a longer one than was examined"
-        )
+    for k in np.argsort(-counts, kind="stable"):
+        share, period = amount(counts[k] / counts.sum(), "%", 3), int(periods[k])
         if period == _TRANSIENT:
-            yield f"{amount(count / counts.sum(), '%', 3)} of the motions are still transient."
-            continue
-        yield f"{amount(count / counts.sum(), '%', 3)} of the motions have {what}."
+            yield f"{share} of the motions are still transient."
+        elif period > 0:
+            yield f"{share} of the motions have a period of {counted(period, 'cycle')}."
+        else:
+            yield f"{share} of the motions have no period, or a longer one than was examined."
 
 
-_TRANSIENT = -2
-
-
-def _transient(study: xr.Dataset) -> Any:
+def _transient(study: xr.Dataset) -> NDArray[np.bool_]:
     """Return where a motion still comes closer to a periodic one."""
-    return study.motion.values == Motion.TRANSIENT if "motion" in study else np.zeros(study.status.shape, bool)
+    return (
+        np.asarray(study.motion.values == Motion.TRANSIENT) if "motion" in study else np.zeros(study.status.shape, bool)
+    )
 
 
 def _bifurcation_call(study: xr.Dataset) -> Call | None:
     axes = axes_argument(study)
     if not axes or len(axes) != 1:
         return None
-    (path, values), directions = next(iter(axes.items())), [str(each) for each in study.direction.values]
+    (path, values), directions = next(iter(axes.items())), study.direction.values.tolist()
     if not isinstance(values, list):
         return None
-    given = {"path": path, "values": values, "direction": "both" if len(directions) > 1 else directions[0]}
-    given |= options_of(study, "cycles", "point", "tolerance", "apart")
+    arguments = {"path": path, "values": values, "direction": "both" if len(directions) > 1 else directions[0]}
+    arguments |= options_of(study, "cycles", "point", "tolerance", "apart")
     if "approach_speed" in study:
-        given["show"] = "impacts"
-    return _with_measures("bifurcation", study, given)
-
-
-def _with_measures(function: str, study: xr.Dataset, given: dict[str, Any]) -> Call:
-    """Return a call with the measures that were asked for, besides those that the study always has."""
-    measures, remarks = measures_argument(study, ("impacts", "impacts_per_cycle"))
-    if measures:
-        given["measure"] = measures
-    return Call(function, given, "" if remarks else function, remarks)
+        arguments["show"] = "impacts"
+    return call_with_measures("bifurcation", study, arguments, _ALWAYS)
 
 
 def _basins_question(study: xr.Dataset) -> str:
-    return f"To which steady motion of {system_words(study)} does each start lead, over {_plane_words(study)}?"
+    return f"To which steady motion of {words.system_words(study)} does each start lead, over {_plane_words(study)}?"
 
 
 def _plane_words(study: xr.Dataset) -> str:
@@ -87,8 +80,6 @@ def _plane_words(study: xr.Dataset) -> str:
 
 
 def _basins_answer(study: xr.Dataset) -> Iterator[str]:
-    if unfinished := words.progress_sentence(study):
-        yield unfinished
     if "share" not in study:
         return
     yield f"{counted(study.sizes['orbit'], 'periodic motion is', 'periodic motions are')} reached."
@@ -107,12 +98,10 @@ def _basins_answer(study: xr.Dataset) -> Iterator[str]:
 def _lyapunov_question(study: xr.Dataset) -> str:
     over = study[[name for name in ("status", "exponent") if name in study]]
     axes = words.axes_words(over) if words.axes_of(over) else ""
-    return f"Is the motion of {system_words(study)} chaotic{f', over {axes}' if axes else ''}?"
+    return f"Is the motion of {words.system_words(study)} chaotic{f', over {axes}' if axes else ''}?"
 
 
 def _lyapunov_answer(study: xr.Dataset) -> Iterator[str]:
-    if unfinished := words.progress_sentence(study):
-        yield unfinished
     value, error = study.exponent.values.ravel(), study.standard_error.values.ravel()
     known = np.isfinite(value) | np.isneginf(value)
     if known.sum() == 1:
@@ -128,60 +117,40 @@ def _lyapunov_answer(study: xr.Dataset) -> Iterator[str]:
         yield sentence
 
 
-def _picture(draw: Callable[..., Any], caption: str) -> Callable[[xr.Dataset], Iterator[Picture]]:
-    def pictures(study: xr.Dataset) -> Iterator[Picture]:
-        yield Picture(caption, partial(draw, study, size="page"))
-
-    return pictures
-
-
-def _kind(name: str, question: Any, answer: Any, call: Any, draw: Any, caption: str) -> Kind:
-    return Kind(
-        name=name,
-        cases=words.cases_of,
-        question=question,
-        answer=answer,
-        call=call,
-        pictures=_picture(draw, caption),
-        tables=lambda study: [words.axis_table(study)],
-        warnings=SWEEP.warnings,
-        limits=SWEEP.limits,
-        about=SWEEP.about,
-    )
+def _basins_call(study: xr.Dataset) -> Call | None:
+    axes = axes_argument(study)
+    if not axes:
+        return None
+    options = options_of(study, "cycles", "point", "tolerance", "apart")
+    return call_with_measures("basins", study, {"starts": axes, **options}, _ALWAYS)
 
 
-BIFURCATION = _kind(
+def _lyapunov_call(study: xr.Dataset) -> Call:
+    options = options_of(study, "cycles", "skip", "steps", "pairs", "distance", "reach", "seed")
+    return Call("lyapunov", {"axes": axes_argument(study) or {}, **options}, "lyapunov")
+
+
+BIFURCATION = words.study_kind(
     "Bifurcation diagram",
     _bifurcation_question,
     _bifurcation_answer,
     _bifurcation_call,
-    plot_bifurcation,
-    "State of the motion once per cycle over the parameter: one point is a motion that repeats every cycle.",
+    words.picture(
+        plot_bifurcation,
+        "State of the motion once per cycle over the parameter: one point is a motion that repeats every cycle.",
+    ),
 )
-BASINS = _kind(
+BASINS = words.study_kind(
     "Basins of attraction",
     _basins_question,
     _basins_answer,
-    lambda study: (
-        _with_measures("basins", study, {"starts": axes, **options_of(study, "cycles", "point", "tolerance", "apart")})
-        if (axes := axes_argument(study))
-        else None
-    ),
-    plot_basins,
-    "Starts in the colour of the motion to which each leads.",
+    _basins_call,
+    words.picture(plot_basins, "Starts in the colour of the motion to which each leads."),
 )
-LYAPUNOV = _kind(
+LYAPUNOV = words.study_kind(
     "Lyapunov exponent",
     _lyapunov_question,
     _lyapunov_answer,
-    lambda study: Call(
-        "lyapunov",
-        {
-            "axes": axes_argument(study) or {},
-            **options_of(study, "cycles", "skip", "steps", "pairs", "distance", "reach", "seed"),
-        },
-        "lyapunov",
-    ),
-    plot_lyapunov,
-    "Largest Lyapunov exponent: above zero, neighbouring motions separate.",
+    _lyapunov_call,
+    words.picture(plot_lyapunov, "Largest Lyapunov exponent: above zero, neighbouring motions separate."),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
@@ -38,14 +38,10 @@ class UnfinishedRun:
         return Case.from_toml(self.case_toml)
 
 
-def _cases(run: UnfinishedRun) -> Mapping[str, Case]:
-    return {"": run.case}
-
-
 def _answer(run: UnfinishedRun) -> Iterator[str]:
-    share = amount(run.time / run.case.duration, "%", 2)
+    reached, end = amount(run.time, "s"), amount(run.case.duration, "s")
     yield (
-        f"The run is not finished: it has reached {amount(run.time, 's')} of {amount(run.case.duration, 's')} ({share}), in "
+        f"The run is not finished: it has reached {reached} of {end} ({amount(run.time / run.case.duration, '%', 2)}), in "
         f"{amount(run.seconds, 's', 3)} of computing. There are no results yet; the command that started the run resumes it."
     )
 
@@ -60,7 +56,7 @@ def _pictures(run: UnfinishedRun) -> Iterator[Picture]:
 
 KIND = Kind(
     name="Unfinished run",
-    cases=_cases,
+    cases=lambda run: {"": run.case},
     question=lambda run: case_question(run.case),
     answer=_answer,
     call=lambda run: Call("simulate"),
