@@ -17,8 +17,8 @@ from rattlebox.core._core import Partner, Status
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.dem_run import DemRun
 from rattlebox.engines.dem_snapshots import plan_snapshots
-from rattlebox.engines.end_state import EndState, losses_from_zero
-from rattlebox.engines.responses import responses
+from rattlebox.engines.end_state import LOSSES, EndState, losses_from_zero
+from rattlebox.engines.responses import structure_arrays
 from rattlebox.engines.run_notes import extrapolation_notes, particle_notes, table_notes
 from rattlebox.engines.status import describe, final_status
 from rattlebox.model.methods import Dem
@@ -145,8 +145,7 @@ def _result(
         raw = losses_from_zero(raw)
     arrays = _arrays(resolved_case, packed, raw, dem)
     overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
-    losses = (raw.normal_loss, raw.plastic_loss, raw.sliding_loss, raw.rolling_loss)
-    lost = sum((loss[-1].sum(axis=1) for loss in losses), np.zeros(len(arrays.dampers)))
+    lost = sum((getattr(raw, name)[-1].sum(axis=1) for name in LOSSES), np.zeros(len(arrays.dampers)))
     moves = arrays.base_velocity[:, None] + arrays.cavity_velocity
     softened = effects(
         resolved_case,
@@ -201,41 +200,27 @@ def _relative_speeds(arrays: RunArrays) -> Array:
 
 
 def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core.Dem) -> RunArrays:
-    modes, dampers = case.modes, case.particle_dampers
-    times, q, p = raw.time, raw.q, raw.p
-    lines = modes.lines()
-    at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
+    """Return the arrays of a run: those of the structure, and motion and energies of cavities and particles."""
+    dampers, time = case.particle_dampers, raw.time
     shapes = [cavity.shape for cavity in packed.cavities]
-    displacement = np.stack([q @ shape for shape in shapes], axis=1)
-    base = np.zeros((3, times.size, 3))
+    displacement = np.stack([raw.q @ shape for shape in shapes], axis=1)
+    base = np.zeros((3, time.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
-        base += np.multiply.outer(acceleration.motion(times), direction_of_base(case.particle_dampers, signal))
-    load = np.array([signal.evaluate(times) for signal in case.loads]).reshape(len(case.loads), times.size).T
+        base += np.multiply.outer(acceleration.motion(time), direction_of_base(dampers, signal))
     ends = dem.state().cavities
     contents = [damper.contents for damper in dampers]
+    fixed = {name: np.concatenate([getattr(part, name) for part in contents]) for name in ("radius", "mass", "species")}
     return RunArrays(
+        **structure_arrays(case, time, raw.q, raw.p, base, raw.force, shapes),
         engine="dem",
-        time=times,
-        points=tuple(lines),
         dampers=tuple(damper.label(index) for index, damper in enumerate(dampers)),
-        loads=tuple(f"{signal.kind} {index + 1}" for index, signal in enumerate(case.loads)),
-        displacement=q @ at_points.T,
-        velocity=p @ at_points.T,
         cavity_displacement=displacement,
-        cavity_velocity=np.stack([p @ shape for shape in shapes], axis=1),
-        cavity_force=raw.force,
+        cavity_velocity=np.stack([raw.p @ shape for shape in shapes], axis=1),
         cavity_moment=raw.moment,
         centre_of_mass=raw.centre - displacement,
         momentum=raw.momentum,
         contacts=raw.contacts,
-        base_displacement=base[0],
-        base_velocity=base[1],
-        base_acceleration=base[2],
-        load=load,
-        **responses(case, q, p, load, base[2], raw.force, shapes),
-        particle_mass=np.array([each.mass.sum() for each in contents]),
-        mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
-        mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
+        particle_mass=np.array([part.mass.sum() for part in contents]),
         kinetic_energy=raw.kinetic,
         rotation_energy=raw.rotation,
         contact_energy=raw.elastic,
@@ -243,18 +228,13 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
         load_work=raw.load_work.sum(axis=1),
         base_work=raw.base_work.sum(axis=1),
         viscous_loss=raw.viscous_loss.sum(axis=1),
-        normal_loss=raw.normal_loss,
-        plastic_loss=raw.plastic_loss,
-        sliding_loss=raw.sliding_loss,
-        rolling_loss=raw.rolling_loss,
+        **{name: getattr(raw, name) for name in LOSSES},
         particles={
             "position": np.concatenate([end.position - end.displacement for end in ends]),
             "velocity": np.concatenate([end.velocity for end in ends]),
             "spin": np.concatenate([end.spin for end in ends]),
-            "radius": np.concatenate([each.radius for each in contents]),
-            "mass": np.concatenate([each.mass for each in contents]),
-            "damper": np.repeat(np.arange(len(dampers)), [each.radius.size for each in contents]),
-            "species": np.concatenate([each.species for each in contents]),
+            "damper": np.repeat(np.arange(len(dampers)), [part.radius.size for part in contents]),
+            **fixed,
         },
     )
 

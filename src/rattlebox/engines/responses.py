@@ -1,4 +1,4 @@
-"""Accelerations, modal coordinates and the force on the base, from the modes and the forces at the output times."""
+"""Motion of the structure and its base, loads and the force on the base, from the modal motion and the contact forces."""
 
 from __future__ import annotations
 
@@ -15,6 +15,54 @@ if TYPE_CHECKING:
     from rattlebox.model.modes import ModalModel
 
 FloatArray = NDArray[np.float64]
+
+
+def structure_arrays(
+    case: Case,
+    time: FloatArray,
+    q: FloatArray,
+    p: FloatArray,
+    base: FloatArray,
+    force: FloatArray,
+    shapes: Iterable[FloatArray],
+) -> dict[str, Any]:
+    """Return the arrays of a run that describe structure, loads and base, by name; both engines have them.
+
+    Parameters
+    ----------
+    q, p : (T, M) float
+        Modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
+    base : (3, T) or (3, T, 3) float
+        Displacement, velocity and acceleration of the base; three components in a 3-D run.
+    force : (T, D) or (T, D, 3) float
+        Contact force on each cavity [N].
+    shapes
+        Mode shapes at each cavity, (M,) or (M, 3) [kg^-1/2].
+    """
+    modes = case.modes
+    at_points = _shapes_at_points(modes)
+    load = np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T
+    return {
+        "time": time,
+        "points": tuple(modes.lines()),
+        "loads": tuple(f"{signal.kind} {number}" for number, signal in enumerate(case.loads, 1)),
+        "displacement": q @ at_points.T,
+        "velocity": p @ at_points.T,
+        "base_displacement": base[0],
+        "base_velocity": base[1],
+        "base_acceleration": base[2],
+        "cavity_force": force,
+        "load": load,
+        "mode_frequency": np.sqrt(modes.stiffness) / (2 * np.pi),
+        "mode_energy": 0.5 * (p**2 + modes.stiffness * q**2),
+        **responses(case, q, p, load, base[2], force, shapes),
+    }
+
+
+def _shapes_at_points(modes: ModalModel) -> FloatArray:
+    """Return the mode shapes in the directions in which the points move, (P, M)."""
+    lines = modes.lines()
+    return np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
 
 
 def responses(
@@ -70,9 +118,7 @@ def responses(
     inertia = _inertia(case, modes, three_d)
     if inertia is not None:
         driven -= base @ inertia.T if three_d else np.multiply.outer(base, inertia)
-    lines = modes.lines()
-    at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
-    acceleration = (driven - internal) @ at_points.T
+    acceleration = (driven - internal) @ _shapes_at_points(modes).T
     return {
         "acceleration": acceleration,
         "absolute_acceleration": acceleration + base_at_points(case, base),

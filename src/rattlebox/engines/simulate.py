@@ -14,7 +14,7 @@ from rattlebox._util.interrupts import raise_if_pressed
 from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
-from rattlebox.engines.responses import responses
+from rattlebox.engines.responses import structure_arrays
 from rattlebox.engines.run_notes import extrapolation_notes, impact_notes, simultaneous_notes
 from rattlebox.engines.status import contact_name, describe, final_status
 from rattlebox.model.case import Case
@@ -29,6 +29,9 @@ from rattlebox.results.run import Run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+_ENERGIES = ("contact_energy", "load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss")
+"""Energies of a sample that the core returns under the names of the arrays of a run."""
 
 
 def simulate(
@@ -185,18 +188,8 @@ def _limit_samples(raw: _core.Result) -> _core.Result:
     chosen = raw.chosen
     if not many or chosen.all():
         return raw
-    return raw.replace(
-        time=raw.time[chosen],
-        state=raw.state[chosen],
-        chosen=chosen[chosen],
-        load_work=raw.load_work[chosen],
-        base_work=raw.base_work[chosen],
-        viscous_loss=raw.viscous_loss[chosen],
-        normal_loss=raw.normal_loss[chosen],
-        plastic_loss=raw.plastic_loss[chosen],
-        contact_energy=raw.contact_energy[chosen],
-        cavity_force=raw.cavity_force[chosen],
-    )
+    sampled = ("time", "state", "chosen", "cavity_force", *_ENERGIES)
+    return raw.replace(**{name: getattr(raw, name)[chosen] for name in sampled})
 
 
 def _result(case: Case, raw: _core.Result) -> Run:
@@ -238,35 +231,26 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
 
 
 def _arrays(case: Case, raw: _core.Result) -> RunArrays:
-    modes = case.modes
-    m, dampers = len(modes.decay), case.impact_dampers
-    counts = [len(damper.balls) for damper in dampers]
-    b, d = sum(counts), len(dampers)
-    time, state = raw.time, raw.state
-    q, p = state[:, 0 : 2 * m : 2], state[:, 1 : 2 * m : 2]
-    position, velocity = state[:, 2 * m : 2 * m + b], state[:, 2 * m + b :]
-    ball_damper = np.repeat(np.arange(d), counts)
-    shapes = np.array([modes.shape(damper.point) for damper in dampers]).reshape(d, m)
-    centre = np.concatenate([damper.centres for damper in dampers]) if b else np.zeros(0)
-    mass = np.concatenate([damper.masses for damper in dampers]) if b else np.zeros(0)
-    gravity = np.array([damper.gravity for damper in dampers])
-    potential = np.zeros((time.size, d))
-    np.add.at(potential.T, ball_damper, -(mass * gravity[ball_damper])[:, None] * position.T)
-    lines = modes.lines()
-    points = list(lines)
-    at_points = np.array(list(lines.values())).reshape(len(points), m)
+    """Return the arrays of a run: those of the structure, and positions and energies of the balls."""
+    dampers = case.impact_dampers
+    m, d = len(case.modes.decay), len(dampers)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
-    base = _base_motion(case, time)
-    force = raw.cavity_force
-    load = np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T
+    counts = [len(damper.balls) for damper in dampers]
+    ball_damper = np.repeat(np.arange(d), counts)
+    b = ball_damper.size
+    # The state has displacement and velocity of each mode by turns, then the positions and the velocities of all balls.
+    q, p = raw.state[:, 0 : 2 * m : 2], raw.state[:, 1 : 2 * m : 2]
+    position, velocity = raw.state[:, 2 * m : 2 * m + b], raw.state[:, 2 * m + b :]
+    shapes = np.array([case.modes.shape(damper.point) for damper in dampers]).reshape(d, m)
+    centre = np.concatenate([np.zeros(0), *(damper.centres for damper in dampers)])
+    mass = np.concatenate([np.zeros(0), *(damper.masses for damper in dampers)])
+    gravity = np.array([damper.gravity for damper in dampers])
+    potential = np.zeros((raw.time.size, d))
+    np.add.at(potential.T, ball_damper, -(mass * gravity[ball_damper])[:, None] * position.T)
     return RunArrays(
-        time=time,
-        points=tuple(points),
-        balls=tuple(f"{names[i]}/{k + 1}" for i in range(d) for k in range(counts[i])),
+        **structure_arrays(case, raw.time, q, p, _base_motion(case, raw.time), raw.cavity_force, shapes),
+        balls=tuple(f"{name}/{k + 1}" for name, count in zip(names, counts, strict=True) for k in range(count)),
         dampers=tuple(names),
-        loads=tuple(f"{signal.kind} {index + 1}" for index, signal in enumerate(case.loads)),
-        displacement=q @ at_points.T,
-        velocity=p @ at_points.T,
         ball_damper=ball_damper,
         ball_centre=centre,
         clearance=np.array([damper.clearance for damper in dampers]),
@@ -274,23 +258,10 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
         ball_velocity=velocity,
         relative_position=position + centre - (q @ shapes.T)[:, ball_damper],
         relative_velocity=velocity - (p @ shapes.T)[:, ball_damper],
-        base_displacement=base[0],
-        base_velocity=base[1],
-        base_acceleration=base[2],
-        cavity_force=force,
-        load=load,
-        **responses(case, q, p, load, base[2], force, shapes),
-        mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
-        mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
         ball_energy=0.5 * mass * velocity**2,
-        contact_energy=raw.contact_energy,
         gravity_energy=potential,
-        load_work=raw.load_work,
-        base_work=raw.base_work,
-        viscous_loss=raw.viscous_loss,
-        normal_loss=raw.normal_loss,
-        plastic_loss=raw.plastic_loss,
         impacts={name: getattr(raw.impacts, name) for name in raw.impacts.fields()},
+        **{name: getattr(raw, name) for name in _ENERGIES},
     )
 
 
