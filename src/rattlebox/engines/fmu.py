@@ -9,15 +9,15 @@ import re
 import struct
 import uuid
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import Any, Literal
 
 import rattlebox
 from rattlebox._util.atomic_io import atomic_write, require_folder
 from rattlebox._util.own_files import seal
+from rattlebox._util.templates import render
 from rattlebox.core import _core
 from rattlebox.core.component import component_library, other_libraries
 from rattlebox.model.case import Case
@@ -157,13 +157,15 @@ def fmu_and_notes(
     model = re.sub(r"\W", "_", path.stem)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
     variables = list(_variables(packed, input))
+    words = {"name": model, "variables": variables, "version": rattlebox.__version__, "token": token}
+    words |= {"base_units": BASE_UNITS, "input_time": INPUT_TIME, "notes": packed.notes, "systems": list(libraries)}
     content = {
-        "modelDescription.xml": (_description_2 if fmi == 2 else _description_3)(model, token, variables).encode(),
+        "modelDescription.xml": _filled(f"fmi{fmi}.xml", words),
         **{f"binaries/{folder}/{model}{file.suffix}": file.read_bytes() for folder, file in libraries.items()},
         "resources/case.bin": packed.data,
         "resources/input": input.encode(),
         "resources/limits": _limits(case, packed).encode(),
-        "documentation/index.html": _page(model, variables, packed.notes, list(libraries)).encode(),
+        "documentation/index.html": _filled("fmu.html", words),
     }
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
@@ -172,6 +174,11 @@ def fmu_and_notes(
     with atomic_write(path) as name:
         name.write_bytes(seal(archive.getvalue(), ".fmu"))
     return path, packed.notes
+
+
+def _filled(template: str, words: Mapping[str, object]) -> bytes:
+    """Return a file of the FMU from its template."""
+    return f"{render('rattlebox.engines', template, **words)}\n".encode()
 
 
 def _limits(case: Case, packed: PackedComponent) -> str:
@@ -228,103 +235,3 @@ def _variables(packed: PackedComponent, quantity: str) -> Iterator[Variable]:
 
 def _plain(name: str) -> str:
     return re.sub(r"\W", "_", name)
-
-
-_CAPABILITIES = (
-    'canHandleVariableCommunicationStepSize="true" canGetAndSetFMU{s}tate="true" canSerializeFMU{s}tate="true"'
-)
-_INPUT_TIME = "end of a communication step to which the inputs belong"
-
-
-def _head(name: str, version: str, token: str) -> str:
-    return (
-        f'<?xml version="1.0" encoding="UTF-8"?>\n<fmiModelDescription fmiVersion="{version}" modelName="{name}" {token} '
-        f'generationTool="Rattlebox {rattlebox.__version__}" variableNamingConvention="flat">\n'
-    )
-
-
-def _units() -> str:
-    rows = []
-    for unit, powers in BASE_UNITS.items():
-        base = " ".join(f'{name}="{power}"' for name, power in powers.items())
-        rows.append(f'<Unit name="{unit}"><BaseUnit {base}/></Unit>')
-    return f"<UnitDefinitions>{''.join(rows)}</UnitDefinitions>\n"
-
-
-def _attributes(variable: Variable) -> str:
-    return (
-        f'name="{escape(variable.name)}" valueReference="{variable.reference}" description="{escape(variable.description)}" '
-        f'causality="{variable.causality}" variability="{variable.variability}"'
-    )
-
-
-def _value(variable: Variable) -> str:
-    unit = f' unit="{variable.unit}"' if variable.unit else ""
-    return unit if variable.start is None else f'{unit} start="{variable.start!r}"'
-
-
-def _description_2(name: str, token: str, variables: list[Variable]) -> str:
-    rows = [
-        f'<ScalarVariable name="input_time" valueReference="{INPUT_TIME}" description="{_INPUT_TIME}" causality="parameter" '
-        'variability="fixed" initial="exact"><Enumeration declaredType="InputTime" start="2"/></ScalarVariable>'
-    ]
-    for variable in variables:
-        initial = {"parameter": ' initial="exact"', "output": ' initial="calculated"'}.get(variable.causality, "")
-        rows.append(f"<ScalarVariable {_attributes(variable)}{initial}><Real{_value(variable)}/></ScalarVariable>")
-    outputs = [number for number, variable in enumerate(variables, 2) if variable.causality == "output"]
-    unknowns = "".join(f'<Unknown index="{number}"/>' for number in outputs)
-    return (
-        _head(name, "2.0", f'guid="{{{token}}}"')
-        + f'<CoSimulation modelIdentifier="{name}" {_CAPABILITIES.format(s="s")}/>\n'
-        + _units()
-        + '<TypeDefinitions><SimpleType name="InputTime"><Enumeration><Item name="start" value="1"/>'
-        + '<Item name="end" value="2"/></Enumeration></SimpleType></TypeDefinitions>\n'
-        + '<LogCategories><Category name="logStatusWarning"/><Category name="logStatusError"/></LogCategories>\n'
-        + '<DefaultExperiment startTime="0" stopTime="1" stepSize="1e-4"/>\n'
-        + "<ModelVariables>\n"
-        + "\n".join(rows)
-        + "\n</ModelVariables>\n"
-        + f"<ModelStructure><Outputs>{unknowns}</Outputs><InitialUnknowns>{unknowns}</InitialUnknowns></ModelStructure>\n"
-        + "</fmiModelDescription>\n"
-    )
-
-
-def _description_3(name: str, token: str, variables: list[Variable]) -> str:
-    rows = [
-        '<Float64 name="time" valueReference="0" causality="independent" variability="continuous" unit="s"/>',
-        f'<Enumeration name="input_time" valueReference="{INPUT_TIME}" description="{_INPUT_TIME}" causality="parameter" '
-        'variability="fixed" declaredType="InputTime" start="2"/>',
-    ]
-    rows += [f"<Float64 {_attributes(variable)}{_value(variable)}/>" for variable in variables]
-    outputs = [variable.reference for variable in variables if variable.causality == "output"]
-    return (
-        _head(name, "3.0", f'instantiationToken="{{{token}}}"')
-        + f'<CoSimulation modelIdentifier="{name}" {_CAPABILITIES.format(s="S")}/>\n'
-        + _units()
-        + '<TypeDefinitions><EnumerationType name="InputTime"><Item name="start" value="1"/><Item name="end" value="2"/>'
-        + "</EnumerationType></TypeDefinitions>\n"
-        + '<LogCategories><Category name="logStatusWarning"/><Category name="logStatusError"/></LogCategories>\n'
-        + '<DefaultExperiment startTime="0" stopTime="1" stepSize="1e-4"/>\n'
-        + "<ModelVariables>\n"
-        + "\n".join(rows)
-        + "\n</ModelVariables>\n"
-        + "<ModelStructure>"
-        + "".join(f'<Output valueReference="{reference}"/>' for reference in outputs)
-        + "".join(f'<InitialUnknown valueReference="{reference}"/>' for reference in outputs)
-        + "</ModelStructure>\n</fmiModelDescription>\n"
-    )
-
-
-def _page(name: str, variables: list[Variable], notes: tuple[str, ...], systems: list[str]) -> str:
-    rows = "".join(
-        f"<tr><td>{escape(v.name)}</td><td>{v.causality}</td><td>{v.unit}</td><td>{escape(v.description)}</td></tr>"
-        for v in variables
-    )
-    return (
-        f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title><h1>{name}</h1>'
-        "<p>A damper, written by Rattlebox. Forces are means over the last communication step. The parameter input_time "
-        "is the end of a step to which the inputs belong: 1 start, 2 end.</p>"
-        f"<table><tr><th>Variable</th><th>Causality</th><th>Unit</th><th>Description</th></tr>{rows}</table>"
-        f"{''.join(f'<p>{escape(note)}</p>' for note in notes)}"
-        f"<p>Tested on {systems[0]}{'; compiled, never run: ' if systems[1:] else ''}{', '.join(systems[1:])}.</p></html>\n"
-    )
