@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,14 +12,22 @@ from matplotlib.patches import Patch
 
 from ..model.errors import Hint
 from ..results.figures import study_figure
-from .style import FAINT, INK, Size, StyledFigure, figure_style, label, map_colours, pen, scaled
+from .labels import StudyAxis, unit_of
+from .style import FAINT, INK, Size, StyledFigure, figure_style, map_colours, pen
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
 _COLOURED = 6
-_OTHER, _NONE, _FAILED, _TRANSIENT = _COLOURED, _COLOURED + 1, _COLOURED + 2, _COLOURED + 3
+_OTHER, _NONE, _FAILED, _TRANSIENT = range(_COLOURED, _COLOURED + 4)
+_TEXTS = {
+    _OTHER: "smaller basins",
+    _NONE: "no period found",
+    _FAILED: "did not finish",
+    _TRANSIENT: "still transient",
+}
 
 
 @study_figure("basins")
@@ -55,7 +64,7 @@ def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
     with figure_style(size):
         figure = StyledFigure(size, 1.0 if size == "column" else 0.62)
         axes = figure.subplots()
-        x, y = (_Axis(maps[dim]) for dim in dims)
+        x, y = (_axis(maps[dim]) for dim in dims)
         attractor = maps["attractor"].values.T
         kinds = np.where(attractor > _COLOURED, _OTHER, attractor - 1)
         kinds = np.where(attractor == 0, _NONE, np.where(attractor < 0, _FAILED, kinds))
@@ -65,7 +74,7 @@ def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
         axes.pcolormesh(x.edges, y.edges, kinds, cmap=palette, norm=norm, rasterized=True)
         x.label(axes, "x")
         y.label(axes, "y")
-        _draw_strobes(axes, maps, x, y, palette)
+        _draw_strobes(axes, maps, dict(zip(dims, (x, y), strict=True)), palette)
         handles = [
             Patch(facecolor=palette(kind), edgecolor=FAINT, linewidth=pen(0.5), label=_legend_text(maps, kind, kinds))
             for kind in np.unique(kinds).tolist()
@@ -74,34 +83,12 @@ def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
     return figure
 
 
-class _Axis:
-    """Axis of the map."""
-
-    def __init__(self, coord: xr.DataArray) -> None:
-        unit = str(coord.attrs.get("units", "1"))
-        numbers = coord.dtype.kind in "fiu"
-        values = coord.values if numbers else np.arange(coord.size)
-        self.divisor, self.unit = scaled(values, unit) if numbers and unit != "1" else (1.0, "")
-        self.coord, self.centres = coord, values / self.divisor
-        self.texts = None if numbers else [str(value) for value in coord.values]
-
-    @property
-    def edges(self) -> Any:
-        """Edges of the cells, (n + 1,)."""
-        c = self.centres
-        if len(c) == 1:
-            return c[0] + np.array([-0.5, 0.5])
-        inner = 0.5 * (c[1:] + c[:-1])
-        return np.concatenate([[2 * c[0] - inner[0]], inner, [2 * c[-1] - inner[-1]]])
-
-    def label(self, axes: Axes, which: Any) -> None:
-        """Label an axis of the figure and its ticks."""
-        text = str(self.coord.attrs.get("long_name", self.coord.name))
-        fraction = str(self.coord.name).endswith("start") and not self.unit
-        label(axes, which, text[:1].upper() + text[1:], "part of the gap" if fraction else self.unit)
-        if self.texts:
-            axis = axes.xaxis if which == "x" else axes.yaxis
-            axis.set_ticks(self.centres, self.texts)
+def _axis(coord: xr.DataArray) -> StudyAxis:
+    """Return an axis of the map; a start without unit is a part of the gap."""
+    axis = StudyAxis.of(coord)
+    if str(coord.name).endswith("start") and not axis.values.unit:
+        return axis._replace(values=axis.values._replace(unit="part of the gap"))
+    return axis
 
 
 def _palette() -> ListedColormap:
@@ -110,44 +97,35 @@ def _palette() -> ListedColormap:
     return ListedColormap([*map_colours()(order), FAINT, INK, "white", "0.9"])
 
 
-def _legend_text(maps: xr.Dataset, kind: int, kinds: Any) -> str:
-    if kind >= _OTHER:
-        text = {
-            _OTHER: "smaller basins",
-            _NONE: "no period found",
-            _FAILED: "did not finish",
-            _TRANSIENT: "still transient",
-        }[kind]
-        return f"{text}, {_percent(float(np.mean(kinds == kind)))}"
+def _legend_text(maps: xr.Dataset, kind: int, kinds: NDArray[np.int_]) -> str:
+    if kind in _TEXTS:
+        return f"{_TEXTS[kind]}, {_percent(float(np.mean(kinds == kind)))}"
     orbit = maps.isel(orbit=kind)
-    period, hits = int(orbit["orbit_period"]), float(orbit["orbit_impacts_per_cycle"])
-    if hits == 0:
-        text = "no impacts"
-    else:
-        count = round(hits * period)
-        span = "per cycle" if period == 1 else f"in {period} cycles"
-        text = f"{count} impact{'s' * (count != 1)} {span}"
-    return f"{text}, {_percent(float(orbit['share']))}"
+    period = int(orbit["orbit_period"])
+    count = round(float(orbit["orbit_impacts_per_cycle"]) * period)
+    span = "per cycle" if period == 1 else f"in {period} cycles"
+    impacts = f"{count} impact{'s' * (count != 1)} {span}" if count else "no impacts"
+    return f"{impacts}, {_percent(float(orbit['share']))}"
 
 
 def _percent(share: float) -> str:
     return f"{100 * share:.2g} %" if share < 0.1 else f"{100 * share:.0f} %"
 
 
-def _draw_strobes(axes: Axes, maps: xr.Dataset, x: _Axis, y: _Axis, palette: ListedColormap) -> None:
+def _draw_strobes(axes: Axes, maps: xr.Dataset, axis_of: Mapping[str, StudyAxis], palette: ListedColormap) -> None:
     """Mark the attractors in the phase plane of their ball, if the motion of the cavity is prescribed."""
-    names = [str(axis.coord.name).rsplit(".", 1)[-1] for axis in (x, y)]
-    if names not in (["start", "velocity"], ["velocity", "start"]) or "gap" not in maps.attrs:
+    paths = {path.rpartition(".")[2]: path for path in axis_of}
+    if paths.keys() != {"start", "velocity"} or "gap" not in maps.attrs:
         return
+    length = 1.0 if unit_of(maps[paths["start"]]) else float(maps.attrs["gap"])
     for kind in range(min(_COLOURED, maps.sizes["orbit"])):
         orbit = maps.isel(orbit=kind, ball=0)
-        place, speed = orbit["orbit_relative_position"].values, orbit["orbit_relative_velocity"].values
         if not orbit["orbit_impacts_per_cycle"] > 0:
             continue
-        start = place / (1.0 if (x if names[0] == "start" else y).unit else maps.attrs["gap"])
-        points = (
-            [start / x.divisor, speed / y.divisor] if names[0] == "start" else [speed / x.divisor, start / y.divisor]
-        )
-        axes.plot(
-            *points, "o", markersize=pen(3.5), color=palette(kind), markeredgecolor="white", markeredgewidth=pen(0.8)
-        )
+        state = {
+            paths["start"]: orbit["orbit_relative_position"].values / length,
+            paths["velocity"]: orbit["orbit_relative_velocity"].values,
+        }
+        x, y = (state[path] / axis.values.divisor for path, axis in axis_of.items())
+        style: dict[str, Any] = {"markeredgecolor": "white", "markeredgewidth": pen(0.8)}
+        axes.plot(x, y, "o", markersize=pen(3.5), color=palette(kind), **style)

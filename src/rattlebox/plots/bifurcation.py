@@ -14,6 +14,7 @@ from rattlebox._util.narrow import present
 from ..model.errors import Hint, nearest
 from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
+from .labels import LabelledValues, Vector, capitalised, name_of, unit_of
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen, scaled
 
 if TYPE_CHECKING:
@@ -78,34 +79,22 @@ def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, 
         if not 0 <= ball < values.sizes["ball"]:
             raise Hint(f"ball = {ball!r}: the case has no ball with this index", f"0 to {values.sizes['ball'] - 1}")
         values = values.isel(ball=ball)
-    parameter = maps[next(str(dim) for dim in maps["period"].dims if dim != "direction")]
+    parameter = LabelledValues.of(maps[next(dim for dim in maps["period"].dims if dim != "direction")])
     with figure_style(size):
         figure = StyledFigure(size, 0.95 if size == "column" else 0.6)
         directions = maps["direction"].values.tolist()
         upper, lower = figure.subplots(
             2, 1, sharex=True, height_ratios=(8 - len(directions) * 0.5, len(directions) * 0.6)
         )
-        x, unit = _x_values(parameter)
-        _draw_points(upper, x, values, directions)
-        _draw_periods(lower, x, maps)
-        label(lower, "x", _capitalise(str(parameter.attrs.get("long_name", parameter.name))), unit)
-        if parameter.dtype.kind not in "fiu":
-            lower.set_xticks(x, [str(value) for value in parameter.values])
+        _draw_points(upper, parameter.numbers, values, directions)
+        _draw_periods(lower, parameter.numbers, maps)
+        parameter.label(lower, "x")
     return figure
 
 
-def _x_values(parameter: xr.DataArray) -> tuple[Any, str]:
-    """Return the positions along the horizontal axis, and their unit."""
-    if parameter.dtype.kind not in "fiu":
-        return np.arange(parameter.size), ""
-    unit = str(parameter.attrs.get("units", "1"))
-    scale = scaled(parameter.values, unit) if unit != "1" else (1.0, "")
-    return parameter.values / scale[0], scale[1]
-
-
-def _draw_points(axes: Axes, x: Any, values: xr.DataArray, directions: list[str]) -> None:
-    unit = str(values.attrs.get("units", "1"))
-    divisor, prefixed = (1.0, unit) if unit in ("rad", "1") else scaled(values.values, unit)
+def _draw_points(axes: Axes, x: Vector, values: xr.DataArray, directions: list[str]) -> None:
+    unit = unit_of(values)
+    divisor, prefixed = (1.0, unit) if unit in ("rad", "") else scaled(values.values, unit)
     for number, direction in reversed(list(enumerate(directions))):  # the first one is drawn on top
         y = values.isel(direction=number).values / divisor
         axes.plot(
@@ -119,8 +108,7 @@ def _draw_points(axes: Axes, x: Any, values: xr.DataArray, directions: list[str]
             label=direction,
             rasterized=True,
         )
-    text = TEXTS.get(str(values.name)) or _capitalise(str(values.attrs.get("long_name", values.name)))
-    label(axes, "y", text, "" if prefixed == "1" else prefixed)
+    label(axes, "y", TEXTS.get(str(values.name)) or capitalised(name_of(values)), prefixed)
     axes.margins(y=0.04)
     if unit == "rad":
         axes.set_yticks(_PHASES, _PHASE_NAMES)
@@ -129,7 +117,7 @@ def _draw_points(axes: Axes, x: Any, values: xr.DataArray, directions: list[str]
         legend_above(axes, markerscale=pen(4.0), reverse=True)
 
 
-def _draw_periods(axes: Axes, x: Any, maps: xr.Dataset) -> None:
+def _draw_periods(axes: Axes, x: Vector, maps: xr.Dataset) -> None:
     """Draw the period of the motion in cycles."""
     from cmcrameri import cm  # type: ignore[import-untyped]
 
@@ -139,9 +127,7 @@ def _draw_periods(axes: Axes, x: Any, maps: xr.Dataset) -> None:
     if "motion" in maps:
         kinds[maps["motion"].transpose("direction", ...).values == Motion.TRANSIENT] = _TRANSIENT
     kinds[maps["status"].transpose("direction", ...).values != 0] = np.nan
-    edges = (
-        np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]]) if len(x) > 1 else np.array([x[0] - 0.5, x[0] + 0.5])
-    )
+    edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]]) if len(x) > 1 else x[0] + np.array([-0.5, 0.5])
     norm = BoundaryNorm(np.arange(-0.5, len(_PERIODS)), len(_PERIODS))
     rows = np.arange(len(kinds) + 1)
     axes.pcolormesh(edges, rows, kinds, cmap=palette, norm=norm, rasterized=True)
@@ -149,13 +135,11 @@ def _draw_periods(axes: Axes, x: Any, maps: xr.Dataset) -> None:
     axes.set_yticks(rows[:-1] + 0.5, maps["direction"].values.tolist())
     axes.invert_yaxis()
     axes.tick_params(axis="y", length=0)
-    handles = [
-        Patch(facecolor=palette(kind), edgecolor=FAINT, linewidth=pen(0.5), label=text)
-        for kind, text in enumerate(_PERIODS)
-        if (kinds == kind).any()
-    ]
+    colours = {text: palette(kind) for kind, text in enumerate(_PERIODS) if (kinds == kind).any()}
     if np.isnan(kinds).any():
-        handles.append(Patch(facecolor="white", edgecolor=FAINT, linewidth=pen(0.5), label="did not finish"))
+        colours["did not finish"] = "white"
+    frame: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}
+    handles = [Patch(facecolor=colour, label=text, **frame) for text, colour in colours.items()]
     figure = present(axes.get_figure(root=True))
     figure.legend(
         handles=handles,
@@ -166,7 +150,3 @@ def _draw_periods(axes: Axes, x: Any, maps: xr.Dataset) -> None:
         columnspacing=1.0,
         title_fontsize="small",
     )
-
-
-def _capitalise(text: str) -> str:
-    return text[:1].upper() + text[1:]

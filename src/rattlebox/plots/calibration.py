@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from .labels import capitalised
 from .style import FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, Size, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
@@ -69,10 +70,10 @@ def _draw_impacts(axes: Axes, result: xr.Dataset) -> None:
     axes.axhspan(lower, upper, color=SERIES_COLOURS[0], alpha=0.25, lw=0, label="95 % interval of the mean")
     axes.axhline(value, color=SERIES_COLOURS[0], label=f"mean, {value:.3f}")
     for number in np.unique(result.data_set.values):
-        own = result.data_set.values == number
+        mine = result.data_set.values == number
         style = {"color": INK, "ms": pen(3), "marker": SERIES_MARKERS[number % len(SERIES_MARKERS)], "ls": ""}
         name = "impacts" if result.data_set.values.max() == 0 else f"measurement {number + 1}"
-        axes.plot(result.approach_speed.values[own] / speed, result.restitution.values[own], label=name, **style)
+        axes.plot(result.approach_speed.values[mine] / speed, result.restitution.values[mine], label=name, **style)
     axes.margins(0.08)
     label(axes, "x", "Approach speed", unit)
     label(axes, "y", "Restitution", "")
@@ -82,11 +83,10 @@ def _draw_impacts(axes: Axes, result: xr.Dataset) -> None:
 def _places(result: xr.Dataset) -> list[str]:
     """Return a short name of each datum."""
     names = []
-    for amplitude, unit, frequency in zip(
-        result.amplitude.values, result.amplitude_unit.values, result.frequency.values, strict=True
-    ):
-        divisor, own = scaled(amplitude, str(unit))
-        text = f"{amplitude / divisor:.3g} {own}".replace("^2", "²")
+    columns = (result[name].values for name in ("amplitude", "amplitude_unit", "frequency"))
+    for amplitude, unit, frequency in zip(*columns, strict=True):
+        divisor, prefixed = scaled(amplitude, str(unit))
+        text = f"{amplitude / divisor:.3g} {prefixed}".replace("^2", "²")
         names.append(text if np.isnan(frequency) else f"{text}, {frequency:.3g} Hz")
     return names
 
@@ -96,20 +96,13 @@ def _draw_data(axes: Axes, result: xr.Dataset) -> None:
     measured, check = result.measured.values, result.check.values
     x = np.arange(measured.size)
     bars: dict[str, Any] = {"ls": "", "elinewidth": pen(0.8), "ms": pen(3)}
-    two = 1.96
-    simulated = two * result.check_deviation.values / measured
-    axes.errorbar(
-        x - 0.1, np.ones(x.size), two * result.error.values / measured, color=INK, marker="o", label="measured", **bars
+    series = (
+        ("measured", -0.1, np.ones(x.size), result.error, INK, "o"),
+        ("simulated at the result", 0.1, check / measured, result.check_deviation, SERIES_COLOURS[1], "D"),
     )
-    axes.errorbar(
-        x + 0.1,
-        check / measured,
-        simulated,
-        color=SERIES_COLOURS[1],
-        marker="D",
-        label="simulated at the result",
-        **bars,
-    )
+    for name, beside, values, deviation, colour, marker in series:
+        half = 1.96 * deviation.values / measured
+        axes.errorbar(x + beside, values, half, color=colour, marker=marker, label=name, **bars)
     axes.axhline(1.0, color=FAINT, lw=pen(0.8), zorder=0)
     if x.size <= _MOST_NAMES:
         axes.set_xticks(x, _places(result), rotation=30, ha="right", rotation_mode="anchor")
@@ -124,25 +117,25 @@ def _axis(one: xr.Dataset, values: Any) -> tuple[float, str, str]:
     """Return divisor, unit and text of a parameter."""
     unit, path = str(one.unit.item()), str(one.parameter.item())
     divisor, prefixed = (1.0, "") if unit == "1" else scaled(values, unit)
-    text = path.removeprefix("damper.").replace(".", " ").replace("_", " ")
-    return divisor, prefixed, text[:1].upper() + text[1:]
+    return divisor, prefixed, capitalised(path.removeprefix("damper.").replace(".", " ").replace("_", " "))
 
 
 def _draw_region(axes: Axes, result: xr.Dataset) -> None:
     """Draw the region of two parameters that agree with the data."""
-    scales = [_axis(result.isel(parameter=k), result[f"{name}_value"]) for k, name in enumerate(("first", "second"))]
-    x, y = (result[f"{name}_value"].values / each[0] for name, each in zip(("first", "second"), scales, strict=True))
-    levels = [0.0, 1.0, float(result.threshold), 3 * float(result.threshold)]
-    for level, alpha in ((levels[3], 0.15), (levels[2], 0.3), (levels[1], 0.5)):
-        axes.contourf(x, y, result.region.values.T, levels=[0.0, level], colors=[SERIES_COLOURS[0]], alpha=alpha)
-    axes.contour(x, y, result.region.values.T, levels=[levels[2]], colors=[INK], linewidths=pen(0.8))
-    value, lower, upper = (result[name].values / [each[0] for each in scales] for name in ("value", "lower", "upper"))
-    axes.errorbar(value[0], value[1], color=SERIES_COLOURS[1], marker="D", ms=pen(3.5), elinewidth=pen(1), ls="",
-                  xerr=[[max(0.0, value[0] - lower[0])], [max(0.0, upper[0] - value[0])]],
-                  yerr=[[max(0.0, value[1] - lower[1])], [max(0.0, upper[1] - value[1])]],
-                  label="value and 95 % intervals")  # fmt: skip
-    for k, which in enumerate("xy"):
-        label(axes, which, scales[k][2], scales[k][1])  # type: ignore[arg-type]
+    scales = [_axis(result.isel(parameter=k), result[name]) for k, name in enumerate(("first_value", "second_value"))]
+    divisors = [scale[0] for scale in scales]
+    x, y = result.first_value.values / divisors[0], result.second_value.values / divisors[1]
+    region, threshold = result.region.values.T, float(result.threshold)
+    for level, alpha in ((3 * threshold, 0.15), (threshold, 0.3), (1.0, 0.5)):
+        axes.contourf(x, y, region, levels=[0.0, level], colors=[SERIES_COLOURS[0]], alpha=alpha)
+    axes.contour(x, y, region, levels=[threshold], colors=[INK], linewidths=pen(0.8))
+    value, lower, upper = (result[name].values / divisors for name in ("value", "lower", "upper"))
+    # One column for each bar: below and above the value. A value may lie at an end of its range.
+    bars = np.maximum(0.0, np.stack([value - lower, upper - value]))
+    style: dict[str, Any] = {"color": SERIES_COLOURS[1], "marker": "D", "ms": pen(3.5), "elinewidth": pen(1), "ls": ""}
+    axes.errorbar(*value, xerr=bars[:, :1], yerr=bars[:, 1:], label="value and 95 % intervals", **style)
+    label(axes, "x", scales[0][2], scales[0][1])
+    label(axes, "y", scales[1][2], scales[1][1])
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1))
 
 
@@ -151,10 +144,8 @@ def _draw_profile(axes: Axes, one: xr.Dataset, threshold: float) -> None:
     divisor, unit, text = _axis(one, one.profile_value)
     axes.plot(one.profile_value / divisor, one.profile, color=INK)
     axes.axhline(threshold, color=FAINT, lw=pen(0.8))
-    axes.axvspan(
-        float(one.lower) / divisor, float(one.upper) / divisor, color=SERIES_COLOURS[0], alpha=0.25, lw=0,
-        label="95 % interval",
-    )  # fmt: skip
+    lower, upper = float(one.lower) / divisor, float(one.upper) / divisor
+    axes.axvspan(lower, upper, color=SERIES_COLOURS[0], alpha=0.25, lw=0, label="95 % interval")
     axes.axvline(float(one.value) / divisor, color=SERIES_COLOURS[1], label="value")
     axes.set_ylim(0, min(4 * threshold, max(float(one.profile.max()), 1.5 * threshold)))
     label(axes, "x", text, unit)

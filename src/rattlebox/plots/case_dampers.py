@@ -52,18 +52,14 @@ def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
     axes.set_axis_off()
     centres = damper.centres
     bottom = -0.5 * high
-    for sign in (-1, 1):
-        x = sign * length / 2
-        axes.add_patch(
-            Rectangle(
-                (min(x, x + sign * wall), bottom), wall, high, facecolor=SOLID, edgecolor=INK, lw=pen(0.8), hatch="////"
-            )
-        )
+    for x in (-length / 2 - wall, length / 2):
+        axes.add_patch(Rectangle((x, bottom), wall, high, **_solid()))
     axes.plot([-length / 2, length / 2], [bottom, bottom], color=INK, lw=pen(0.5))
     axes.plot([-length / 2, length / 2], [bottom + high, bottom + high], color=INK, lw=pen(0.5), ls=(0, (4, 3)))
-    names = list(dict.fromkeys(ball.material.name or "own material" for ball in damper.balls))
-    for centre, radius, ball in zip(centres, radii, damper.balls, strict=True):
-        colour = SERIES_COLOURS[names.index(ball.material.name or "own material") % len(SERIES_COLOURS)]
+    materials = [ball.material.name or "own material" for ball in damper.balls]
+    names = list(dict.fromkeys(materials))
+    for centre, radius, material in zip(centres, radii, materials, strict=True):
+        colour = SERIES_COLOURS[names.index(material) % len(SERIES_COLOURS)]
         axes.add_patch(Circle((centre, 0.0), radius, facecolor=colour, alpha=0.35, edgecolor=INK, lw=pen(0.8)))
     unit = 0.16 * max(high, 0.5 * length)
     dimension(axes, (-length / 2, bottom), (length / 2, bottom), amount(length, "m"), -1.2 * unit)
@@ -74,7 +70,7 @@ def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
         for a, b in ((-length / 2, edge), (-edge, length / 2)):
             dimension(axes, (a, bottom + high), (b, bottom + high), amount(gap, "m"), 0.8 * unit)
     sizes = list(dict.fromkeys(radii.tolist()))
-    diameters = " and ".join(amount(2 * each, "m") for each in sizes) if len(sizes) < 4 else "of several sizes"
+    diameters = " and ".join(amount(2 * radius, "m") for radius in sizes) if len(sizes) < 4 else "of several sizes"
     words = [
         counted(len(damper.balls), f"{joined([name.replace('_', ' ') for name in names])} ball"),
         f"diameter {diameters}, {amount(float(np.sum(damper.masses)), 'kg')}",
@@ -97,25 +93,22 @@ def _detail(axes: Axes, left: float, high: float, radius: float, gap: float) -> 
     axes.add_patch(frame)
     scale = 0.5 * reach / gap
     surface = centre[0] - 0.5 * gap * scale
-    ball = Circle((surface - radius * scale, 0.0), radius * scale, facecolor=SERIES_COLOURS[0], alpha=0.35, zorder=4)
-    rim = Circle(
-        (surface - radius * scale, 0.0), radius * scale, facecolor="none", edgecolor=INK, lw=pen(0.8), zorder=5
-    )
-    solid = Rectangle(
-        (surface + gap * scale, -high),
-        high,
-        2 * high,
-        facecolor=SOLID,
-        edgecolor=INK,
-        lw=pen(0.8),
-        hatch="////",
-        zorder=4,
-    )
-    for patch in (ball, rim, solid):
+    middle = (surface - radius * scale, 0.0)
+    edge: dict[str, Any] = {"facecolor": "none", "edgecolor": INK, "lw": pen(0.8), "zorder": 5}
+    for patch in (
+        Circle(middle, radius * scale, facecolor=SERIES_COLOURS[0], alpha=0.35, zorder=4),
+        Circle(middle, radius * scale, **edge),
+        Rectangle((surface + gap * scale, -high), high, 2 * high, zorder=4, **_solid()),
+    ):
         axes.add_patch(patch)
         patch.set_clip_path(frame)
     arrow(axes, (surface, 0.0), (surface + gap * scale, 0.0), both=True, width=0.5)
     text(axes, (centre[0], -reach - 0.05 * high), f"gap {amount(gap, 'm')}, x {scale:.0f}", va="top", fontsize="small")
+
+
+def _solid() -> dict[str, Any]:
+    """Return the style of a wall in section."""
+    return {"facecolor": SOLID, "edgecolor": INK, "lw": pen(0.8), "hatch": "////"}
 
 
 @draw_damper.register
@@ -146,16 +139,15 @@ def _draw_particle_damper(damper: ParticleDamper, axes: Axes) -> None:
 
 def _contents(damper: ParticleDamper) -> list[str]:
     radii = damper.contents.radius
-    names = list(dict.fromkeys((each.material.name or "own material").replace("_", " ") for each in damper.particles))
+    materials = [species.material.name or "own material" for species in damper.particles]
+    names = list(dict.fromkeys(name.replace("_", " ") for name in materials))
     size = amount(2 * float(radii.min()), "m")
     if not math.isclose(radii.min(), radii.max()):
         size += f" to {amount(2 * float(radii.max()), 'm')}"
     share = float((4 / 3 * math.pi * radii**3).sum()) / damper.cavity.volume
     mass = amount(float(damper.contents.mass.sum()), "kg")
-    return [
-        f"{counted(len(radii), f'{joined(names)} ball')} of {size}",
-        f"{mass}, {amount(share, '%', 3)} of the volume",
-    ]
+    balls = counted(len(radii), f"{joined(names)} ball")
+    return [f"{balls} of {size}", f"{mass}, {amount(share, '%', 3)} of the volume"]
 
 
 def positions_at_start(damper: ParticleDamper) -> Array:

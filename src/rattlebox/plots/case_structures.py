@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import singledispatch
 from typing import Any
 
@@ -17,21 +19,10 @@ from ..model.case import Case
 from ..model.plates import Plate
 from ..model.shear_buildings import ShearBuilding
 from ..model.structures import SDOF, Fixed, Shaker, StructurePart
+from ..model.tuned_mass import TunedMass
 from ..results.case_words import each_damper
 from .style import FAINT, INK, SERIES_COLOURS, label, pen, scaled, shorten
-from .technical import (
-    LOAD_COLOUR,
-    SOLID,
-    Point,
-    arrow,
-    body,
-    dashpot,
-    dimension,
-    ground,
-    mark,
-    spring,
-    text,
-)
+from .technical import LOAD_COLOUR, SOLID, Point, arrow, body, dashpot, dimension, ground, mark, spring, text
 
 Marks = Mapping[int, str]
 """Text in the mark of each damper, by its number in the case."""
@@ -56,10 +47,26 @@ def _equal_scales(axes: Axes) -> None:
     axes.set_axis_off()
 
 
-def _points(case: Case) -> dict[int, str]:
-    """Return the point of each damper."""
+@dataclass
+class _Attached:
+    """What is drawn at a point of a structure: marks of dampers, number of loads, tuned masses."""
+
+    marks: list[str] = field(default_factory=list)
+    loads: int = 0
+    tuned: list[TunedMass] = field(default_factory=list)
+
+
+def _attached(case: Case, marks: Marks) -> dict[str, _Attached]:
+    """Return the points with dampers, loads or tuned masses, in this order."""
+    points: defaultdict[str, _Attached] = defaultdict(_Attached)
     modes = case.structure.modes()
-    return {number: modes.point(damper.point) for number, damper in enumerate(each_damper(case))}
+    for number, damper in enumerate(each_damper(case)):
+        points[modes.point(damper.point)].marks.append(marks[number])
+    for load in case.loads:
+        points[modes.point(load.point)].loads += 1
+    for part in case.tuned_masses:
+        points[modes.point(part.point)].tuned.append(part)
+    return dict(points)
 
 
 @_draw.register
@@ -70,18 +77,14 @@ def _draw_oscillator(structure: SDOF, axes: Axes, case: Case, marks: Marks) -> N
         left = -1.3
         ground(axes, (left, -0.5), (left, 0.5), 0.15)
         spring(axes, (left, 0.2), (0.0, 0.2), 0.2)
-        first = (
-            amount(structure.stiffness or 0.0, "N/m")
-            if structure.frequency is None
-            else amount(structure.frequency, "Hz")
-        )
-        text(axes, (left / 2, 0.38), first, va="bottom", fontsize="small")
+        frequency, stiffness = structure.frequency, structure.stiffness or 0.0
+        value = amount(stiffness, "N/m") if frequency is None else amount(frequency, "Hz")
+        text(axes, (left / 2, 0.38), value, va="bottom", fontsize="small")
         if structure.damping or structure.damping_ratio:
             dashpot(axes, (left, -0.2), (0.0, -0.2), 0.22)
-            damping = (
-                amount(structure.damping, "N s/m") if structure.damping else amount(structure.damping_ratio or 0, "%")
-            )
-            text(axes, (left / 2, -0.38), damping, va="top", fontsize="small")
+            damping, ratio = structure.damping, structure.damping_ratio or 0.0
+            value = amount(damping, "N s/m") if damping else amount(ratio, "%")
+            text(axes, (left / 2, -0.38), value, va="top", fontsize="small")
     _draw_block(axes, case, marks, amount(structure.mass, "kg"), left)
 
 
@@ -111,12 +114,17 @@ def _draw_block(axes: Axes, case: Case, marks: Marks, words: str, left: float) -
         text(axes, (1.62, 0.12), "F(t)", va="bottom", color=LOAD_COLOUR)
         right = 2.1
     top = 0.5 + _draw_tuned_masses(axes, case, {"mass": (0.6, 0.4)})
-    if case.base:
-        arrow(axes, (left - 0.35, -0.75), (left + 0.35, -0.75), both=True, colour=LOAD_COLOUR, width=1.2)
-        text(axes, (left + 0.45, -0.75), "motion of the base", ha="left", color=LOAD_COLOUR, fontsize="small")
+    _draw_base_motion(axes, case, (left - 0.35, -0.75), (left + 0.35, -0.75), (left + 0.45, -0.75), ha="left")
     text(axes, ((left + right) / 2, -1.15), "symbols, not to scale", color=FAINT, fontsize="small")
     axes.set_xlim(left - 0.5, right + 0.3)
     axes.set_ylim(-1.35, top)
+
+
+def _draw_base_motion(axes: Axes, case: Case, start: Point, end: Point, at: Point, **options: Any) -> None:
+    """Draw the motion of the base as an arrow with its name."""
+    if case.base:
+        arrow(axes, start, end, both=True, colour=LOAD_COLOUR, width=1.2)
+        text(axes, at, "motion of the base", color=LOAD_COLOUR, fontsize="small", **options)
 
 
 def _row_of_marks(axes: Axes, case: Case, marks: Marks, at: Point, radius: float = 0.13) -> None:
@@ -136,11 +144,12 @@ def _draw_tuned_masses(axes: Axes, case: Case, places: Mapping[str, Point], step
         except (KeyError, ValueError):
             continue
         size = step or 0.35
-        spring(axes, (x + (number - 0.3) * size, y), (x + (number - 0.3) * size, y + 1.2 * size), 0.25 * size, 3)
-        dashpot(axes, (x + (number + 0.3) * size, y), (x + (number + 0.3) * size, y + 1.2 * size), 0.25 * size)
-        body(axes, (x + (number - 0.6) * size, y + 1.2 * size), 1.2 * size, 0.6 * size)
+        x, top = x + number * size, y + 1.2 * size
+        spring(axes, (x - 0.3 * size, y), (x - 0.3 * size, top), 0.25 * size, 3)
+        dashpot(axes, (x + 0.3 * size, y), (x + 0.3 * size, top), 0.25 * size)
+        body(axes, (x - 0.6 * size, top), 1.2 * size, 0.6 * size)
         words = f"{amount(part.mass, 'kg')}, {amount(part.frequency, 'Hz')}"
-        text(axes, (x + (number + 0.75) * size, y + 1.5 * size), words, ha="left", fontsize="small")
+        text(axes, (x + 0.75 * size, y + 1.5 * size), words, ha="left", fontsize="small")
         height = max(height, 2.2 * size)
     return height
 
@@ -187,16 +196,14 @@ def _draw_support(axes: Axes, x: float, end: str, side: int, thick: float, unit:
 
 def _draw_mode(axes: Axes, beam: Beam, unit: float) -> None:
     """Draw the shape of the first elastic mode in grey."""
-    places = np.linspace(0.0, beam.length, 41)
-    fine = beam.model_copy(
-        update={"points": {str(k): float(x) for k, x in enumerate(places)}, "mode_count": beam.mode_count}
-    )
-    modes = fine.modes()
+    x = np.linspace(0.0, beam.length, 41)
+    points = {str(k): float(x[k]) for k in range(x.size)}
+    modes = beam.model_copy(update={"points": points, "mode_count": beam.mode_count}).modes()
     elastic = np.flatnonzero(modes.stiffness > 0)
     if not elastic.size:
         return
-    shape = np.array([modes.shapes[str(k)][elastic[0]] for k in range(places.size)])
-    axes.plot(places, 2.2 * unit * shape / np.abs(shape).max(), color=FAINT, lw=pen(0.8), ls=(0, (4, 2)), zorder=1)
+    shape = np.array([modes.shapes[name][elastic[0]] for name in points])
+    axes.plot(x, 2.2 * unit * shape / np.abs(shape).max(), color=FAINT, lw=pen(0.8), ls=(0, (4, 2)), zorder=1)
 
 
 def _draw_section(axes: Axes, beam: Beam, x: float, unit: float, thick: float) -> None:
@@ -222,26 +229,18 @@ def _draw_section(axes: Axes, beam: Beam, x: float, unit: float, thick: float) -
 
 def _draw_points(axes: Axes, case: Case, marks: Marks, places: Mapping[str, Point], thick: float, unit: float) -> None:
     """Draw marks of dampers on a beam, and arrows of loads above, at their points, whose names are below."""
-    modes = case.structure.modes()
-    used: dict[str, int] = {}
-    for number, name in _points(case).items():
+    for name, parts in _attached(case, marks).items():
         x, y = places[name]
-        mark(axes, (x - 1.7 * unit * used.get(name, 0), y - thick / 2), marks[number], 0.75 * unit)
-        used[name] = used.get(name, 0) + 1
-    tuned = [modes.point(part.point) for part in case.tuned_masses]
-    for load in case.loads:
-        name = modes.point(load.point)
-        x, y = places[name]
-        x -= 2.0 * unit if name in tuned else 0.0
-        arrow(axes, (x, y + 3.2 * unit), (x, y + 0.9 * unit), colour=LOAD_COLOUR, width=1.4)
-        _force(axes, (x + 0.4 * unit, y + 2.6 * unit))
-        used.setdefault(name, 1)
-    for name in dict.fromkeys([*used, *tuned]):
-        x, y = places[name]
+        for k, words in enumerate(parts.marks):
+            mark(axes, (x - 1.7 * unit * k, y - thick / 2), words, 0.75 * unit)
         text(axes, (x, y - thick - 0.9 * unit), shorten(name, 14), fontsize="small", va="top")
-    if case.base:
-        arrow(axes, (-unit, -4.2 * unit), (-unit, -2.2 * unit), both=True, colour=LOAD_COLOUR, width=1.2)
-        text(axes, (-0.5 * unit, -4.6 * unit), "motion of the base", ha="left", color=LOAD_COLOUR, fontsize="small")
+        if parts.loads:
+            # A tuned mass stands above its point.
+            left = x - 2.0 * unit if parts.tuned else x
+            arrow(axes, (left, y + 3.2 * unit), (left, y + 0.9 * unit), colour=LOAD_COLOUR, width=1.4)
+            _force(axes, (left + 0.4 * unit, y + 2.6 * unit))
+    ends = (-unit, -4.2 * unit), (-unit, -2.2 * unit)
+    _draw_base_motion(axes, case, *ends, (-0.5 * unit, -4.6 * unit), ha="left")
 
 
 def _force(axes: Axes, at: Point) -> None:
@@ -258,25 +257,15 @@ def _draw_plate(plate: Plate, axes: Axes, case: Case, marks: Marks) -> None:
     inside = (0.3 * unit, 0.3 * unit), a - 0.6 * unit, b - 0.6 * unit
     axes.add_patch(Rectangle(*inside, fill=False, edgecolor=FAINT, lw=pen(0.6), ls="--", zorder=3))
     places: dict[str, Point] = {"middle": (a / 2, b / 2)} | {name: (x, y) for name, (x, y) in plate.points.items()}
-    modes = case.structure.modes()
-    used: dict[str, int] = {}
-    for number, name in _points(case).items():
+    for name, parts in _attached(case, marks).items():
         x, y = places[name]
-        mark(axes, (x + 1.7 * unit * used.get(name, 0), y), marks[number], 0.75 * unit)
-        used[name] = used.get(name, 0) + 1
-    for load in case.loads:
-        name = modes.point(load.point)
-        x, y = places[name]
-        axes.plot(x, y, marker="x", color=LOAD_COLOUR, ms=pen(6), mew=pen(1.4), zorder=9)
-        _force(axes, (x + unit, y - unit))
-        used.setdefault(name, 1)
-    for part in case.tuned_masses:
-        name = modes.point(part.point)
-        x, y = places[name]
-        axes.add_patch(Rectangle((x - unit / 2, y - unit / 2), unit, unit, facecolor=SERIES_COLOURS[2], zorder=7))
-        used.setdefault(name, 1)
-    for name in used:
-        x, y = places[name]
+        for k, words in enumerate(parts.marks):
+            mark(axes, (x + 1.7 * unit * k, y), words, 0.75 * unit)
+        if parts.loads:
+            axes.plot(x, y, marker="x", color=LOAD_COLOUR, ms=pen(6), mew=pen(1.4), zorder=9)
+            _force(axes, (x + unit, y - unit))
+        if parts.tuned:
+            axes.add_patch(Rectangle((x - unit / 2, y - unit / 2), unit, unit, facecolor=SERIES_COLOURS[2], zorder=7))
         text(axes, (x, y + 1.2 * unit), shorten(name, 14), va="bottom", fontsize="small", zorder=9)
     dimension(axes, (0.0, 0.0), (a, 0.0), amount(a, "m"), -1.5 * unit)
     dimension(axes, (a, 0.0), (a, b), amount(b, "m"), -1.5 * unit, rotate=True)
@@ -296,8 +285,7 @@ def _draw_building(building: ShearBuilding, axes: Axes, case: Case, marks: Marks
     count = len(building.masses)
     step = max(1, -(-count // _MAX_STOREYS))
     ground(axes, (1.5, 0.0), (-0.5, 0.0), 0.2)
-    points = _points(case)
-    modes = building.modes()
+    attached = _attached(case, marks)
     for k in range(count):
         y = k + 1.0
         for x in (0.0, 1.0):
@@ -306,25 +294,16 @@ def _draw_building(building: ShearBuilding, axes: Axes, case: Case, marks: Marks
         if k % step == 0:
             text(axes, (-0.25, y), amount(building.masses[k], "kg"), ha="right", fontsize="small")
             text(axes, (1.25, y - 0.5), amount(building.stiffnesses[k], "N/m"), ha="left", fontsize="small", color=INK)
-        name = f"storey {k + 1}"
-        own = [number for number, point in points.items() if point == name]
-        for j, number in enumerate(own):
-            mark(axes, (1.45 + 0.45 * j, y), marks[number], 0.2)
-        for load in case.loads:
-            if modes.point(load.point) == name:
-                arrow(axes, (1.9 + 0.45 * len(own), y), (1.2 + 0.45 * len(own), y), colour=LOAD_COLOUR, width=1.4)
-        for part in case.tuned_masses:
-            if modes.point(part.point) == name:
-                text(
-                    axes,
-                    (1.25 + 0.45 * len(own), y),
-                    f"+ tuned mass {amount(part.mass, 'kg')}",
-                    ha="left",
-                    fontsize="small",
-                )
-    if case.base:
-        arrow(axes, (-0.2, -0.45), (1.2, -0.45), both=True, colour=LOAD_COLOUR, width=1.2)
-        text(axes, (0.5, -0.6), "motion of the base", va="top", color=LOAD_COLOUR, fontsize="small")
+        parts = attached.get(f"storey {k + 1}", _Attached())
+        for j, words in enumerate(parts.marks):
+            mark(axes, (1.45 + 0.45 * j, y), words, 0.2)
+        beside = 0.45 * len(parts.marks)
+        if parts.loads:
+            arrow(axes, (1.9 + beside, y), (1.2 + beside, y), colour=LOAD_COLOUR, width=1.4)
+        for part in parts.tuned:
+            words = f"+ tuned mass {amount(part.mass, 'kg')}"
+            text(axes, (1.25 + beside, y), words, ha="left", fontsize="small")
+    _draw_base_motion(axes, case, (-0.2, -0.45), (1.2, -0.45), (0.5, -0.6), va="top")
     text(axes, (0.5, -1.3), "symbols, not to scale", color=FAINT, fontsize="small")
     axes.set_xlim(-1.6, 3.2)
     axes.set_ylim(-1.6, count + 0.6)
@@ -334,21 +313,21 @@ def _draw_modes(axes: Axes, case: Case, marks: Marks) -> None:
     """Draw the effective mass of each mode at the points of the dampers over the natural frequency."""
     modes, frequencies = case.structure.modes(), np.array(case.structure.natural_frequencies)
     stiff = np.asarray(modes.stiffness) > 0
-    names = list(dict.fromkeys([*_points(case).values(), *(modes.point(load.point) for load in case.loads)]))
-    names = names or list(modes.shapes)[:1]
+    attached = {name: parts for name, parts in _attached(case, marks).items() if parts.marks or parts.loads}
+    names = list(attached) or list(modes.shapes)[:1]
     divisor, unit = scaled(frequencies, "Hz")
     for k, name in enumerate(names[: len(SERIES_COLOURS)]):
         shape = np.asarray(modes.shapes[name])[stiff]
         square = (shape.reshape(len(shape), -1) ** 2).sum(axis=1)
         moved = square > 1e-12 * square.max(initial=0.0)
-        own = ", ".join(marks[n] for n, point in _points(case).items() if point == name and marks[n])
+        numbers = ", ".join(filter(None, attached[name].marks)) if attached else ""
         style: dict[str, Any] = {"color": SERIES_COLOURS[k], "marker": "o", "ms": pen(3), "ls": ""}
         x, y = frequencies[moved][:_MAX_STEMS] / divisor, square[moved][:_MAX_STEMS]
-        axes.plot(x, y, label=f"at {shorten(name, 20)}" + (f" ({own})" if own else ""), **style)
+        axes.plot(x, y, label=f"at {shorten(name, 20)}" + (f" ({numbers})" if numbers else ""), **style)
         axes.vlines(x, 0, y, color=SERIES_COLOURS[k], lw=pen(0.8))
     axes.margins(x=0.1)
     axes.set_ylim(0.0, 1.4 * axes.get_ylim()[1])  # room for the legend
     label(axes, "x", "Natural frequency", unit)
     label(axes, "y", "1 / effective mass", "1/kg")
-    for each in axes.legend(loc="upper right", fontsize="small").get_texts():
-        each.set_parse_math(False)
+    for name_text in axes.legend(loc="upper right", fontsize="small").get_texts():
+        name_text.set_parse_math(False)

@@ -9,19 +9,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from rattlebox.studies.work.measures import INTERVAL
 
 from ..results.figures import study_figure
-from .labels import LabelledValues
+from .labels import LabelledValues, Vector, capitalised
 from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axis import Axis
-
-Vector = NDArray[np.float64]
 
 _MAX_PARAMETERS = 3
 _DOTS: dict[str, Any] = {"linestyle": "", "marker": "o", "color": SERIES_COLOURS[0], "alpha": 0.5, "markeredgewidth": 0}
@@ -151,8 +148,7 @@ def _draw_parameter(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None
 def _parameter(study: xr.Dataset, path: str) -> LabelledValues:
     """Return a parameter with a text that is short enough for its axis."""
     values = LabelledValues.of(study[path])
-    text = values.text.removeprefix("Damper ")
-    return values._replace(text=text[:1].upper() + text[1:])
+    return values._replace(text=capitalised(values.text.removeprefix("Damper ")))
 
 
 def _tick_whole_numbers(axis: Axis, values: xr.DataArray) -> None:

@@ -40,8 +40,7 @@ class LabelledValues(NamedTuple):
     @classmethod
     def of(cls, values: xr.DataArray) -> LabelledValues:
         """Return the values of a variable with its `units` and `long_name`."""
-        text = name_of(values).replace(" V^2", "\N{NO-BREAK SPACE}V²").replace("^2", "²")
-        text = text[:1].upper() + text[1:]
+        text = capitalised(name_of(values).replace(" V^2", "\N{NO-BREAK SPACE}V²").replace("^2", "²"))
         if values.dtype.kind not in "fiu":
             names = list(dict.fromkeys(map(str, values.values.ravel())))
             indices = {name: float(index) for index, name in enumerate(names)}
@@ -132,6 +131,11 @@ class _MinorFormatter(Formatter):
 def plain(value: float, _: Any = None) -> str:
     """Return a number of a logarithmic axis as text without a power of ten: 0.1, 10."""
     return f"{value:g}"
+
+
+def capitalised(text: str) -> str:
+    """Return a text with a capital letter at its beginning."""
+    return text[:1].upper() + text[1:]
 
 
 def name_of(values: xr.DataArray) -> str:

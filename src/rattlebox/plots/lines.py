@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from .gaps import gaps_of
 from .labels import REPLICA, LabelledValues, StudyAxis, Vector, log_ticks, name_of, upper_limit, value_of
-from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, map_colours, pen
+from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, colour_bar, map_colours, pen
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -96,11 +96,9 @@ def _series_styles(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict
     dark = LinearSegmentedColormap.from_list("dark", map_colours()(np.linspace(0, 0.85, 256)))
     numbers = axis.values.numbers
     norm = (LogNorm if axis.log else Normalize)(float(numbers.min()), float(numbers.max()))
-    bar = figure.colorbar(ScalarMappable(norm, dark), ax=axes, aspect=28, pad=0.02)
+    bar = colour_bar(figure, ScalarMappable(norm, dark), axes, axis.values.with_unit, aspect=28)
     if axis.log:
         log_ticks(bar.ax.yaxis)
-    bar.outline.set_visible(False)
-    bar.set_label(axis.values.with_unit)
     return [{"color": dark(norm(number)), "marker": SERIES_MARKERS[0]} for number in numbers]
 
 

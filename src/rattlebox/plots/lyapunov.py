@@ -12,7 +12,8 @@ from matplotlib.patches import Patch
 from rattlebox._util.exceptions import CaseError
 
 from ..results.figures import study_figure
-from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
+from .labels import StudyAxis, unit_of
+from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, colour_bar, figure_style, label, pen
 
 if TYPE_CHECKING:
     import xarray
@@ -75,10 +76,6 @@ def _text(values: xarray.DataArray) -> str:
     return "Growth per cycle" if values.name == "growth_per_cycle" else "Exponent"
 
 
-def _unit(values: xarray.DataArray) -> str:
-    return "" if values.attrs["units"] == "1" else str(values.attrs["units"])
-
-
 def _resolution(study: xarray.Dataset) -> float:
     """Return the exponent of a separation that grows in proportion to time from the first step to the last."""
     steps = study[study.running_exponent.dims[-1]].values
@@ -111,74 +108,46 @@ def _convergence(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) ->
     axes.set_ylim(*_limits(lines[:, lines.shape[1] // 10 :]))
     axes.set_xlim(0, float(times[-1]))
     label(axes, "x", "Cycles" if over == "cycle" else "Averaging time", "" if over == "cycle" else "s")
-    label(axes, "y", _text(values), _unit(values))
-
-
-def _label_names(axis: Any, names: xarray.DataArray) -> None:
-    """Label the ticks of an axis of names."""
-    if names.dtype.kind not in "fiu":
-        axis.set_ticks(range(names.size), [str(name) for name in names.values])
-
-
-def _coordinate(values: xarray.DataArray, name: Any) -> tuple[Any, str, str]:
-    """Return values, description and unit of an axis."""
-    axis = values[name]
-    if axis.dtype.kind not in "fiu":
-        return np.arange(axis.size), str(axis.attrs.get("long_name", name)), ""
-    unit = str(axis.attrs.get("units", "")).removeprefix("1")
-    divisor, prefixed = scaled(axis, unit) if unit else (1.0, "")
-    text = str(axis.attrs.get("long_name", name))
-    return axis.values / divisor, text[0].upper() + text[1:], prefixed
+    label(axes, "y", _text(values), unit_of(values))
 
 
 def _exponents(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> None:
-    x, text, unit = _coordinate(values, values.dims[0])
+    axis = StudyAxis.of(values[values.dims[0]])
+    x = axis.values.numbers
     error = 2 * np.nan_to_num(study.standard_error.values * (values / study.exponent).fillna(1.0).values)
     positive, chaotic = values.values > 0, values.values > _resolution(study)
-    for mask, colour, marker in (
-        (chaotic, _CHAOTIC, "o"),
-        (positive & ~chaotic, FAINT, "D"),
-        (~positive, _REGULAR, "s"),
-    ):
-        axes.errorbar(
-            x[mask], values.values[mask], error[mask], fmt=marker, color=colour, ms=pen(2), lw=pen(0.6), mew=0
-        )
-    limits = _limits(values)
-    minus_infinity = np.isneginf(values.values)
-    if minus_infinity.any():
-        axes.plot(
-            x[minus_infinity], np.full(minus_infinity.sum(), limits[0]), "v", color=_REGULAR, ms=pen(3), clip_on=False
-        )
+    style: dict[str, Any] = {"ms": pen(2), "lw": pen(0.6), "mew": 0}
+    kinds = ((chaotic, _CHAOTIC, "o"), (positive & ~chaotic, FAINT, "D"), (~positive, _REGULAR, "s"))
+    for mask, colour, marker in kinds:
+        axes.errorbar(x[mask], values.values[mask], error[mask], fmt=marker, color=colour, **style)
+    endless = x[np.isneginf(values.values)]
+    if endless.size:
+        axes.plot(endless, np.full(endless.size, _limits(values)[0]), "v", color=_REGULAR, ms=pen(3), clip_on=False)
     axes.axhline(0, color=INK, lw=pen(0.5), zorder=0)
     axes.margins(x=0.02)
-    _label_names(axes.xaxis, values[values.dims[0]])
-    label(axes, "x", text, unit)
-    label(axes, "y", _text(values), _unit(values))
+    axis.label(axes, "x")
+    label(axes, "y", _text(values), unit_of(values))
 
 
 def _map(figure: Figure, study: xarray.Dataset, values: xarray.DataArray) -> None:
     axes = figure.subplots()
-    (y, y_text, y_unit), (x, x_text, x_unit) = (_coordinate(values, name) for name in values.dims)
+    y, x = (StudyAxis.of(values[name]) for name in values.dims)
     finite = values.values[np.isfinite(values.values)]
     low, high = np.quantile(finite, (0.02, 0.98)) if finite.size else (-1.0, 1.0)
     norm = TwoSlopeNorm(0.0, min(low, -1e-9 * abs(high) - 1e-12), max(high, 1e-9 * abs(low) + 1e-12))
-    mesh = axes.pcolormesh(
-        x, y, np.clip(values.values, norm.vmin, norm.vmax), norm=norm, cmap=_colours(), rasterized=True
-    )
+    shown = np.clip(values.values, norm.vmin, norm.vmax)
+    mesh = axes.pcolormesh(x.edges, y.edges, shown, norm=norm, cmap=_colours(), rasterized=True)
     neutral = (values.values > 0) & (values.values <= _resolution(study))
     if neutral.any():
         grey = np.where(neutral, 0.0, np.nan)
-        axes.pcolormesh(x, y, grey, cmap=ListedColormap([FAINT]), rasterized=True)
+        axes.pcolormesh(x.edges, y.edges, grey, cmap=ListedColormap([FAINT]), rasterized=True)
         patch = Patch(color=FAINT, label="indistinguishable from zero")
         axes.legend(handles=[patch], loc="lower left", bbox_to_anchor=(0.0, 1.0))
-    label(axes, "x", x_text, x_unit)
-    axes.set_ylabel(f"{y_text} ({y_unit})" if y_unit else y_text)
-    for axis, name in zip((axes.yaxis, axes.xaxis), values.dims, strict=True):
-        _label_names(axis, values[name])
-    bar = figure.colorbar(mesh, ax=axes, extend="both", aspect=30, pad=0.02)
-    bar.outline.set_visible(False)
-    unit = _unit(values)
-    bar.set_label(f"{_text(values)} ({unit})" if unit else _text(values))
+    x.label(axes, "x")
+    y.label(axes, "y")
+    unit = unit_of(values)
+    text = f"{_text(values)} ({unit})" if unit else _text(values)
+    colour_bar(figure, mesh, axes, text, extend="both", aspect=30)
 
 
 def _colours() -> LinearSegmentedColormap:

@@ -15,10 +15,20 @@ from rattlebox._util.exceptions import CaseError
 from ..model.errors import nearest
 from ..results.schema import OUTCOMES
 from .gaps import GREY, add_gap_legend, gaps_of
-from .labels import REPLICA, LabelledValues, StudyAxis, upper_limit, value_of
+from .labels import REPLICA, LabelledValues, StudyAxis, capitalised, upper_limit, value_of
 from .lines import draw_lines
 from .selection import select
-from .style import SERIES_COLOURS, Size, StyledFigure, figure_style, legend_above, letters, map_colours, shorten
+from .style import (
+    SERIES_COLOURS,
+    Size,
+    StyledFigure,
+    colour_bar,
+    figure_style,
+    legend_above,
+    letters,
+    map_colours,
+    shorten,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,9 +100,7 @@ def plot_map(
         else:
             figure = _lines_figure(selected, name, dims, size)
         if title:
-            figure.suptitle(
-                shorten(title[0].upper() + title[1:], letters(figure.axes[0])), x=0.01, ha="left", fontsize="medium"
-            )
+            figure.suptitle(shorten(capitalised(title), letters(figure.axes[0])), x=0.01, ha="left", fontsize="medium")
     return figure
 
 
@@ -185,12 +193,10 @@ def draw_map(
             [(left[i], low[j]), (right[i], low[j]), (right[i], high[j]), (left[i], high[j])]
             for j, i in np.argwhere(mask)
         ]
-        axes.add_collection(
-            PolyCollection(cells, facecolors=gap.face, edgecolors=GREY, linewidths=0, hatch=gap.hatch, zorder=2)
-        )
+        style: dict[str, Any] = {"facecolors": gap.face, "edgecolors": GREY, "linewidths": 0, "hatch": gap.hatch}
+        axes.add_collection(PolyCollection(cells, zorder=2, **style))
     x_axis.label(axes, "x")
     y_axis.label(axes, "y")
-    bar = figure.colorbar(mesh, ax=axes, aspect=28, pad=0.02, extend="neither" if norm is None else "max")
-    bar.outline.set_visible(False)
     text = measure.with_unit if text is None else text
-    bar.set_label(f"{text}, median" if REPLICA in study[name].dims else text)
+    text += ", median" if REPLICA in study[name].dims else ""
+    colour_bar(figure, mesh, axes, text, aspect=28, extend="neither" if norm is None else "max")

@@ -31,7 +31,7 @@ from ..results import Run
 from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots
 from .spheres import Renderer, draw_spheres
-from .style import INK, SERIES_COLOURS, WIDTHS, Size, StyledFigure, figure_style, pen, scaled
+from .style import INK, SERIES_COLOURS, WIDTHS, Size, StyledFigure, colour_bar, figure_style, map_colours, pen, scaled
 
 Array = NDArray[np.float64]
 
@@ -316,16 +316,15 @@ class _Scene:
         top = float(np.quantile(values, 0.99)) if several and self._colour != "radius" else float(values.max())
         if self._colour == "radius" and top - low < 1e-9 * top:
             low, top = 0.5 * top, 1.5 * top
-        return _batlow(), Normalize(low / self._scale.divisor, max(top, 1e-12) / self._scale.divisor)
+        return map_colours(), Normalize(low / self._scale.divisor, max(top, 1e-12) / self._scale.divisor)
 
     def _draw_key(self, panels: Any, title: str) -> None:
         """Draw the colour bar, with whole numbers for species."""
-        bar = self.figure.colorbar(ScalarMappable(self._norm, self._map), ax=list(panels), aspect=28, pad=0.02)
+        unit = f" ({self._scale.unit})" if self._scale.unit else ""  # two lines at most: pictures of flat boxes are low
+        values = ScalarMappable(self._norm, self._map)
+        bar = colour_bar(self.figure, values, list(panels), f"{title}{unit}", aspect=28)
         if self._colour == "species":
             bar.set_ticks(list(range(self._map.N)), labels=[str(number) for number in range(self._map.N)])
-        unit = f" ({self._scale.unit})" if self._scale.unit else ""
-        bar.set_label(f"{title}{unit}")  # two lines at most: pictures of flat boxes are low
-        bar.outline.set_visible(False)
 
     def _extent(self, k: int) -> tuple[float, float, float, float]:
         """Return the edges of a panel that contains the cavity at all times."""
@@ -401,9 +400,3 @@ def _values(frame: Frame, colour: Colour) -> Array:
         return np.asarray(np.linalg.norm(frame.velocity if colour == "speed" else frame.spin, axis=1))
     values = {"radius": frame.radius, "species": frame.species, "none": np.zeros_like(frame.radius)}[colour]
     return np.asarray(values, dtype=float)
-
-
-def _batlow() -> Any:
-    from cmcrameri import cm  # type: ignore[import-untyped]
-
-    return cm.batlow

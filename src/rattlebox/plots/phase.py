@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from ..analysis import phase_portrait
 from ..results import Run
 from ..results.figures import run_figure
-from .style import FAINT, INK, Size, StyledFigure, figure_style, label, map_colours, pen, scaled
+from .style import FAINT, INK, Size, StyledFigure, colour_bar, figure_style, label, map_colours, pen, scaled
 
 
 @run_figure("phase_portrait")
@@ -71,9 +71,7 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
                 axes.axvline(side * wall, color=INK, linewidth=pen(0.7))
         label(axes, "x", texts[0], x_unit)
         label(axes, "y", texts[1], v_unit)
-        bar = figure.colorbar(line, ax=axes, aspect=30, pad=0.02)
-        bar.outline.set_visible(False)
-        bar.set_label(f"Time ({t_unit})")
+        colour_bar(figure, line, axes, f"Time ({t_unit})", aspect=30)
     return figure
 
 

@@ -15,7 +15,7 @@ from rattlebox._util.exceptions import CaseError
 from ..model.errors import nearest
 from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
-from .labels import log_ticks
+from .labels import capitalised, log_ticks, name_of
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
@@ -114,8 +114,7 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
                 transient = _is_transient(one)
                 axes.plot(frequency, line.where((one.period == 0) & ~transient), "x", color=colour, **_mark())
                 axes.plot(frequency, line.where(transient), "v", color=colour, mfc="none", **_mark())
-    text = str(response[name].attrs["long_name"])
-    label(axes, "y", text[0].upper() + text[1:] + " over level" * per_level, prefixed)
+    label(axes, "y", capitalised(name_of(response[name])) + " over level" * per_level, prefixed)
 
 
 def level_handles(response: xarray.Dataset) -> list[Line2D]:

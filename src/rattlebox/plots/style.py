@@ -14,6 +14,8 @@ import matplotlib as mpl
 import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -172,9 +174,8 @@ class StyledFigure(Figure):
         """Write a file atomically; a name without a suffix gets that of the format, as in matplotlib."""
         form = options.pop("format", None) or path.suffix[1:] or str(mpl.rcParams["savefig.format"])
         path = path if path.suffix else path.with_name(f"{path.name}.{form}")
-        if (
-            form == "png"
-        ):  # Level 4 takes two thirds of the time of the default level 6 and writes slightly larger files.
+        if form == "png":
+            # Level 4 takes two thirds of the time of the default level 6 and writes slightly larger files.
             options = {"pil_kwargs": {"compress_level": 4}} | options
         # To memory: matplotlib's writers of PDF files hide the error of a full disk.
         content = io.BytesIO()
@@ -193,6 +194,16 @@ def map_colours() -> Any:
     from cmcrameri import cm  # type: ignore[import-untyped]
 
     return cm.batlow
+
+
+def colour_bar(
+    figure: Figure, mappable: ScalarMappable, axes: Axes | list[Axes], text: str, **options: Any
+) -> Colorbar:
+    """Add a colour bar with a label and without a frame to the right of axes."""
+    bar = figure.colorbar(mappable, ax=axes, pad=0.02, **options)
+    bar.outline.set_visible(False)
+    bar.set_label(text)
+    return bar
 
 
 class Scale(NamedTuple):

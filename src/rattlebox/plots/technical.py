@@ -29,19 +29,8 @@ def text(axes: Axes, at: Point, words: str, **options: Any) -> None:
 def arrow(axes: Axes, start: Point, end: Point, *, both: bool = False, colour: str = INK, width: float = 0.8) -> None:
     """Draw an arrow."""
     style = "<|-|>" if both else "-|>"
-    axes.add_patch(
-        FancyArrowPatch(
-            start,
-            end,
-            arrowstyle=style,
-            color=colour,
-            lw=pen(width),
-            mutation_scale=pen(6),
-            shrinkA=0,
-            shrinkB=0,
-            zorder=6,
-        )
-    )
+    options: dict[str, Any] = {"lw": pen(width), "mutation_scale": pen(6), "shrinkA": 0, "shrinkB": 0, "zorder": 6}
+    axes.add_patch(FancyArrowPatch(start, end, arrowstyle=style, color=colour, **options))
 
 
 def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *, rotate: bool = False) -> None:
@@ -58,22 +47,12 @@ def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *
     middle = (first + last) / 2 + 0.2 * shift
     angle = float(np.degrees(np.arctan2(along[1], along[0]))) if rotate else 0.0
     angle = angle - 180 if angle > 90 else angle + 180 if angle <= -90 else angle
+    # The words stand beside the line, on the side to which it is shifted.
     across = abs(shift[0]) < abs(shift[1])
     horizontal = "center" if across or rotate else ("left" if shift[0] > 0 else "right")
-    vertical = ("bottom" if shift[1] > 0 else "top") if across else "center"
-    if rotate and not across:
-        vertical = "bottom"
-        horizontal = "center"
-    text(
-        axes,
-        (middle[0], middle[1]),
-        words,
-        ha=horizontal,
-        va=vertical,
-        rotation=angle,
-        rotation_mode="anchor",
-        zorder=7,
-    )
+    vertical = ("bottom" if shift[1] > 0 else "top") if across else "bottom" if rotate else "center"
+    turned: dict[str, Any] = {"rotation": angle, "rotation_mode": "anchor"}
+    text(axes, (middle[0], middle[1]), words, ha=horizontal, va=vertical, zorder=7, **turned)
 
 
 def ground(axes: Axes, start: Point, end: Point, depth: float) -> None:

@@ -16,7 +16,7 @@ from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import MISSING, amount
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
-from rattlebox.plots.labels import REPLICA, name_of, unit_of
+from rattlebox.plots.labels import REPLICA, capitalised, name_of, unit_of
 from rattlebox.prepare.softening import MAX_CHANGE
 from rattlebox.report.limits import ENERGY_BOUNDS, limit, mode_limits
 from rattlebox.report.numbers import with_interval
@@ -169,11 +169,6 @@ def extremes(study: xr.Dataset, name: str) -> str:
         return with_interval(float(numbers[index]), float(halves[index]), unit) + (f" at {where}" if where else "")
 
     return f"{words}: at most {at(high)}; at least {at(low)}."
-
-
-def capitalised(text: str) -> str:
-    """Return a text with a capital letter at its beginning."""
-    return text[:1].upper() + text[1:]
 
 
 def progress_sentence(study: xr.Dataset) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import MISSING, amount
 from rattlebox.plots.calibration import plot_calibration
+from rattlebox.plots.labels import capitalised
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
 from rattlebox.report.numbers import between
@@ -63,7 +64,7 @@ def _answer(result: xr.Dataset) -> Iterator[str]:
             f"larger one has a probability of {amount(float(result.attrs['p_value']), '%', 2)}."
         )
     for line in _list(result.attrs.get("undetermined")):
-        yield words.capitalised(line.removeprefix("warning: ").partition("; try:")[0]) + "."
+        yield capitalised(line.removeprefix("warning: ").partition("; try:")[0]) + "."
 
 
 def _list(value: Any) -> list[str]:

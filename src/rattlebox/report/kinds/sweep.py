@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.phrases import joined
-from rattlebox.plots.labels import name_of
+from rattlebox.plots.labels import capitalised, name_of
 from rattlebox.plots.maps import plot_map
 from rattlebox.report import study_words as words
 from rattlebox.report.arguments import axes_argument, measures_argument, options_of
@@ -49,7 +49,7 @@ def _picture(study: xr.Dataset, name: str, dims: list[str]) -> Picture:
     repeated = words.replica_dims(study[name])
     free = sorted((dim for dim in dims if dim not in repeated), key=lambda dim: -study.sizes[dim])
     shown, fixed = free[:2], free[2:]
-    caption = f"{words.capitalised(name_of(study[name]))} over {joined([name_of(study[dim]) for dim in shown])}"
+    caption = f"{capitalised(name_of(study[name]))} over {joined([name_of(study[dim]) for dim in shown])}"
     at: dict[str, Any] = {}
     if fixed:
         values = words.estimate(study, name).value
