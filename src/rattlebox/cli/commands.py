@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -13,6 +14,8 @@ from rattlebox._util.atomic_io import only_watched_files
 from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
+
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class _PlainFlags:
@@ -53,15 +56,33 @@ class _Group(_PlainFlags, TyperGroup):
     pass
 
 
-# Extra arguments reach _check_single, whose message suggests the option for the output.
-_EXTRA_ARGUMENTS = {"allow_extra_args": True}
-
 app = typer.Typer(
     cls=_Group,
     help="Simulate and design particle and impact dampers.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
+
+
+def _command(name: str | None = None, *, example: str | None = None) -> Callable[[Command], Command]:
+    """Register a function as a command.
+
+    Extra arguments reach _check_single, whose message suggests the option for the output.
+    """
+    epilog = f"Example: rattlebox {example}" if example else None
+    return app.command(name, cls=_Command, context_settings={"allow_extra_args": True}, epilog=epilog)
+
+
+def _out(help: str) -> Any:
+    """Return the option for the output of a command."""
+    return typer.Option("--out", "-o", help=help)
+
+
+_CaseFile = Annotated[Path, typer.Argument(help="Case file (TOML).")]
+_NamedAfterCase = Annotated[Path | None, _out("File to write; default named after the case file.")]
+_Alone = Annotated[
+    bool, typer.Option("--alone", help="Only the damper: its attachment moves as prescribed, and it returns the force.")
+]
 
 
 def _print_version(requested: bool) -> None:
@@ -90,11 +111,11 @@ def _check_single(ctx: typer.Context, first: Path) -> None:
         )
 
 
-@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox run case.toml -o out")
+@_command(example="run case.toml -o out")
 def run(
     ctx: typer.Context,
-    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("out"),
+    case: _CaseFile,
+    out: Annotated[Path, _out("Folder for results.")] = Path("out"),
     csv: Annotated[bool, typer.Option(help="Also write CSV files.")] = False,
     mat: Annotated[bool, typer.Option(help="Also write a MATLAB file, run.mat.")] = False,
     figures: Annotated[bool, typer.Option(help="Draw motion and energy, and the impacts of impact dampers.")] = True,
@@ -114,17 +135,11 @@ def run(
     run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, replace=replace)
 
 
-@app.command(
-    cls=_Command,
-    context_settings=_EXTRA_ARGUMENTS,
-    epilog="Example: rattlebox sweep study.toml -o study.zarr --workers 4",
-)
+@_command(example="sweep study.toml -o study.zarr --workers 4")
 def sweep(
     ctx: typer.Context,
     study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Folder for results (Zarr); default named after the study file.")
-    ] = None,
+    out: Annotated[Path | None, _out("Folder for results (Zarr); default named after the study file.")] = None,
     workers: Annotated[
         int | None, typer.Option(min=1, metavar="<int>", help="Number of threads; default one per core.")
     ] = None,
@@ -139,23 +154,16 @@ def sweep(
     run_sweep(study, out, workers, dask)
 
 
-_ALONE = typer.Option("--alone", help="Only the damper: its attachment moves as prescribed, and it returns the force.")
-
-
-@app.command(
-    cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox fmu case.toml --alone -o damper.fmu"
-)
+@_command(example="fmu case.toml --alone -o damper.fmu")
 def fmu(
     ctx: typer.Context,
-    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="File to write; default named after the case file.")
-    ] = None,
+    case: _CaseFile,
+    out: _NamedAfterCase = None,
     fmi: Annotated[int, typer.Option(help="Version of FMI, 2 or 3.")] = 3,
     input: Annotated[
         str, typer.Option(help="Input of a damper alone: velocity or acceleration of its attachment.")
     ] = "velocity",
-    alone: Annotated[bool, _ALONE] = False,
+    alone: _Alone = False,
     other_systems: Annotated[
         bool,
         typer.Option("--other-systems", help="Add libraries for Windows, macOS and arm64, compiled but never run."),
@@ -168,16 +176,12 @@ def fmu(
     write_fmu(case, out, fmi, input, alone, other_systems)
 
 
-@app.command(
-    cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox pack case.toml --alone -o damper.bin"
-)
+@_command(example="pack case.toml --alone -o damper.bin")
 def pack(
     ctx: typer.Context,
-    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="File to write; default named after the case file.")
-    ] = None,
-    alone: Annotated[bool, _ALONE] = False,
+    case: _CaseFile,
+    out: _NamedAfterCase = None,
+    alone: _Alone = False,
 ) -> None:
     """Write a case as a packed case, for the C interface rattlebox.h."""
     _check_single(ctx, case)
@@ -211,19 +215,15 @@ def show(results: Annotated[Path, typer.Argument(help="Folder written by run or 
     show_study(results)
 
 
-@app.command(
-    cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox plot out --kind energy -o energy.pdf"
-)
+@_command(example="plot out --kind energy -o energy.pdf")
 def plot(
     ctx: typer.Context,
     results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc or run.vtkhdf.")],
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out",
-            "-o",
-            help="File to write: PNG, SVG or PDF; GIF or MP4 for a film of the snapshots. "
-            "Default run.png or study.png in the current folder.",
+        _out(
+            "File to write: PNG, SVG or PDF; GIF or MP4 for a film of the snapshots. Default run.png or study.png in the "
+            "current folder."
         ),
     ] = None,
     kind: Annotated[
@@ -259,28 +259,15 @@ def plot(
     _check_single(ctx, results)
     _check_results(results)
     from rattlebox.cli.folder import is_run
+    from rattlebox.cli.plot import PlotOptions, plot_study
 
+    options = PlotOptions(kind, of, tuple(at or ()), number, size, colour, view, pixels)
     if is_run(results):
         from rattlebox.cli.plot_run import plot_run
 
-        plot_run(
-            results,
-            out,
-            kind=kind,
-            of=of,
-            at=at or (),
-            number=number,
-            size=size,
-            colour=colour,
-            view=view,
-            pixels=pixels,
-        )
-        return
-    from rattlebox.cli.plot import plot_study, refuse_particle_options
-
-    refuse_particle_options(colour=colour, view=view, pixels=pixels)
-
-    plot_study(results, out, kind=kind, of=of, at=at or (), number=number, size=size)
+        plot_run(results, out, options)
+    else:
+        plot_study(results, out, options)
 
 
 @app.command(cls=_Command, epilog="Example: rattlebox report bare damped -o comparison.html")
@@ -293,9 +280,7 @@ def report(
     ],
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", "-o", help="File to write (HTML); default named after the first results, in the current folder."
-        ),
+        _out("File to write (HTML); default named after the first results, in the current folder."),
     ] = None,
     title: Annotated[str | None, typer.Option(help="Title of the page.")] = None,
     question: Annotated[str | None, typer.Option(help="Question that the results answer, one sentence.")] = None,
@@ -310,7 +295,7 @@ def report(
 
 @app.command(cls=_Command, epilog="Example: rattlebox demo -o demo")
 def demo(
-    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
+    out: Annotated[Path, _out("Folder for results.")] = Path("demo"),
 ) -> None:
     """Simulate a steel ball on a pulsed structure with two restitution models and compare them."""
     from rattlebox.cli.demo import run_demo
@@ -318,7 +303,7 @@ def demo(
     run_demo(out)
 
 
-@app.command("app", cls=_Command, context_settings=_EXTRA_ARGUMENTS, epilog="Example: rattlebox app my_dampers")
+@_command("app", example="app my_dampers")
 def browser_app(
     ctx: typer.Context,
     folder: Annotated[Path, typer.Argument(help="Folder for case files and results.")] = Path("rattlebox"),
@@ -339,9 +324,7 @@ def browser_app(
 
 @app.command(cls=_Command, epilog="Example: rattlebox schema -o case.schema.json")
 def schema(
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="File to write; default: print on the terminal.")
-    ] = None,
+    out: Annotated[Path | None, _out("File to write; default: print on the terminal.")] = None,
 ) -> None:
     """Write the JSON Schema of case files, with which an editor completes and checks them."""
     import json

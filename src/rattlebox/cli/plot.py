@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.output import output_file
@@ -24,36 +25,41 @@ if TYPE_CHECKING:
 FORMATS = (".png", ".svg", ".pdf")
 
 
-def plot_study(
-    study: Path,
-    out: Path | None,
-    *,
-    kind: str | None,
-    of: str | None,
-    at: Sequence[str],
-    number: int | None,
-    size: str | None,
-) -> None:
+@dataclass(frozen=True)
+class PlotOptions:
+    """Options of `rattlebox plot` as they were typed, None for those that were not."""
+
+    kind: str | None = None
+    of: str | None = None
+    at: tuple[str, ...] = ()
+    number: int | None = None
+    size: str | None = None
+    colour: str | None = None
+    view: str | None = None
+    pixels: str | None = None
+
+
+def plot_study(study: Path, out: Path | None, options: PlotOptions) -> None:
     """Draw a study and write the figure."""
-    check_output(out, size)
+    refuse_particle_options(colour=options.colour, view=options.view, pixels=options.pixels)
+    check_output(out, options.size)
+    number, kind = options.number, options.kind
     with output_file(out, "study.png") as (file, note):
         if number is not None:
             raise CaseError(
                 f"--number {number}: {study} is a study, which has no snapshots", "leave out --number, or plot a run"
             )
-        data, options, values = open_study(study), {"of": of, "size": size}, _axis_values(at)
-        own = str(data.attrs.get("study", "sweep"))
-        options = {name: value for name, value in options.items() if value is not None}
-        if (kind or own) in figures_of_studies():
-            figure = _draw_kind(data, kind or own, own, options, values)
+        data, at = open_study(study), _axis_values(options.at)
+        chosen = {name: value for name, value in {"of": options.of, "size": options.size}.items() if value is not None}
+        study_kind, figures = str(data.attrs.get("study", "sweep")), figures_of_studies()
+        if (kind or study_kind) in figures:
+            figure = _draw_kind(data, kind or study_kind, study_kind, chosen, at)
         elif kind in (None, "map", "lines"):
-            figure = plot_map(data, kind=kind, at=values, **options)  # type: ignore[arg-type]
+            figure = plot_map(data, kind=kind, at=at, **chosen)  # type: ignore[arg-type]
         else:
-            raise CaseError(
-                f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *figures_of_studies()))}"
-            )
+            raise CaseError(f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *figures))}")
         figure.savefig(file)
-        for line in nearest_value_notes(data, values):
+        for line in nearest_value_notes(data, at):
             terminal().print(line, soft_wrap=True)
         terminal().print(f"written: {file}{note}", soft_wrap=True)
 
@@ -78,19 +84,18 @@ def check_output(out: Path | None, size: str | None, formats: Sequence[str] = FO
         raise DataError(f"-o {out}: the folder {out.parent} does not exist", "another folder, or create it first")
 
 
-def _draw_kind(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:
+def _draw_kind(data: xr.Dataset, kind: str, study_kind: str, options: dict[str, str], at: dict[str, str]) -> Figure:
     """Draw the figure that belongs to a kind of study."""
-    if kind != own:
-        other = own if own in figures_of_studies() else "lines"
+    figures = figures_of_studies()
+    if kind != study_kind:
+        other = study_kind if study_kind in figures else "lines"
         raise CaseError(
-            f"--kind {kind}: this study is a {own.replace('_', ' ')}, or is not finished",
+            f"--kind {kind}: this study is a {study_kind.replace('_', ' ')}, or is not finished",
             f"--kind {other}, or 'rattlebox show' to see its progress",
         )
-    draw = figures_of_studies()[kind]
-    if "of" in options and "of" not in signature(draw).parameters:
+    if "of" in options and "of" not in signature(figures[kind]).parameters:
         raise CaseError(f"--of {options['of']}: a figure of the kind {kind} has no choice of measures", "--kind lines")
-    figure: Figure = draw(select(data, at)[0], **options)
-    return figure
+    return figures[kind](select(data, at)[0], **options)
 
 
 def _axis_values(at: Sequence[str]) -> dict[str, str]:

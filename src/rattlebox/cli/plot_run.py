@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
 from rattlebox.cli.output import output_file
-from rattlebox.cli.plot import FORMATS, check_output, refuse_particle_options
+from rattlebox.cli.plot import FORMATS, PlotOptions, check_output, refuse_particle_options
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
@@ -26,54 +25,30 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def plot_run(
-    path: Path,
-    out: Path | None,
-    *,
-    kind: str | None,
-    of: str | None,
-    at: Sequence[str],
-    number: int | None,
-    size: str | None,
-    colour: str | None = None,
-    view: str | None = None,
-    pixels: str | None = None,
-) -> None:
+def plot_run(path: Path, out: Path | None, options: PlotOptions) -> None:
     """Draw a run or its snapshots and write the figure or the film."""
-    check_output(out, size, (*FORMATS, *FILMS))
+    check_output(out, options.size, (*FORMATS, *FILMS))
     with output_file(out, "run.png") as (file, note):
-        _plot(path, file, kind=kind, of=of, at=at, number=number, size=size, colour=colour, view=view, pixels=pixels)
+        _plot(path, file, options)
         terminal().print(f"written: {file}{note}", soft_wrap=True)
 
 
-def _plot(
-    path: Path,
-    out: Path,
-    *,
-    kind: str | None,
-    of: str | None,
-    at: Sequence[str],
-    number: int | None,
-    size: str | None,
-    colour: str | None,
-    view: str | None,
-    pixels: str | None,
-) -> None:
+def _plot(path: Path, out: Path, options: PlotOptions) -> None:
     """Draw a run or its snapshots and write a file; see `plot_run`."""
+    kind, number, is_film = options.kind, options.number, out.suffix in FILMS
     if path.is_dir():
-        path /= SNAPSHOTS if out.suffix in FILMS or number is not None else RUN
-    for option, value in (("--of", of), ("--at", at and at[0])):
+        path /= SNAPSHOTS if is_film or number is not None else RUN
+    # First the options that do not apply, before anything is read.
+    for option, value in (("--of", options.of), ("--at", options.at and options.at[0])):
         if value:
             alternative = "--number" if path.suffix == ".vtkhdf" else "--kind"
             raise CaseError(f"{option} {value}: this option is for studies, and {path} is a run", alternative)
-    film = out.suffix in FILMS
-    if film and size is not None:
-        raise CaseError(f"--size {size}: the size of films is in pixels", "--pixels 1280x720")
-    if not film and pixels is not None:
-        raise CaseError(f"--pixels {pixels}: this option is for films", f"-o {out.with_suffix('.gif')}, or --size page")
-    particles = {"colour": colour, "view": view if view is None or "," not in view else _numbers("view", view, ",")}
-    given = {"size": size, **particles, "pixels": pixels and tuple(map(int, _numbers("pixels", pixels, "x")))}
-    options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    if is_film and options.size is not None:
+        raise CaseError(f"--size {options.size}: the size of films is in pixels", "--pixels 1280x720")
+    if not is_film and options.pixels is not None:
+        alternative = f"-o {out.with_suffix('.gif')}, or --size page"
+        raise CaseError(f"--pixels {options.pixels}: this option is for films", alternative)
+    drawing = _drawing_options(options)
     if not path.exists():
         reason, suggestion = _why_missing(path)
         raise DataError(f"{path} does not exist{reason}", suggestion)
@@ -84,11 +59,11 @@ def _plot(
             "run.vtkhdf in the same folder; output.snapshots in the case creates it",
         )
     try:
-        if film:
+        if is_film:
             _check_film(out, kind, number)
-            _write_film(run, out, options)
+            _write_film(run, out, drawing)
         else:
-            _draw(run, kind, -1 if number is None else number, options).savefig(out)
+            _draw(run, kind, -1 if number is None else number, drawing).savefig(out)
     except (ValueError, IndexError) as error:
         raise CaseError(str(error)) from None
     if (kind == "particles" or isinstance(run, Snapshots)) and default_renderer() == "plain":
@@ -96,6 +71,18 @@ def _plot(
             "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'",
             soft_wrap=True,
         )
+
+
+def _drawing_options(options: PlotOptions) -> dict[str, Any]:
+    """Return the options that were typed as arguments of the functions that draw."""
+    view, pixels = options.view, options.pixels
+    values = {
+        "size": options.size,
+        "colour": options.colour,
+        "view": _numbers("view", view, ",") if view and "," in view else view,
+        "pixels": pixels and tuple(map(int, _numbers("pixels", pixels, "x"))),
+    }
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def _numbers(option: str, text: str, separator: str) -> tuple[float, ...]:
