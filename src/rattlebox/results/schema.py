@@ -7,7 +7,7 @@ impact engine are 1-D and have neither the dimension `axis` nor `partner`; `vari
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Literal
 
 Kind = Literal["float", "int", "bool"]
@@ -104,6 +104,9 @@ _LOG = ("impact",)
 _EACH = ("particle",)
 _EACH_AXIS = ("particle", "axis")
 
+_1d = partial(Variable, engines=_IMPACT)
+_3d = partial(Variable, engines=_DEM)
+
 VARIABLES: tuple[Variable, ...] = (
     Variable("displacement", "motion", _POINT, "m", "displacement of the structure"),
     Variable("velocity", "motion", _POINT, "m/s", "velocity of the structure"),
@@ -112,40 +115,31 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("modal_displacement", "motion", _MODE, "kg^0.5 m", "modal displacement"),
     Variable("modal_velocity", "motion", _MODE, "kg^0.5 m/s", "modal velocity"),
     Variable("interface_force", "motion", _BASE, "N", "force of the structure on the base"),
-    Variable("ball_position", "motion", _BALL, "m", "ball position from the cavity's rest place", engines=_IMPACT),
-    Variable("ball_velocity", "motion", _BALL, "m/s", "ball velocity", engines=_IMPACT),
-    Variable("relative_position", "motion", _BALL, "m", "ball position in the cavity", engines=_IMPACT),
-    Variable("relative_velocity", "motion", _BALL, "m/s", "ball velocity relative to the cavity", engines=_IMPACT),
-    Variable("cavity_displacement", "motion", _CAVITY, "m", "displacement of the cavity", engines=_DEM),
-    Variable("cavity_velocity", "motion", _CAVITY, "m/s", "velocity of the cavity", engines=_DEM),
+    _1d("ball_position", "motion", _BALL, "m", "ball position from the cavity's rest place"),
+    _1d("ball_velocity", "motion", _BALL, "m/s", "ball velocity"),
+    _1d("relative_position", "motion", _BALL, "m", "ball position in the cavity"),
+    _1d("relative_velocity", "motion", _BALL, "m/s", "ball velocity relative to the cavity"),
+    _3d("cavity_displacement", "motion", _CAVITY, "m", "displacement of the cavity"),
+    _3d("cavity_velocity", "motion", _CAVITY, "m/s", "velocity of the cavity"),
     Variable("cavity_force", "motion", _CAVITY, "N", "contact force on the cavity"),
-    Variable("cavity_moment", "motion", _CAVITY, "N m", "contact moment about the cavity's centre", engines=_DEM),
-    Variable("centre_of_mass", "motion", _CAVITY, "m", "centre of mass of the particles in the cavity", engines=_DEM),
-    Variable("momentum", "motion", _CAVITY, "kg m/s", "momentum of the particles", engines=_DEM),
-    Variable("contacts", "motion", _PARTNER, "1", "number of contacts", "int", engines=_DEM),
-    Variable("coordination", "motion", _DAMPER, "1", "mean contacts of a particle", engines=_DEM, derived=True),
+    _3d("cavity_moment", "motion", _CAVITY, "N m", "contact moment about the cavity's centre"),
+    _3d("centre_of_mass", "motion", _CAVITY, "m", "centre of mass of the particles in the cavity"),
+    _3d("momentum", "motion", _CAVITY, "kg m/s", "momentum of the particles"),
+    _3d("contacts", "motion", _PARTNER, "1", "number of contacts", "int"),
+    _3d("coordination", "motion", _DAMPER, "1", "mean contacts of a particle", derived=True),
     Variable("base_displacement", "motion", _BASE, "m", "displacement of the base"),
     Variable("base_velocity", "motion", _BASE, "m/s", "velocity of the base"),
     Variable("base_acceleration", "motion", _BASE, "m/s^2", "acceleration of the base"),
     Variable("load", "motion", ("time", "source"), "N", "load on the structure"),
-    Variable(
-        "ball_damper",
-        "motion",
-        ("ball",),
-        "1",
-        "damper that holds the ball, from 0",
-        "int",
-        engines=_IMPACT,
-        coordinate=True,
-    ),
-    Variable("ball_centre", "motion", ("ball",), "m", "ball place in the packed, centred row", engines=_IMPACT),
-    Variable("clearance", "motion", ("damper",), "m", "total clearance of the cavity", engines=_IMPACT),
-    Variable("particle_mass", "motion", ("damper",), "kg", "mass of all particles", engines=_DEM),
+    _1d("ball_damper", "motion", ("ball",), "1", "damper that holds the ball, from 0", "int", coordinate=True),
+    _1d("ball_centre", "motion", ("ball",), "m", "ball place in the packed, centred row"),
+    _1d("clearance", "motion", ("damper",), "m", "total clearance of the cavity"),
+    _3d("particle_mass", "motion", ("damper",), "kg", "mass of all particles"),
     Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode", coordinate=True),
     Variable("mode_energy", "energy", _MODE, "J", "energy of the mode"),
-    Variable("ball_energy", "energy", _BALL, "J", "kinetic energy of the ball", engines=_IMPACT),
-    Variable("kinetic_energy", "energy", _DAMPER, "J", "translational energy of the particles", engines=_DEM),
-    Variable("rotation_energy", "energy", _DAMPER, "J", "rotational energy of the particles", engines=_DEM),
+    _1d("ball_energy", "energy", _BALL, "J", "kinetic energy of the ball"),
+    _3d("kinetic_energy", "energy", _DAMPER, "J", "translational energy of the particles"),
+    _3d("rotation_energy", "energy", _DAMPER, "J", "rotational energy of the particles"),
     Variable("contact_energy", "energy", _DAMPER, "J", "elastic energy of the contacts"),
     Variable("gravity_energy", "energy", _DAMPER, "J", "gravity potential of the particles"),
     Variable("load_work", "energy", _TIME, "J", "work of the load", cumulative=True),
@@ -153,24 +147,10 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("viscous_loss", "energy", _TIME, "J", "loss in the structure's damping", cumulative=True),
     Variable("normal_loss", "energy", _PARTNER, "J", "loss in contacts by normal damping", cumulative=True),
     Variable("plastic_loss", "energy", _PARTNER, "J", "loss in contacts by plastic flow", cumulative=True),
-    Variable(
-        "sliding_loss",
-        "energy",
-        _PARTNER,
-        "J",
-        "loss in contacts by friction and tangential damping",
-        engines=_DEM,
-        cumulative=True,
+    _3d(
+        "sliding_loss", "energy", _PARTNER, "J", "loss in contacts by friction and tangential damping", cumulative=True
     ),
-    Variable(
-        "rolling_loss",
-        "energy",
-        _PARTNER,
-        "J",
-        "loss in contacts by rolling resistance",
-        engines=_DEM,
-        cumulative=True,
-    ),
+    _3d("rolling_loss", "energy", _PARTNER, "J", "loss in contacts by rolling resistance", cumulative=True),
     Variable("structure", "energy", _TIME, "J", "energy of the structure", derived=True),
     Variable("particles", "energy", _TIME, "J", "kinetic energy of the particles", derived=True),
     Variable("total", "energy", _TIME, "J", "total energy", derived=True),
@@ -181,35 +161,32 @@ VARIABLES: tuple[Variable, ...] = (
     Variable(
         "damper_share", "energy", ("damper",), "1", "share of the supplied energy lost in this damper", derived=True
     ),
-    Variable(
+    _3d(
         "partner_share",
         "energy",
         ("partner",),
         "1",
         "share of the supplied energy lost with this partner",
-        engines=_DEM,
         derived=True,
     ),
-    Variable("damper", "impacts", _LOG, "1", "damper of the contact, from 0", "int", engines=_IMPACT),
-    Variable(
-        "contact", "impacts", _LOG, "1", "contact in the row: 0 trailing wall, n leading wall", "int", engines=_IMPACT
-    ),
-    Variable("time", "impacts", _LOG, "s", "time of first touch", coordinate=True, engines=_IMPACT),
-    Variable("approach_speed", "impacts", _LOG, "m/s", "approach speed at first touch", engines=_IMPACT),
-    Variable("restitution", "impacts", _LOG, "1", "coefficient of restitution used", engines=_IMPACT),
-    Variable("separation_speed", "impacts", _LOG, "m/s", "separation speed at the end of the contact", engines=_IMPACT),
-    Variable("duration", "impacts", _LOG, "s", "duration of the contact", engines=_IMPACT),
-    Variable("peak_overlap", "impacts", _LOG, "m", "largest overlap", engines=_IMPACT),
-    Variable("peak_force", "impacts", _LOG, "N", "largest contact force", engines=_IMPACT),
-    Variable("energy_lost", "impacts", _LOG, "J", "energy lost in the contact", engines=_IMPACT),
-    Variable("complete", "impacts", _LOG, "1", "contact opened before the run ended", "bool", engines=_IMPACT),
-    Variable("position", "particles", _EACH_AXIS, "m", "position from the cavity's centre", engines=_DEM),
-    Variable("velocity", "particles", _EACH_AXIS, "m/s", "velocity relative to the base", engines=_DEM),
-    Variable("spin", "particles", _EACH_AXIS, "rad/s", "angular velocity", engines=_DEM),
-    Variable("radius", "particles", _EACH, "m", "radius", engines=_DEM),
-    Variable("mass", "particles", _EACH, "kg", "mass", engines=_DEM),
-    Variable("damper", "particles", _EACH, "1", "damper that holds the particle, from 0", "int", engines=_DEM),
-    Variable("species", "particles", _EACH, "1", "species of the particle, from 0", "int", engines=_DEM),
+    _1d("damper", "impacts", _LOG, "1", "damper of the contact, from 0", "int"),
+    _1d("contact", "impacts", _LOG, "1", "contact in the row: 0 trailing wall, n leading wall", "int"),
+    _1d("time", "impacts", _LOG, "s", "time of first touch", coordinate=True),
+    _1d("approach_speed", "impacts", _LOG, "m/s", "approach speed at first touch"),
+    _1d("restitution", "impacts", _LOG, "1", "coefficient of restitution used"),
+    _1d("separation_speed", "impacts", _LOG, "m/s", "separation speed at the end of the contact"),
+    _1d("duration", "impacts", _LOG, "s", "duration of the contact"),
+    _1d("peak_overlap", "impacts", _LOG, "m", "largest overlap"),
+    _1d("peak_force", "impacts", _LOG, "N", "largest contact force"),
+    _1d("energy_lost", "impacts", _LOG, "J", "energy lost in the contact"),
+    _1d("complete", "impacts", _LOG, "1", "contact opened before the run ended", "bool"),
+    _3d("position", "particles", _EACH_AXIS, "m", "position from the cavity's centre"),
+    _3d("velocity", "particles", _EACH_AXIS, "m/s", "velocity relative to the base"),
+    _3d("spin", "particles", _EACH_AXIS, "rad/s", "angular velocity"),
+    _3d("radius", "particles", _EACH, "m", "radius"),
+    _3d("mass", "particles", _EACH, "kg", "mass"),
+    _3d("damper", "particles", _EACH, "1", "damper that holds the particle, from 0", "int"),
+    _3d("species", "particles", _EACH, "1", "species of the particle, from 0", "int"),
 )
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
@@ -54,43 +54,85 @@ _PARTNER_LABELS = {"particle": "lost between particles", "wall": "lost at walls"
 class _Row:
     """One line of the table: key of the value, label and unit.
 
-    The unit is "%" for a share, "order" for an order of magnitude, "" for a count or a text. `error` is the key of half
-    the width of the 95 % interval, if the value has one, `at` that of the amplitude [m] at which it holds.
+    The unit is "%" for a share, "order" for an order of magnitude, "" for a count or a text. `at` is the key of the
+    amplitude [m] at which a value holds.
     """
 
     key: str
     label: str
-    unit: str
-    error: str = ""
+    unit: str = ""
     at: str = ""
 
     def text(self, values: Mapping[str, Value]) -> str:
         value = values.get(self.key)
-        if self.at and isinstance(value, float):
-            return f"{quantity(value, self.unit)} at {quantity(float(values[self.at]), 'm')}"
-        if self.error and isinstance(value, float):
-            return self._with_error(value, values[self.error])
         if value is None:
             return MISSING
-        if isinstance(value, float):
-            if self.key.startswith("settling_time") and math.isnan(value):
-                return "not reached"
-            if self.unit == "order":
-                return f"{value:.1e}" if value else "0"
-            if self.unit == "kg^0.5 m":  # has no prefixes
-                return f"{digits(value, 4)} {self.unit}"
-            if self.unit == "million":
-                return MISSING if math.isnan(value) else f"{digits(1e-6 * value, 3)} million"
-            if self.unit == "1" and math.isinf(value):
-                return MISSING
-            return quantity(value, self.unit)
-        return f"{value:,}".replace(",", " ") if isinstance(value, int) else value
+        if isinstance(value, str):
+            return value
+        if isinstance(value, int):
+            return f"{value:,}".replace(",", " ")
+        if self.at:
+            return f"{quantity(value, self.unit)} at {quantity(float(values[self.at]), 'm')}"
+        if self.key.startswith("steady_"):
+            return self._with_error(value, float(values[_error_of(self.key)]))
+        if self.key.startswith("settling_time") and math.isnan(value):
+            return "not reached"
+        if self.unit == "order":
+            return f"{value:.1e}" if value else "0"
+        if self.unit == "kg^0.5 m":  # has no prefixes
+            return f"{digits(value, 4)} {self.unit}"
+        if self.unit == "million":
+            return MISSING if math.isnan(value) else f"{digits(1e-6 * value, 3)} million"
+        return MISSING if self.unit == "1" and math.isinf(value) else quantity(value, self.unit)
 
-    def _with_error(self, value: float, error: Value) -> str:
-        if not isinstance(error, float) or math.isnan(error):
+    def _with_error(self, value: float, error: float) -> str:
+        if math.isnan(error):
             return f"{quantity(value, self.unit)}, run too short for an interval"
         share = 100 * error / value if value else 0.0
         return f"{quantity(value, self.unit)} +- {digits(share, 2)} %"
+
+
+_FIRST = (
+    _Row("status", "status"),
+    _Row("end_time", "simulated time", "s"),
+    _Row("impacts", "impacts"),
+    _Row("particles", "particles"),
+    _Row("particle_mass", "mass of the particles", "kg"),
+    _Row("fill_ratio", "volume of the particles over the cavity", "%"),
+    _Row("bed_fill", "volume of the bed over the cavity", "%"),
+    _Row("first_touches", "first touches"),
+    _Row("contacts", "mean number of contacts", "1"),
+    _Row("step", "time step", "s"),
+    _Row("steps_per_contact", "steps in the shortest contact", "1"),
+    _Row("supplied_energy", "energy supplied", "J"),
+)
+_CONTACTS = (
+    _Row("energy_residual", "energy residual", "order"),
+    _Row("largest_overlap", "largest overlap over radius", "%"),
+    _Row("peak_contact_force", "peak contact force", "N"),
+    _Row("largest_approach_speed", "largest approach speed", "m/s"),
+)
+_OF_POINT = (
+    _Row("rms_displacement", "RMS displacement", "m"),
+    _Row("settling_time", f"settles to {100 * SETTLED:g} % of the peak", "s"),
+    _Row("steady_rms_displacement", "RMS displacement, second half", "m"),
+    _Row("peak_acceleration", "peak acceleration", "m/s^2"),
+    _Row("rms_acceleration", "RMS acceleration", "m/s^2"),
+    _Row("steady_rms_acceleration", "RMS acceleration, second half", "m/s^2"),
+    _Row("rms_relative_acceleration", "RMS acceleration relative to the base", "m/s^2"),
+    _Row("peak_reduction", "reduction of the peak", "%"),
+    _Row("rms_reduction", "reduction of the RMS", "%"),
+)
+"""Lines of a point; its name is added to their keys."""
+_DECAY = _Row("equivalent_damping_ratio", "equivalent damping ratio", "%", at="damping_amplitude")
+_LAST = (
+    _Row("peak_interface_force", "peak force on the base", "N"),
+    _Row("rms_interface_force", "RMS force on the base", "N"),
+    _Row("steady_rms_interface_force", "RMS force on the base, second half", "N"),
+    _Row("steady_loss_power", "mean power lost, second half", "W"),
+    _Row("computing_time", "computing time", "s"),
+    _Row("particle_steps_per_second", "particle steps per second", "million"),
+)
 
 
 def _main_results(run: Record) -> dict[str, Value]:
@@ -335,69 +377,32 @@ def _error_of(key: str) -> str:
 
 def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
     """Return the lines for which any of the runs has a value."""
-    rows = [
-        _Row("status", "status", ""),
-        _Row("end_time", "simulated time", "s"),
-        _Row("impacts", "impacts", ""),
-        _Row("particles", "particles", ""),
-        _Row("particle_mass", "mass of the particles", "kg"),
-        _Row("fill_ratio", "volume of the particles over the cavity", "%"),
-        _Row("bed_fill", "volume of the bed over the cavity", "%"),
-        _Row("first_touches", "first touches", ""),
-        _Row("contacts", "mean number of contacts", "1"),
-        _Row("step", "time step", "s"),
-        _Row("steps_per_contact", "steps in the shortest contact", "1"),
-        _Row("supplied_energy", "energy supplied", "J"),
-    ]
+
+    def named(what: str, label: str, unit: str) -> Iterator[_Row]:
+        for key, name in _largest_of(what, all_values):
+            yield _Row(key, f"{label}{name}", unit)
+
+    rows = list(_FIRST)
     for channel, label in _CHANNEL_LABELS.items():
         key = f"share_{channel}"
         if channel not in _OPTIONAL or any(values.get(key, 0.0) != 0.0 for values in all_values):
             rows.append(_Row(key, label, "%"))
     rows += [_Row(f"share_at_{partner}", label, "%") for partner, label in _PARTNER_LABELS.items()]
-    rows += [_Row(key, f"lost in {name}", "%") for key, name in _largest_of("share_in", all_values)]
-    rows += [
-        _Row("energy_residual", "energy residual", "order"),
-        _Row("largest_overlap", "largest overlap over radius", "%"),
-        _Row("peak_contact_force", "peak contact force", "N"),
-        _Row("largest_approach_speed", "largest approach speed", "m/s"),
-    ]
+    rows += [*named("share_in", "lost in ", "%"), *_CONTACTS]
     several = len({key for values in all_values for key in values if key.startswith("peak_displacement[")}) > 1
     detailed = dict(_largest_of("peak_displacement", all_values))
     for key, point in _largest_of("peak_displacement", all_values, _MAX_PEAKS):
         where = f", {point}" if several else ""
         rows.append(_Row(key, f"peak displacement{where}", "m"))
-        if key not in detailed:
-            continue
-        rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
-        rows.append(_Row(f"settling_time[{point}]", f"settles to {100 * SETTLED:g} % of the peak{where}", "s"))
-        rows.append(_steady_row(f"steady_rms_displacement[{point}]", f"RMS displacement, second half{where}", "m"))
-        rows.append(_Row(f"peak_acceleration[{point}]", f"peak acceleration{where}", "m/s^2"))
-        rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
-        rows.append(_steady_row(f"steady_rms_acceleration[{point}]", f"RMS acceleration, second half{where}", "m/s^2"))
-        relative = f"RMS acceleration relative to the base{where}"
-        rows.append(_Row(f"rms_relative_acceleration[{point}]", relative, "m/s^2"))
-        rows.append(_Row(f"peak_reduction[{point}]", f"reduction of the peak{where}", "%"))
-        rows.append(_Row(f"rms_reduction[{point}]", f"reduction of the RMS{where}", "%"))
-    rows += [_Row(key, f"peak drift, {name}", "m") for key, name in _largest_of("peak_drift", all_values)]
-    of_modes = _largest_of("peak_modal_displacement", all_values)
-    rows += [_Row(key, f"peak modal displacement, {name}", "kg^0.5 m") for key, name in of_modes]
-    rows.append(_Row("equivalent_damping_ratio", "equivalent damping ratio", "%", at="damping_amplitude"))
-    rows += [_Row(key, f"peak load, {name}", "N") for key, name in _largest_of("peak_load", all_values)]
+        if key in detailed:
+            rows += [replace(row, key=f"{row.key}[{point}]", label=row.label + where) for row in _OF_POINT]
+    rows += named("peak_drift", "peak drift, ", "m")
+    rows += named("peak_modal_displacement", "peak modal displacement, ", "kg^0.5 m")
+    rows += [_DECAY, *named("peak_load", "peak load, ", "N")]
     rows.append(_Row("peak_base_acceleration", "peak acceleration of the base", "m/s^2"))
-    for kind, word in (("peak", "peak"), ("rms", "RMS")):
-        of_dampers = _largest_of(f"{kind}_damper_force", all_values)
-        rows += [_Row(key, f"{word} force of {name}", "N") for key, name in of_dampers]
-    rows.append(_Row("peak_interface_force", "peak force on the base", "N"))
-    rows.append(_Row("rms_interface_force", "RMS force on the base", "N"))
-    rows.append(_steady_row("steady_rms_interface_force", "RMS force on the base, second half", "N"))
-    rows.append(_steady_row("steady_loss_power", "mean power lost, second half", "W"))
-    rows.append(_Row("computing_time", "computing time", "s"))
-    rows.append(_Row("particle_steps_per_second", "particle steps per second", "million"))
+    rows += named("peak_damper_force", "peak force of ", "N")
+    rows += [*named("rms_damper_force", "RMS force of ", "N"), *_LAST]
     return [row for row in rows if any(row.key in values for values in all_values)]
-
-
-def _steady_row(key: str, label: str, unit: str) -> _Row:
-    return _Row(key, label, unit, _error_of(key))
 
 
 def _largest_of(what: str, all_values: tuple[dict[str, Value], ...], count: int = _MAX_POINTS) -> list[tuple[str, str]]:
