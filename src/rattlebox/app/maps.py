@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from nicegui import run as threads
@@ -13,8 +15,7 @@ from nicegui import ui
 
 import rattlebox as rb
 
-from .draft import dotted, numeric_paths, quantity, rounded
-from .host import Host
+from .draft import Draft, dotted, numeric_paths, quantity, rounded
 from .jobs import TaskFailed, Worker
 from .results import MAP_FORMATS, download_map, maps, new_name, stored_map
 from .runs import offer
@@ -27,11 +28,24 @@ POLL = 0.7
 MOST_VALUES = 400
 
 
-class MapTab:
-    """Choice of parameters and measure, and the map, which fills while it is computed."""
+class _Parameter(NamedTuple):
+    """Inputs of a parameter of a map."""
 
-    def __init__(self, page: Host) -> None:
-        self._page = page
+    name: ui.select
+    low: ui.input
+    high: ui.input
+    count: ui.number
+    is_log: ui.switch
+
+
+class MapTab:
+    """Choice of parameters and measure, and the map, which fills while it is computed.
+
+    `show` is called with the text of the case of a point that was clicked.
+    """
+
+    def __init__(self, draft: Draft, folder: Path, show: Callable[[str], object]) -> None:
+        self._draft, self._folder, self._show = draft, folder, show
         self._worker: Worker | None = None
         self._name = ""
         self._typed: dict[str, Any] = {}
@@ -62,7 +76,7 @@ class MapTab:
                 ui.button(title, icon="download", on_click=partial(self._download, suffix)).props("flat dense")
         self._chart.set_visibility(False), self._downloads.set_visibility(False)
 
-    def _row(self, number: int) -> tuple[Any, ...]:
+    def _row(self, number: int) -> _Parameter:
         """Build the inputs of a parameter: its name, the ends of its range, number of values and spacing."""
         with ui.row().classes("w-full items-center gap-2"):
             name = ui.select([NONE], value=NONE, label="second parameter" if number else "parameter")
@@ -71,11 +85,11 @@ class MapTab:
             count = ui.number("values", value=12, min=2, max=MOST_VALUES, precision=0).props("dense").classes("w-20")
             spacing = ui.switch("log")
         name.on_value_change(lambda _: self._suggest(number))
-        return name, low, high, count, spacing
+        return _Parameter(name, low, high, count, spacing)
 
     def follow_case(self) -> None:
         """Offer the numbers of the case, and ranges around its values in place of those that were proposed before."""
-        names = [dotted(path) for path in numeric_paths(self._page.draft.given)]
+        names = [dotted(path) for path in numeric_paths(self._draft.given)]
         for number, ((name, low, high, *_), usual) in enumerate(zip(self._rows, ("damper.gap", NONE), strict=True)):
             options = [NONE, *names] if number or not names else names
             kept = name.value if name.value in options and (number or name.value != NONE) else None
@@ -88,8 +102,8 @@ class MapTab:
     def _suggest(self, number: int) -> None:
         """Fill in a range around the value of the case."""
         name, low, high, _, spacing = self._rows[number]
-        paths = {dotted(path): path for path in numeric_paths(self._page.draft.given)}
-        found = quantity(self._page.draft.value(paths[name.value])) if name.value in paths else None
+        paths = {dotted(path): path for path in numeric_paths(self._draft.given)}
+        found = quantity(self._draft.value(paths[name.value])) if name.value in paths else None
         if found is None:
             ends = "", ""
         else:
@@ -107,9 +121,9 @@ class MapTab:
 
     async def compute(self) -> None:
         """Compute the map in the background; it fills as blocks of the study are finished."""
-        page = self._page
-        if page.draft.case is None or self._worker is not None:
-            self._failure.set_text("" if page.draft.case else "The case is not valid; see the form.")
+        folder, draft = self._folder, self._draft
+        if draft.case is None or self._worker is not None:
+            self._failure.set_text("" if draft.case else "The case is not valid; see the form.")
             return
         axes = {}
         for name, low, high, count, spacing in self._rows:
@@ -117,9 +131,9 @@ class MapTab:
                 values = [int(v) if v.isdecimal() else v for v in (str(low.value).strip(), str(high.value).strip())]
                 axes[name.value] = (*[_number(v) for v in values], int(count.value or 0), bool(spacing.value))
         try:
-            self._name = new_name(page.folder, "map")
+            self._name = new_name(folder, "map")
         except OSError as error:
-            self._failure.set_text(f"the folder {page.folder} cannot be used: {error.strerror}")
+            self._failure.set_text(f"the folder {folder} cannot be used: {error.strerror}")
             return
         self._typed = axes
         self._worker = worker = Worker()
@@ -129,9 +143,9 @@ class MapTab:
         watch = asyncio.get_running_loop().create_task(self._poll(worker))
         try:
             what = axes, self._measure.value, bool(self._compare.value)
-            await worker.do("sweep", page.draft.text, str(page.folder), self._name, *what, progress=self._report)
+            await worker.do("sweep", draft.text, str(folder), self._name, *what, progress=self._report)
             await self._draw()
-            self._status.set_text(f"saved as {self._name} in {page.folder.name}; click a point to watch it")
+            self._status.set_text(f"saved as {self._name} in {folder.name}; click a point to watch it")
         except TaskFailed as error:
             if self._worker is worker:
                 self._failure.set_text(str(error))
@@ -139,7 +153,7 @@ class MapTab:
             watch.cancel()
             worker.stop()
             with suppress(OSError):  # a map without blocks gives its name back
-                (page.folder / f"{self._name}.zarr").rmdir()
+                (folder / f"{self._name}.zarr").rmdir()
             if self._worker is worker:
                 self._worker = None
                 self._start.set_visibility(True), self._stop.set_visibility(False)
@@ -157,7 +171,7 @@ class MapTab:
         """Stop the computation; finished blocks remain."""
         self.close()
         self._start.set_visibility(True), self._stop.set_visibility(False)
-        self._status.set_text(f"stopped; the finished part is {self._name} in {self._page.folder.name}")
+        self._status.set_text(f"stopped; the finished part is {self._name} in {self._folder.name}")
 
     def close(self) -> None:
         """End the process of the map."""
@@ -173,18 +187,18 @@ class MapTab:
 
     def _list_maps(self) -> None:
         try:
-            self._open.set_options(maps(self._page.folder))
+            self._open.set_options(maps(self._folder))
         except OSError as error:
-            self._failure.set_text(f"the folder {self._page.folder} cannot be read: {error.strerror}")
+            self._failure.set_text(f"the folder {self._folder} cannot be read: {error.strerror}")
 
     # ---- drawing
 
     async def _draw(self) -> None:
         name = self._name
-        if not name or not (self._page.folder / f"{name}.zarr").exists():
+        if not name or not (self._folder / f"{name}.zarr").exists():
             return
         try:
-            study, drawn = await threads.io_bound(stored_map, self._page.folder, name) or (None, "")
+            study, drawn = await threads.io_bound(stored_map, self._folder, name) or (None, "")
         except rb.RattleboxError as error:
             if self._worker is None:
                 self._failure.set_text(str(error))
@@ -227,20 +241,19 @@ class MapTab:
             indices = list(np.unravel_index(event.data["value"][2], [len(each) for each in points]))
         else:
             indices = [event.data_index] if len(axes) == 1 else [int(number) for number in event.data[:2]]
-        page = self._page
-        paths = {dotted(path): path for path in numeric_paths(page.draft.given)}
+        draft = self._draft
+        paths = {dotted(path): path for path in numeric_paths(draft.given)}
         for axis, values, unit, index in zip(axes, points, units, indices, strict=True):
             if axis in paths:
                 value = float(values[index])
-                page.draft.set_value(paths[axis], f"{value:.6g} {unit}" if unit not in ("", "1") else value)
-        page.use_text(page.draft.text)
-        page.show_watch()
+                draft.set_value(paths[axis], f"{value:.6g} {unit}" if unit not in ("", "1") else value)
+        self._show(draft.text)
 
     async def _download(self, suffix: str) -> None:
         if not self._name:
             self._failure.set_text("There is no map yet; press Compute map.")
             return
-        await offer(self._failure, download_map, self._page.folder, self._name, suffix)
+        await offer(self._failure, download_map, self._folder, self._name, suffix)
 
 
 def _number(text: Any) -> Any:

@@ -139,9 +139,16 @@ class Page:
             with ui.tab_panel(watch).classes("p-0 gap-1"):
                 self._build_watch()
             with ui.tab_panel(maps).classes("p-0"):
-                self.map_tab = MapTab(self)
+                self.map_tab = MapTab(self.draft, self.folder, self._watch_text)
             with ui.tab_panel(saved).classes("p-0"):
-                self.runs_tab = RunsTab(self, saved)
+                self.runs_tab = RunsTab(
+                    self.folder,
+                    saved,
+                    self.runs_in_progress,
+                    resume=self.resume,
+                    show=self.show_saved,
+                    publish=self.publish,
+                )
             with ui.tab_panel(drawing).classes("p-0"):
                 self._drawing = ui.html("The case is being drawn.", sanitize=False).classes("w-full rb-drawing")
         tabs.on_value_change(lambda event: self.runs_tab.refresh() if event.value == "runs" else None)
@@ -307,8 +314,7 @@ class Page:
 
     async def show_saved(self, name: str, run: rb.Run) -> None:
         """Show the case of a run in the folder; of particles, also the stored result."""
-        self.use_text(typed_text(self.folder, name, run.case.to_toml()))
-        self.show_watch()
+        self._watch_text(typed_text(self.folder, name, run.case.to_toml()))
         if run.case.particle_dampers and self.draft.case is not None:
             self._running, self._running_text = name, self.draft.text
             self._show_view(await threads.io_bound(view_of_run, run) or b"")
@@ -316,8 +322,9 @@ class Page:
             self._particles.show(self.publish("particles", snapshots), growing=False)
             self._status.set_text(f"stored as {name}")
 
-    def show_watch(self) -> None:
-        """Show the tab with the run."""
+    def _watch_text(self, text: str) -> None:
+        """Replace the case by the text of a case file, and show the tab with the run."""
+        self.use_text(text)
         self._right.set_value("watch")
 
     def _show_running(self, running: bool) -> None:
@@ -374,9 +381,8 @@ class Page:
         """Resume a paused run of the folder from its checkpoint."""
         if self._worker is not None:
             raise rb.DataError("a run of this page is in progress", "Pause or Cancel in the tab Watch first")
-        self.use_text(paused_case(self.folder, name))
+        self._watch_text(paused_case(self.folder, name))
         self._paused, self._paused_text = name, self.draft.text
-        self.show_watch()
         await self.run()
 
     _paused = _paused_text = _running = _running_text = _unsaved = ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Collection
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -14,7 +14,6 @@ import rattlebox as rb
 
 from .draft import FAILURES, leaves, said, short
 from .elements import Charts
-from .host import Host
 from .results import FORMATS, download, inside, name_of_case, paused_runs, runs
 from .views import comparison
 
@@ -23,16 +22,30 @@ MOST_DIFFERENCES = 12
 
 
 class RunsTab:
-    """List of the runs in the folder."""
+    """List of the runs in the folder.
 
-    def __init__(self, page: Host, tab: ui.tab) -> None:
-        self._page, self._tab = page, tab
+    `busy` has the names of runs in progress, which are not listed as paused. The other arguments are called with the name of
+    a run that the user resumes, with name and run of one that is opened, and with a body to serve, whose URL they return.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        tab: ui.tab,
+        busy: Collection[str],
+        *,
+        resume: Callable[[str], Awaitable[object]],
+        show: Callable[[str, rb.Run], Awaitable[object]],
+        publish: Callable[[str, Callable[..., bytes]], str],
+    ) -> None:
+        self._folder, self._tab, self._busy = folder, tab, busy
+        self._resume_run, self._show, self._publish = resume, show, publish
         self._chosen: set[str] = set()
         with ui.row().classes("items-center"):
             ui.button("Refresh", icon="refresh", on_click=self.refresh).props("flat dense")
             ui.button("Compare the ticked runs", icon="stacked_line_chart", on_click=self._compare).props("dense")
         self._failure = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
-        self._download = partial(offer, self._failure, download, page.folder)
+        self._download = partial(offer, self._failure, download, folder)
         self._box = ui.column().classes("w-full gap-0")
         self._charts = Charts().classes("w-full")
         self._charts._props["columns"] = 1
@@ -42,7 +55,7 @@ class RunsTab:
     def show_paused(self) -> list[str]:
         """Show the number of paused runs in the label of the tab, and return their names."""
         try:
-            paused = [name for name in paused_runs(self._page.folder) if name not in self._page.runs_in_progress]
+            paused = [name for name in paused_runs(self._folder) if name not in self._busy]
         except OSError:  # reported when the tab is opened
             paused = []
         self._tab.props["label"] = f"Saved runs ({len(paused)} paused)" if paused else "Saved runs"
@@ -56,7 +69,7 @@ class RunsTab:
             self._list()
 
     def _list(self) -> None:
-        folder = self._page.folder
+        folder = self._folder
         try:
             times = {name: (folder / f"{name}.nc").stat().st_mtime for name in runs(folder)[:MOST_RUNS]}
         except OSError as error:
@@ -88,18 +101,18 @@ class RunsTab:
 
     async def _resume(self, name: str) -> None:
         try:
-            await self._page.resume(name)
+            await self._resume_run(name)
         except FAILURES as error:
             self._failure.set_text(said(error))
 
     async def _open(self, name: str) -> None:
         run = (await self._load([name])).get(name)
         if run is not None:
-            await self._page.show_saved(name, run)
+            await self._show(name, run)
 
     async def _load(self, names: list[str]) -> dict[str, rb.Run]:
         """Return runs of the folder by name; none, with a message in the page, if one cannot be read."""
-        folder = self._page.folder
+        folder = self._folder
 
         def load() -> dict[str, rb.Run]:
             loaded = {name: rb.load(inside(folder, name, ".nc")) for name in names}
@@ -121,7 +134,7 @@ class RunsTab:
         loaded = await self._load(sorted(self._chosen))
         if loaded:
             body = comparison(loaded)
-            self._charts.show(self._page.publish("comparison", lambda _: body))
+            self._charts.show(self._publish("comparison", lambda _: body))
             self._table.set_text(f"{differences(loaded)}\n\n{rb.compare(loaded)}")
 
 
