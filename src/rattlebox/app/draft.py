@@ -119,18 +119,18 @@ def template(name: str) -> str:
 
 def by_field(message: str) -> dict[str, str]:
     """Return the parts of a message about a case by their fields; "" has those without one."""
-    found: dict[str, str] = {}
-    place = ""
+    errors: dict[str, str] = {}
+    field = ""
     for line in message.splitlines():
         if not line.startswith("  "):
             head = re.match(r"case: ([\w.\[\]]+)(?: = .*)?$", line)
-            place = head[1] if head else ""
+            field = head[1] if head else ""
             text = "" if head else line.removeprefix("case: ").removeprefix("case:")
         else:
             text = line.strip()
         if text:
-            found[place] = f"{found[place]}\n{text}" if place in found else text
-    return found
+            errors[field] = f"{errors[field]}\n{text}" if field in errors else text
+    return errors
 
 
 def outside(node: Any, folder: Path) -> None:
@@ -159,6 +159,7 @@ def _has_long_key(text: str) -> bool:
 
 def _depth(node: Any) -> int:
     """Return the depth of nested tables and lists, without recursion."""
+    # Level by level: a recursion would itself be too deep for what is to be refused.
     level, deepest = [node], 0
     while level:
         deepest += 1
@@ -189,19 +190,19 @@ def rounded(value: float) -> float:
     return float(f"{value:.4g}")
 
 
-def numeric_paths(given: Any, above: Path_ = ()) -> list[Path_]:
+def numeric_paths(node: Any, above: Path_ = ()) -> list[Path_]:
     """Return the paths of all single numbers with or without a unit in the tables of a case."""
-    if isinstance(given, (dict, list)):
-        items: Sequence[tuple[Any, Any]] = list(given.items() if isinstance(given, dict) else enumerate(given))
-        if isinstance(given, list) and not all(isinstance(item, dict) for item in given):
+    if isinstance(node, (dict, list)):
+        items: Sequence[tuple[Any, Any]] = list(node.items() if isinstance(node, dict) else enumerate(node))
+        if isinstance(node, list) and not all(isinstance(item, dict) for item in node):
             return []
         return [path for key, item in items for path in numeric_paths(item, (*above, key))]
-    return [above] if above and quantity(given) is not None else []
+    return [above] if above and quantity(node) is not None else []
 
 
 def leaves(toml: str) -> dict[str, Any]:
     """Return all single values and lists of a case file by path, but for the descriptions of materials."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
 
     def walk(node: Any, path: Path_) -> None:
         if isinstance(node, dict):
@@ -211,10 +212,10 @@ def leaves(toml: str) -> dict[str, Any]:
             for number, item in enumerate(node):
                 walk(item, (*path, number))
         elif path[-1] not in ("title", "source"):
-            found[dotted(path)] = node
+            values[dotted(path)] = node
 
     walk(tomllib.loads(toml), ())
-    return found
+    return values
 
 
 def short(value: Any) -> str:
@@ -234,6 +235,6 @@ def dotted(path: Path_) -> str:
 def python_script(toml: str, task: str = "") -> str:
     """Return a Python script that computes a case, or a task with it, again."""
     quoted = toml.replace("\\", "\\\\").replace('"""', '\\"\\"\\"').removesuffix("\n") + "\n"
-    quoted = re.sub(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]", lambda found: f"\\u{ord(found[0]):04x}", quoted)
+    quoted = re.sub(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff]", lambda match: f"\\u{ord(match[0]):04x}", quoted)
     body = task or 'run = rb.simulate(case)\nprint(run.summary())\nrun.plot.motion().savefig("motion.png")\n'
     return f'import rattlebox as rb\n\ncase = rb.Case.from_toml("""\n{quoted}""")\n{body}'

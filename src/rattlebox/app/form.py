@@ -39,14 +39,14 @@ def variants(node: Schema) -> list[Schema]:
 
 def tables(node: Schema) -> tuple[list[Schema], bool]:
     """Return the tables that a field accepts, and whether it accepts several in a list."""
-    found, several = [], False
-    for each in variants(node):
-        if "properties" in each:
-            found.append(each)
-        elif each.get("type") == "array":
-            inside = [part for part in variants(each.get("items", {})) if "properties" in part]
+    choices, several = [], False
+    for variant in variants(node):
+        if "properties" in variant:
+            choices.append(variant)
+        elif variant.get("type") == "array":
+            inside = [part for part in variants(variant.get("items", {})) if "properties" in part]
             several = several or bool(inside)
-    return found, several
+    return choices, several
 
 
 def kind_of(table: Schema) -> str:
@@ -69,6 +69,7 @@ def helps(table: Schema) -> dict[str, str]:
 
 def fields(table: Schema, given: Any) -> list[tuple[str, Schema, bool]]:
     """Return name, schema and whether it is shown at once, of the fields of a table; of synonyms only one."""
+    # Synonyms, such as damper and dampers, share their title; the one that is set is shown.
     by_title: dict[str, list[str]] = {}
     for name, node in table["properties"].items():
         if name not in HIDDEN:
@@ -136,6 +137,7 @@ class Form:
         for label in self._labels.values():
             label.set_text("")
         for name, message in errors.items():
+            # An error inside of a table that has no input of its own is shown at the table.
             holder = name
             while holder and holder not in self._labels:
                 holder = holder.rpartition("." if holder.rfind(".") > holder.rfind("[") else "[")[0]

@@ -29,6 +29,7 @@ class Guard:
         if status:
             await _refuse(scope, send, *status)
             return
+        # The token in the address becomes a cookie, so that later requests do not carry it in their addresses.
         cookie = f"{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/".encode()
 
         async def with_cookie(message: Any) -> None:
@@ -42,11 +43,13 @@ class Guard:
     def _refusal(self, scope: Any, headers: dict[str, str]) -> tuple[int, str] | None:
         if headers.get("host") not in self._hosts:
             return 403, "another host"
+        # Pages of other origins can send requests to this port; browsers state their origin.
         origin = headers.get("origin")
         if origin is not None and origin not in {f"http://{host}" for host in self._hosts}:
             return 403, "another origin"
         if not (self._has_token_in_url(scope) or self._has_cookie(headers)):
             return 403, "the token is missing; open the address that the command printed"
+        # Decoded twice, since a proxy or a framework may decode once more than the check did.
         path = unquote(unquote(scope.get("raw_path", scope["path"].encode()).decode("latin-1")))
         if "\\" in path or "\0" in path or any(part in (".", "..") for part in path.split("/")):
             return 400, "no such path"
@@ -59,10 +62,10 @@ class Guard:
 
     def _has_token_in_url(self, scope: Any) -> bool:
         try:
-            given = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=50).get("token", [""])
+            tokens = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=50).get("token", [""])
         except ValueError:  # too many fields
             return False
-        return secrets.compare_digest(given[0].encode(), self._token.encode())
+        return secrets.compare_digest(tokens[0].encode(), self._token.encode())
 
     def _has_cookie(self, headers: dict[str, str]) -> bool:
         try:

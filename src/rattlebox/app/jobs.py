@@ -109,6 +109,7 @@ class Live:
             return
         self._busy = True
         try:
+            # Requests that came meanwhile replaced each other; only the last is computed.
             while (task_now := self._next) is not None:
                 self._next = None
                 try:

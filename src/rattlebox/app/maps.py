@@ -103,11 +103,11 @@ class MapTab:
         """Fill in a range around the value of the case."""
         name, low, high, _, spacing = self._rows[number]
         paths = {dotted(path): path for path in numeric_paths(self._draft.given)}
-        found = quantity(self._draft.value(paths[name.value])) if name.value in paths else None
-        if found is None:
+        number_and_unit = quantity(self._draft.value(paths[name.value])) if name.value in paths else None
+        if number_and_unit is None:
             ends = "", ""
         else:
-            value, unit = found
+            value, unit = number_and_unit
             start, stop = (0.0, 1.0) if not unit and 0 <= value <= 1 else (value / 3, value * 3)
             if name.value.endswith("start"):
                 start, stop = -1.0, 1.0
@@ -140,6 +140,7 @@ class MapTab:
         self._start.set_visibility(False), self._stop.set_visibility(True)
         self._failure.set_text("")
         self._status.set_text("starting")
+        # The worker writes blocks to the disk; the page reads them from there while it waits.
         watch = asyncio.get_running_loop().create_task(self._poll(worker))
         try:
             what = axes, self._measure.value, bool(self._compare.value)
@@ -227,9 +228,9 @@ class MapTab:
     def _as_typed(self, axis: str, values: Any, unit: str) -> tuple[Any, str]:
         """Return the values of an axis in the unit in which the user typed its range, and this unit."""
         typed = [quantity(text) for text in self._typed.get(axis, ())[:2]]
-        for stored, each in zip((values[0], values[-1]), typed, strict=False):
-            if each is not None and each[1] and each[0] and stored:
-                return values * (each[0] / stored), each[1]
+        for stored, end in zip((values[0], values[-1]), typed, strict=False):
+            if end is not None and end[1] and end[0] and stored:
+                return values * (end[0] / stored), end[1]
         return values, unit
 
     def _watch_point(self, event: Any) -> None:

@@ -187,6 +187,7 @@ class Page:
 
     def _follow(self, source: object = None, path: Path_ | None = None) -> None:
         """Let all views show the case, after a change at a path or of the whole case; the source shows it already."""
+        # An input that the user is writing in must not be replaced while its cursor is in it.
         if source is not self._text:
             self._text.set_value(self.draft.text)
         if path is not None:
@@ -345,6 +346,7 @@ class Page:
         except OSError as error:
             self._failure.set_text(f"the folder {self.folder} cannot be used: {error.strerror}")
             return
+        # The text may change while the run takes hours: what runs is remembered.
         self._running, self._running_text = name, draft.text
         self.runs_in_progress.add(name)
         self.runs_tab.show_paused()

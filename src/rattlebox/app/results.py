@@ -80,6 +80,7 @@ def save_run(run: rb.Run, folder: Path, name: str) -> str:
                 raise
         else:
             return name
+        # Somebody has taken the name since the run began: case and snapshots follow to the next free one.
         before, name = name, new_name(folder, "run")
         for suffix in (".toml", ".vtkhdf"):
             with suppress(FileNotFoundError):
@@ -133,12 +134,12 @@ def case_files(folder: Path) -> list[str]:
 
 def _names(folder: Path, suffix: str) -> list[str]:
     """Return the names of the results with a suffix, the newest first; pipes, links to nowhere and the like are none."""
-    found = []
+    results = []
     for path in folder.iterdir():
         with suppress(OSError):
             if path.suffix == suffix and _is_name(path.stem) and _is_result(path):
-                found.append((path.stat().st_mtime, path.stem))
-    return [name for _, name in sorted(found, reverse=True)]
+                results.append((path.stat().st_mtime, path.stem))
+    return [name for _, name in sorted(results, reverse=True)]
 
 
 def _is_result(path: Path) -> bool:
@@ -186,10 +187,10 @@ def download(folder: Path, name: str, suffix: str) -> bytes:
         return run.case.to_toml().encode()
     if suffix == "py":
         return python_script(run.case.to_toml()).encode()
-    with tempfile.TemporaryDirectory() as place:
-        target = Path(place) / f"{name}.{suffix}"
+    with tempfile.TemporaryDirectory() as scratch:
+        target = Path(scratch) / f"{name}.{suffix}"
         if suffix == "csv":
-            files = run.to_csv(place)
+            files = run.to_csv(scratch)
             packed = io.BytesIO()
             with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
                 for file in files:
@@ -245,8 +246,8 @@ def download_map(folder: Path, name: str, suffix: str) -> bytes:
         # The words of the flags stand beside each row, since a table has no legend.
         words = rb.study_remarks(study).rename("remarks")
         return bytes(study.assign(remarks=words).to_dataframe().to_csv().encode())
-    with tempfile.TemporaryDirectory() as place:
-        target = Path(place) / f"{name}.{suffix}"
+    with tempfile.TemporaryDirectory() as scratch:
+        target = Path(scratch) / f"{name}.{suffix}"
         if suffix == "nc":
             study.to_netcdf(target)
         elif suffix == "png":

@@ -51,10 +51,10 @@ def build(folder: Path, port: int, token: str) -> None:
 
 def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
     """Start the application and serve it until Ctrl-C."""
-    place = _folder(Path(folder))
+    root = _folder(Path(folder))
     port = _free_port(port)
     token = secrets.token_urlsafe(24)
-    build(place, port, token)
+    build(root, port, token)
 
     async def announce() -> None:
         while True:  # handlers of the startup are called before the port is open
@@ -67,7 +67,7 @@ def serve(folder: str | Path, *, port: int = 0, show: bool = True) -> None:
                 break
         await Worker.load_spare()  # while it loads, a page would wait for the processor
         url = f"http://{HOST}:{port}/?token={token}"
-        print(f"Rattlebox runs at {url}\nFiles are in {place}. Ctrl-C ends it.", flush=True)
+        print(f"Rattlebox runs at {url}\nFiles are in {root}. Ctrl-C ends it.", flush=True)
         if show:
             await asyncio.to_thread(webbrowser.open, url)
 

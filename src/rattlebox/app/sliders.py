@@ -62,8 +62,8 @@ class Sliders:
         share = not unit and abs(number) <= 1
         low = (-1.0 if name.endswith("start") else 0.0) if share else -1.0
 
-        def text(place: float) -> Any:
-            value = rounded(place if share else number * 4**place)
+        def text(position: float) -> Any:
+            value = rounded(position if share else number * 4**position)
             return f"{value:g} {unit}" if unit else value
 
         with ui.column().classes("gap-0").style("width:150px"):

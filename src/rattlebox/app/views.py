@@ -127,8 +127,8 @@ def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run, unit: st
     if "place" in arrays:
         balls = enumerate(run.motion.ball.values)
         lines = [series(i, str(ball), "speed", "place", row=i, portrait=True) for i, ball in balls]
-        place = "Position from the centre of the cavity (mm)"
-        charts.append(chart("Phase portrait in the cavity", place, "Velocity (m/s)", lines, portrait=True))
+        position_label = "Position from the centre of the cavity (mm)"
+        charts.append(chart("Phase portrait in the cavity", position_label, "Velocity (m/s)", lines, portrait=True))
         hits = [series(0, "impacts", "impact speed", "impact time", dots=True)]
         limits = [0.0, float(run.arrays.time[-1])]
         charts.append(chart("Impacts", "Time (s)", "Approach speed (m/s)", hits, range=limits))
@@ -173,8 +173,8 @@ def _along(run: rb.Run) -> np.ndarray[Any, Any] | None:
     if "axis" not in run.motion.dims:
         return None
     directions = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
-    given = run.case.particle_dampers[0].direction
-    vector = np.asarray(directions[given] if isinstance(given, str) else given, float)
+    direction = run.case.particle_dampers[0].direction
+    vector = np.asarray(directions[direction] if isinstance(direction, str) else direction, float)
     return np.asarray(vector / np.linalg.norm(vector))
 
 
@@ -202,14 +202,15 @@ def _balls(run: rb.Run, rows: slice) -> dict[str, Any]:
         moved = motion.base_displacement.values
     arrays["frame displacement"] = 1e3 * np.interp(frames, time, moved)
     if motion.sizes.get("ball"):
-        place = 1e3 * (motion.relative_position - motion.ball_centre).values
-        arrays["place"] = place[rows].T
+        position = 1e3 * (motion.relative_position - motion.ball_centre).values
+        arrays["place"] = position[rows].T
         arrays["speed"] = motion.relative_velocity.values[rows].T
-        arrays["frame place"] = np.array([np.interp(frames, time, column) for column in place.T])
+        arrays["frame place"] = np.array([np.interp(frames, time, column) for column in position.T])
         at = log.time.values
         arrays["impact time"], arrays["impact speed"] = at, log.approach_speed.values
         arrays["impact force"] = log.peak_force.values
         arrays["impact contact"], arrays["impact damper"] = log.contact.values, log.damper.values
+        # The time since the last impact, by which a contact flashes.
         after = frames - at[np.searchsorted(at, frames, side="right") - 1] if at.size else np.full(frames.size, np.inf)
         flash = FLASH * (time[-1] - time[0])
         arrays["frame flash"] = np.where((after >= 0) & (after < flash), 1 - after / flash, 0.0)
@@ -230,6 +231,7 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
         snapshots = rb.Snapshots(path)
         frames = range(len(snapshots))
         if len(snapshots):
+            # Float32 of position, speed and spin of each particle.
             size = 20 * snapshots[0].radius.size
             frames = frames[:: max(1, -(-len(snapshots.planned) * size // MOST_BYTES))]
         new = [snapshots[number] for number in frames if number >= first]

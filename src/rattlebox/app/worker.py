@@ -79,6 +79,7 @@ def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tup
         result = rb.simulate(case, progress=False)
     else:
         checkpoint, snapshots = target.with_suffix(".checkpoint"), target.with_suffix(".vtkhdf")
+        # Each look costs a checkpoint and a view, so that they become rarer the longer the run takes.
         wait = FIRST_LOOK
         while True:
             due = time.monotonic() + wait
@@ -92,6 +93,7 @@ def run(report: Report, toml: str, folder: str, name: str, compare: bool) -> tup
                 break
             report("view", view_of_run(result))
             wait = min(2 * wait, MOST_WAIT)
+    # Kept until the next run, so that a full disk loses no result.
     _unsaved[:] = [(result, target)]
     view = _view(result, case, compare)
     try:

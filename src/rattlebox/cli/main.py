@@ -27,6 +27,7 @@ def main() -> None:
     received: list[int] = []
 
     def stop(number: int, frame: FrameType | None) -> None:
+        # The first signal decides the exit code; the alarm only repeats one that came at a bad moment.
         if number != signal.SIGALRM:
             received.append(number)
         if _discards_exceptions(frame):

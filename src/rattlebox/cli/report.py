@@ -22,13 +22,13 @@ def write(results: Sequence[Path], out: Path | None, title: str | None, question
     """Write a report about results on disk, and print its name."""
     path = out or Path(f"{results[0].resolve().with_suffix('').name}.html")
     replaces = path.exists()
-    found: dict[str, Any] = {}
-    for each in results:
-        name = str(each)
-        if name in found:
+    by_name: dict[str, Any] = {}
+    for folder in results:
+        name = str(folder)
+        if name in by_name:
             raise CaseError(f"{name} is given twice", "each folder once")
-        found[name] = read_result(each)
-    result = found if len(found) > 1 else next(iter(found.values()))
+        by_name[name] = read_result(folder)
+    result = by_name if len(by_name) > 1 else next(iter(by_name.values()))
     write_report(result, path, title=title, question=question)
     note = " (replaced an earlier report; choose another name with -o)" if replaces and out is None else ""
     terminal().print(f"written: {path}{note}", soft_wrap=True)

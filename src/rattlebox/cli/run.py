@@ -146,6 +146,7 @@ def _run_in_folder(path: Path, case: Case, folder: RunFolder, *, csv: bool, mat:
             unfinished = bool(case.particle_dampers) and run.status not in ("finished", "energy_error")
             checkpoint = folder.finish(list(written.values()), keep_checkpoint=unfinished)
         installed = True
+    # The folder was free, so only the checkpoint can be of another run.
     except CheckpointMismatch as error:
         option = "--replace, " if checkpoint == out / CHECKPOINT else ""
         raise DataError(error.complaint, f"another -o folder, {option}{error.suggestion}") from None

@@ -28,6 +28,7 @@ _MAX_TRIALS = 12
 def show_study(path: Path) -> None:
     """Print the progress of a study, its axes, the range of each result, and the status of its runs."""
     console = terminal()
+    # A design has trials, whose number is not known before; other studies have variants, whose number is.
     trials = count_trials(path)
     if trials is None:
         state = progress_of(path)
@@ -47,9 +48,9 @@ def show_study(path: Path) -> None:
                 console.print(_trial_table(study, "best trial", study.front.values[:_MAX_TRIALS], study.front.size))
             for line in status_lines(study):
                 console.print(Text(f"  {line}"), soft_wrap=True)
-        if trials and not complete and (found := open_trials(path)) is not None:
-            latest = found.trial.values[-_MAX_TRIALS:]
-            console.print(_trial_table(found, "trial", latest, found.trial.size))
+        if trials and not complete and (so_far := open_trials(path)) is not None:
+            latest = so_far.trial.values[-_MAX_TRIALS:]
+            console.print(_trial_table(so_far, "trial", latest, so_far.trial.size))
     if not complete:
         console.print("  The study is not finished; repeat the command that started it to resume.", soft_wrap=True)
 

@@ -135,6 +135,7 @@ class Checkpoint:
                     f"{self.path} is in use by {holder}", "another file, or wait until that run has ended"
                 ) from None
         try:
+            # The lock is ours: leftovers of a process that was killed can be removed.
             name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
             remove_temporaries(self.path)
             with watch([self.path]):
@@ -160,11 +161,12 @@ class Checkpoint:
                     arrays[name] = _read_array(archive, name)
                     if array_digest([arrays[name]]).hex() != digest:
                         raise ValueError("the digest does not match")
+            # Names of arrays are "group.member"; the state of the core has no group.
             groups: dict[str, dict[str, NDArray[Any]]] = {"records": {}, "position": {}}
             for name, array in arrays.items():
-                group, _, own = name.partition(".")
-                if own:
-                    groups[group][own] = array
+                group, _, member = name.partition(".")
+                if member:
+                    groups[group][member] = array
             positions = tuple(groups["position"][str(k)] for k in range(len(groups["position"])))
             records = _core.Records(**groups["records"])
             data = CheckpointData(
@@ -172,6 +174,7 @@ class Checkpoint:
             )
         except (DataError, MemoryError):
             raise
+        # NumPy and zipfile raise nearly any exception for damaged files; `block` is the part that was being read.
         except Exception:
             raise DataError(
                 f"{self.path} is not an intact checkpoint: {block} is damaged", "another file, or remove this one"

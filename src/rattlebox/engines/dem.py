@@ -144,6 +144,7 @@ def _result(
     if continued:
         raw = losses_from_zero(raw)
     arrays = _arrays(resolved_case, packed, raw, dem)
+    # What is known only now, at the end: how deep and fast contacts were, and how much softening changed the loss.
     overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
     lost = sum((getattr(raw, name)[-1].sum(axis=1) for name in LOSSES), np.zeros(len(arrays.dampers)))
     moves = arrays.base_velocity[:, None] + arrays.cavity_velocity

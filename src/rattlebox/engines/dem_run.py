@@ -55,6 +55,7 @@ class DemRun:
     def add_snapshots(self, snapshots: SnapshotFile, steps: Sequence[int]) -> None:
         """Take snapshots at the given steps. Those before a resumed checkpoint must already be in the file."""
         self._snapshots, self._snapshot_steps = snapshots, list(steps)
+        # A file that lacks snapshots from before the checkpoint could never be completed.
         before = sum(step + 1 < self._dem.step for step in steps)
         if not before:
             snapshots.create()
@@ -108,6 +109,7 @@ class DemRun:
 
     def _run_until(self, until: int, last: int, progress: Callable[[int, int], object] | None) -> bool:
         """Run until a step is done, and write the checkpoints that are due; return False if the run was stopped."""
+        # The core calls `proceed` every few steps; False ends its loop, for a checkpoint that is due or at the user's wish.
         stopped = False
 
         def proceed(done: int) -> bool:
@@ -116,6 +118,7 @@ class DemRun:
             return not stopped and (self.checkpoint is None or time.monotonic() < self._due)
 
         while True:
+            # Checkpoints in simulated time are at fixed steps, so that a run that resumes has the same ones.
             goal = until
             if self._steps is not None:
                 goal = min(goal, (self._dem.step // self._steps + 1) * self._steps - 1)
@@ -125,6 +128,7 @@ class DemRun:
             in_time = reached and proceed(self._dem.step)  # the core does not call `proceed` in a short part
             if stopped:
                 return False
+            # A stop for a checkpoint: write it and go on. The last step of the run needs none; `run` writes it.
             if goal < until or not in_time:
                 self._write_checkpoint()
             if reached and goal == until:

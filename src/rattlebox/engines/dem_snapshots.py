@@ -26,8 +26,8 @@ def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Sn
     dt, last = packed.dt, packed.steps
     count = case.output.snapshots
     if isinstance(count, int) and count > last + 1:
-        place = ("output", "snapshots")
-        raise Hint(f"{count} is more than the {last} steps of the run", f"snapshots = {min(last + 1, 1001)}", place)
+        field = ("output", "snapshots")
+        raise Hint(f"{count} is more than the {last} steps of the run", f"snapshots = {min(last + 1, 1001)}", field)
     times = case.output.snapshot_times(case.duration)
     steps = np.unique(np.clip(np.rint(times / dt).astype(np.int64), 0, last))
     contents = [damper.contents for damper in case.particle_dampers]

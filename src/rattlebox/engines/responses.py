@@ -107,9 +107,11 @@ def responses(
     R. W. Clough, J. Penzien (1993), Dynamics of Structures, 2nd ed., McGraw-Hill, ISBN 0-07-011394-7.
     """
     modes, three_d = case.modes, base.ndim == 2
+    # Forces of springs and dashpots in modal coordinates; coupled damping adds a full matrix.
     internal = 2 * modes.decay * p + modes.stiffness * q
     if modes.coupling is not None:
         internal = internal + p @ modes.coupling
+    # Modal forces of loads, contacts and the acceleration of the base; their sum less the internal ones accelerates.
     driven = np.zeros_like(q)
     for index, signal in enumerate(case.loads):
         driven += np.multiply.outer(load[:, index], modes.shape(signal.point, signal.direction))
@@ -153,8 +155,8 @@ def base_at_points(case: Case, base: FloatArray) -> FloatArray:
     modes = case.modes
     if base.ndim == 1:
         return np.repeat(base[:, None], len(modes.lines()), axis=1)
-    own = base @ unit_vector(case.particle_dampers[0].direction)
-    parts = [base if name in modes.spatial else own[:, None] for name in modes.shapes]
+    along = base @ unit_vector(case.particle_dampers[0].direction)
+    parts = [base if name in modes.spatial else along[:, None] for name in modes.shapes]
     return np.concatenate([*parts, np.zeros((len(base), 0))], axis=1)
 
 

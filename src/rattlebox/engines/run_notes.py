@@ -41,11 +41,11 @@ def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tu
     for index, damper in enumerate(case.impact_dampers):
         count = len(damper.balls)
         name = " ".join(damper.label(index).split())
-        own = impacts.damper == index
-        if own.any():
-            notes += _deep_overlaps(damper, name, impacts.contact[own], impacts.peak_overlap[own])
-            notes += _fast_impacts(damper, name, impacts.contact[own], impacts.approach_speed[own])
-            notes += _beyond_measured_impacts(case, index, name, impacts, own)
+        here = impacts.damper == index
+        if here.any():
+            notes += _deep_overlaps(damper, name, impacts.contact[here], impacts.peak_overlap[here])
+            notes += _fast_impacts(damper, name, impacts.contact[here], impacts.approach_speed[here])
+            notes += _beyond_measured_impacts(case, index, name, impacts, here)
         else:
             notes += _no_impacts(damper, name, offsets[:, first : first + count])
         first += count
@@ -64,11 +64,11 @@ def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[n
     for index, damper in enumerate(case.impact_dampers):
         name = " ".join(damper.label(index).split())
         count = len(damper.balls) + 1
-        own = slice(first, first + count)
-        touched = np.flatnonzero(speeds[own])
+        contacts = slice(first, first + count)
+        touched = np.flatnonzero(speeds[contacts])
         if touched.size:
-            yield from _deep_overlaps(damper, name, touched, overlaps[own][touched])
-            yield from _fast_impacts(damper, name, touched, speeds[own][touched])
+            yield from _deep_overlaps(damper, name, touched, overlaps[contacts][touched])
+            yield from _fast_impacts(damper, name, touched, speeds[contacts][touched])
         first += count
 
 
@@ -119,6 +119,7 @@ def _limits_of_particles(prepared: Prepared) -> Iterator[ContactLimit]:
             limits = contact_limits(case, damper, table, 10**log_speed, 1.0)
             return min(limit.duration for limit in limits) / step.dt - MIN_STEPS_PER_CONTACT
 
+        # The shortest contact shortens with the speed: find the speed at which it has the fewest allowed steps.
         slowest, fastest = -6.0, 6.0
         if steps(slowest) > 0 > steps(fastest):
             speed = 10 ** float(brentq(steps, slowest, fastest, xtol=1e-6))
@@ -195,9 +196,9 @@ def _fast_impacts(
 ) -> Iterator[str]:
     """Yield warnings if approach speeds exceed the restitution tables of a damper."""
     at_walls = (contacts == 0) | (contacts == len(damper.balls))
-    for contact, own in ((damper.contact, at_walls), (damper.ball_contact or damper.contact, ~at_walls)):
-        if own.any():
-            yield from _fast_impact(contact, name, float(np.nanmax(speeds[own])))
+    for contact, touched in ((damper.contact, at_walls), (damper.ball_contact or damper.contact, ~at_walls)):
+        if touched.any():
+            yield from _fast_impact(contact, name, float(np.nanmax(speeds[touched])))
 
 
 def _fast_impact(contact: Contact, where: str, speed: float) -> Iterator[str]:
@@ -244,7 +245,7 @@ def simultaneous_notes(count: int) -> Iterator[str]:
 
 
 def _beyond_measured_impacts(
-    case: Case, index: int, name: str, impacts: Table, own: NDArray[np.bool_]
+    case: Case, index: int, name: str, impacts: Table, in_damper: NDArray[np.bool_]
 ) -> Iterator[str]:
     """Yield a warning if an impact exceeds the last point of a measured force curve."""
     damper, pairs = case.impact_dampers[index], contact_pairs(case, index)
@@ -252,20 +253,20 @@ def _beyond_measured_impacts(
     for contact, pair in enumerate(pairs):
         at_wall = contact in (0, len(pairs) - 1)
         law = damper.contact if at_wall else damper.ball_contact or damper.contact
-        mine = own & (impacts.contact == contact)
-        if law.measured_overlap is None or not mine.any():
+        here = in_damper & (impacts.contact == contact)
+        if law.measured_overlap is None or not here.any():
             continue
-        overlap = float(np.nanmax(impacts.peak_overlap[mine]))
+        overlap = float(np.nanmax(impacts.peak_overlap[here]))
         if overlap == 0:  # a hard impact has none; use the overlap that the curve gives for its speed
             force = _core.normal_law(*law.coefficients(pair))
-            overlap = force.largest_overlap(float(impacts.approach_speed[mine].max()))
+            overlap = force.largest_overlap(float(impacts.approach_speed[here].max()))
         deepest.append((overlap, law.measured_overlap))
     yield from _beyond_measurement(name, deepest)
 
 
 def _beyond_measurement(name: str, deepest: Iterable[tuple[float, float]]) -> Iterator[str]:
     """Yield a warning about the contact with the largest ratio of overlap to last measured overlap [m]."""
-    overlap, measured = max(deepest, key=lambda each: each[0] / each[1], default=(0.0, math.inf))
+    overlap, measured = max(deepest, key=lambda pair: pair[0] / pair[1], default=(0.0, math.inf))
     if overlap > measured:
         yield (
             f"warning: overlaps in {name} reach {_length(overlap)}, but the contact force is measured only up to "

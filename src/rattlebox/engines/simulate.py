@@ -143,6 +143,7 @@ def simulate_many(
         # Particle cases run one after the other, each on all threads.
         from rattlebox.engines.dem import simulate_dem
 
+        # All 1-D cases run first, together on all threads; their results are merged in the order of the cases.
         plain = [case for case in cases if not case.particle_dampers]
         with progress_bar(progress, "runs") as report:
             finished = iter(simulate_many(plain, threads=threads, progress=lambda done, _: report(done, len(cases))))

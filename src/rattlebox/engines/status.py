@@ -122,6 +122,6 @@ def describe(
         Approach speed at that contact [m/s], or the energy residual.
     """
     happened, advice = MESSAGES[status], ADVICE.get(status, {})
-    own = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))
-    sentences = happened.format(time=time, contact=contact, value=value), own
+    hint = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))
+    sentences = happened.format(time=time, contact=contact, value=value), hint
     return status.name, " ".join(sentences).strip()

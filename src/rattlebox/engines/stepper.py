@@ -63,8 +63,8 @@ def component_case(
     """Return the case of a component, and whether it is a damper alone; see `Stepper` for the parameters."""
     if not isinstance(system, Case):
         return damper_case(system, method, motion, structure_mass, "1 s"), True
-    for name, given in (("method", method), ("motion", motion), ("structure_mass", structure_mass)):
-        if given is not None:
+    for name, option in (("method", method), ("motion", motion), ("structure_mass", structure_mass)):
+        if option is not None:
             raise Hint(f"{name} belongs to a damper alone; a case has its own", f"the damper alone, with {name}=...")
     return system, not system.structure.responds if alone is None else alone
 
@@ -230,20 +230,21 @@ class Stepper:
         KeyboardInterrupt
             After Ctrl-C during a long step; the stepper is then where the step began.
         """
+        # A float is taken as it is: a step is short, and parsing a unit would take as long.
         length = float(to if isinstance(to, float) else in_si(to, "s")) - self.time
         if not 0 < length < np.inf:
             raise Hint(
                 f"to = {to}: the time is {self.time:.6g} s; a step must end after it", f"to = {self.time + 1e-4:.6g}"
             )
-        given = {"velocity": velocity, "acceleration": acceleration, "loads": loads}
-        chosen = [name for name, value in given.items() if value is not None]
+        inputs = {"velocity": velocity, "acceleration": acceleration, "loads": loads}
+        chosen = [name for name, value in inputs.items() if value is not None]
         allowed = ("velocity", "acceleration") if self._packed.alone else ("loads",)
         if len(chosen) != 1 or chosen[0] not in allowed:
             raise Hint(
                 f"a step of this stepper needs {' or '.join(allowed)}, and is given {' and '.join(chosen) or 'nothing'}",
                 f"advance(to, {allowed[0]}=...)",
             )
-        values = self._inputs(chosen[0], given[chosen[0]])
+        values = self._inputs(chosen[0], inputs[chosen[0]])
         if velocity is None:
             self._core.advance(length, values)
         else:

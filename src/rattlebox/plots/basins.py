@@ -66,6 +66,7 @@ def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
         axes = figure.subplots()
         x, y = (_axis(maps[dim]) for dim in dims)
         attractor = maps["attractor"].values.T
+        # Attractors are numbered from 1 by size; 0 is a motion without period, -2 transient, other negatives failed.
         kinds = np.where(attractor > _COLOURED, _OTHER, attractor - 1)
         kinds = np.where(attractor == 0, _NONE, np.where(attractor < 0, _FAILED, kinds))
         kinds = np.where(attractor == -2, _TRANSIENT, kinds)

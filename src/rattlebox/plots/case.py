@@ -96,6 +96,7 @@ def _groups(case: Case) -> list[_Group]:
     """Return the dampers, equal ones in one group."""
     groups: dict[str, _Group] = {}
     for number, damper in enumerate(each_damper(case)):
+        # Dampers that differ in name, point, start and random seed only have equal drawings.
         key = damper.alike().model_copy(update={"name": "", "point": None}).model_dump_json()
         groups.setdefault(key, _Group(damper, [])).numbers.append(number)
     return list(groups.values())

@@ -63,6 +63,7 @@ def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
         axes.add_patch(Circle((centre, 0.0), radius, facecolor=colour, alpha=0.35, edgecolor=INK, lw=pen(0.8)))
     unit = 0.16 * max(high, 0.5 * length)
     dimension(axes, (-length / 2, bottom), (length / 2, bottom), amount(length, "m"), -1.2 * unit)
+    # A gap that would be thinner than its dimension line is drawn in a detail instead.
     gap = 0.5 * damper.clearance
     edge = float(centres[0] - radii[0])
     small = gap < _VISIBLE * length
@@ -178,6 +179,7 @@ def _draw_level(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float
     points = rng.uniform(-1, 1, (20_000, 3)) * [half_x, 0.5 * cavity.extent(np.array([0.0, 1.0, 0.0])), half_z]
     heights = np.sort(points[cavity.depth(points) > 0, 2])
     level = float(heights[min(heights.size - 1, int(heights.size * min(1.0, filled / cavity.volume)))])
+    # A section through the middle, of any cavity: where the depth below the walls is positive and below the level.
     grid_x, grid_z = np.meshgrid(np.linspace(-half_x, half_x, 400), np.linspace(-half_z, half_z, 400))
     inside = cavity.depth(np.stack([grid_x.ravel(), np.zeros(grid_x.size), grid_z.ravel()], axis=1)) > 0
     shown = (inside & (grid_z.ravel() < level)).reshape(grid_x.shape)

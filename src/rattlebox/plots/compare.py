@@ -46,6 +46,7 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
     with figure_style(size):
         figure = StyledFigure(size, 0.1 + 0.17 * rows)
         panels = figure.subplots(rows, len(every), sharex="col", sharey="row", squeeze=False)
+        # Common units for all columns, since rows share their vertical axis.
         length = scaled([np.abs(run.arrays.displacement).max(initial=0.0) for run in every], "m")
         distances = [np.abs(ball_displacements(run.arrays, 0)).max() for run in with_balls]
         travel = scaled(distances, "m")
@@ -64,6 +65,7 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
                     panel.text(0.5, 0.5, "no ball", transform=panel.transAxes, ha="center", va="center")
             draw_ledger(run, next(free_panels), time, energy)
             time_axis(panels[-1, column], arrays.time, time, 5)
+        # Only the first column is labelled, and all legends are merged, since their entries repeat.
         for panel in panels[:, 1:].flat:
             panel.set_ylabel("")
         entries: dict[str, Artist] = {}

@@ -98,6 +98,7 @@ def _draw_progress(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
     _draw_trials(axes, study, study.trial.values, goal.numbers, y_bar=_half_width(study, goals[0], goal))
     axes.step(study.trial, best, where="post", color=SERIES_COLOURS[1], label="best so far")
     limit = json.loads(study.attrs["max_added_mass"])
+    # Trials without a value are marked on the axis, by reason, so that gaps of the search are visible.
     heavy = study.added_mass.values > (np.inf if limit is None else limit)
     style: dict[str, Any] = {"color": INK, "linestyle": "", "transform": axes.get_xaxis_transform(), "clip_on": False}
     for reason, marker, mask in (("too heavy", "|", heavy), ("no value", "x", ~study.feasible.values & ~heavy)):

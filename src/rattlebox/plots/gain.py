@@ -44,9 +44,9 @@ def plot_gain(bare: Run, damped: Run, title: str, subtitle: str, *, until: float
 def _draw_moments(axes: Axes, run: Run) -> None:
     """Draw the structure with its cavity and ball at moments of the first oscillation."""
     arrays = run.arrays
-    place, ball, time = arrays.displacement[:, 0], arrays.relative_position[:, 0], arrays.time
+    displacement, ball, time = arrays.displacement[:, 0], arrays.relative_position[:, 0], arrays.time
     period = 1 / float(arrays.mode_frequency[0])
-    scale = _MOTION / float(np.abs(place).max())
+    scale = _MOTION / float(np.abs(displacement).max())
     room = _BALL + scale * 0.5 * run.case.impact_dampers[0].clearance
     axes.set_axis_off()
     axes.set_xlim(-0.5 * _DISTANCE, (MOMENTS - 0.5) * _DISTANCE)
@@ -54,7 +54,7 @@ def _draw_moments(axes: Axes, run: Run) -> None:
     axes.set_aspect("equal", anchor="W")
     thin: dict[str, Any] = {"edgecolor": CHANNEL_COLOURS["viscous"], "linewidth": pen(0.8)}
     for k, moment in enumerate(np.linspace(0.01, 1.0, MOMENTS) * period):
-        x, b = (float(np.interp(moment, time, values)) for values in (place, ball))
+        x, b = (float(np.interp(moment, time, values)) for values in (displacement, ball))
         rest = k * _DISTANCE
         middle = rest + scale * x
         axes.plot([rest, rest], [-0.46, 0.46], color=FAINT, linewidth=pen(0.5), linestyle=":", zorder=0)

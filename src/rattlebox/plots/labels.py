@@ -88,6 +88,7 @@ class StudyAxis(NamedTuple):
         if numbers.size == 1:
             half = 0.5 * abs(numbers[0]) or 0.5
             return cls(values, np.array([numbers[0] - half, numbers[0] + half]), log)
+        # Cells end halfway between values, on a logarithmic axis halfway between their logarithms.
         middle = 0.5 * (numbers[1:] + numbers[:-1])
         edges = np.concatenate(([2 * numbers[0] - middle[0]], middle, [2 * numbers[-1] - middle[-1]]))
         return cls(values, np.asarray(np.exp(edges) if log else edges, dtype=float), log)

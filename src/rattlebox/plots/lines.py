@@ -32,6 +32,7 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
         values = values.transpose(other, ...)
     half_widths = study.get(f"{name}_interval")
     for number, (member, style) in enumerate(zip(values if others else [values], styles, strict=True)):
+        # Names have no order, so no line connects them; few points are marked, many are not.
         if x_axis.values.names:
             style |= {"linestyle": "", "marker": "o"}
         elif x_axis.values.numbers.size <= _MAX_MARKED_POINTS:
@@ -56,6 +57,7 @@ def _clip_peaks(axes: Axes, name: str, values: xr.DataArray, along: str, x_axis:
     for line in axes.lines:
         line.set_clip_on(True)
     axes.set_ylim(0.0, 1.25 * top / LabelledValues.of(values).divisor)
+    # A marker at the upper edge states where a peak is cut off.
     peaks = (values > 1.25 * top).transpose(along, ...).values.reshape(x_axis.values.numbers.size, -1)
     x = x_axis.values.numbers[peaks.any(axis=1)]
     style: dict[str, Any] = {"marker": "^", "color": INK, "linestyle": ""}

@@ -105,6 +105,7 @@ def _convergence(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) ->
     if values.ndim == 0:
         error = 2 * float(study.standard_error * factor)
         axes.axhspan(float(values) - error, float(values) + error, color=FAINT, alpha=0.5, lw=0, zorder=0)
+    # The first tenth of the steps, where the exponent still jumps, does not set the scale.
     axes.set_ylim(*_limits(lines[:, lines.shape[1] // 10 :]))
     axes.set_xlim(0, float(times[-1]))
     label(axes, "x", "Cycles" if over == "cycle" else "Averaging time", "" if over == "cycle" else "s")
@@ -133,6 +134,7 @@ def _map(figure: Figure, study: xarray.Dataset, values: xarray.DataArray) -> Non
     axes = figure.subplots()
     y, x = (StudyAxis.of(values[name]) for name in values.dims)
     finite = values.values[np.isfinite(values.values)]
+    # Single runs with extreme exponents would leave one colour for all others. Both sides of zero need a colour.
     low, high = np.quantile(finite, (0.02, 0.98)) if finite.size else (-1.0, 1.0)
     norm = TwoSlopeNorm(0.0, min(low, -1e-9 * abs(high) - 1e-12), max(high, 1e-9 * abs(low) + 1e-12))
     shown = np.clip(values.values, norm.vmin, norm.vmax)

@@ -106,6 +106,7 @@ def _draw_lines(axes: Axes, frequency: Any, values: Any, colour: str, stable: bo
     """Draw motions of each kind, (F, S), as lines that are not connected across a change of their number."""
     counts = np.isfinite(values).sum(axis=1)
     ends = np.flatnonzero(np.diff(counts)) + 1
+    # Between two changes of the number of motions, the k-th largest amplitude belongs to one branch.
     for part in np.split(np.arange(frequency.size), ends):
         order = np.sort(np.where(np.isfinite(values[part]), values[part], np.inf), axis=1)
         order = np.where(np.isfinite(order), order, np.nan)
@@ -117,8 +118,8 @@ def _draw_damping(axes: Axes, response: xarray.Dataset) -> None:
     for k, mode in enumerate(response.mode.values):
         ratio = response.damping_ratio.sel(mode=mode)
         if np.isfinite(ratio).any():
-            hertz, own = scaled(response.mode_frequency.sel(mode=mode), "Hz")
-            name = f"mode {mode}, {float(response.mode_frequency.sel(mode=mode).mean()) / hertz:.3g} {own}"
+            hertz, prefixed = scaled(response.mode_frequency.sel(mode=mode), "Hz")
+            name = f"mode {mode}, {float(response.mode_frequency.sel(mode=mode).mean()) / hertz:.3g} {prefixed}"
             style = SERIES_STYLES[k % len(SERIES_STYLES)]
             amplitude = response.map_amplitude / divisor
             axes.plot(amplitude, 100 * ratio, color=INK, ls=style, label=name)

@@ -84,6 +84,7 @@ def plot_map(
     """
     if kind not in (None, "map", "lines"):
         raise CaseError(f"kind = {kind!r}: unknown kind of figure\n  {nearest(str(kind), ('map', 'lines'))}")
+    # First everything that can be refused, before a figure is made.
     name = _measure_name(study, of)
     selected, title = select(study, at or {})
     selected = _seeds_as_replicas(selected, name)

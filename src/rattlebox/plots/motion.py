@@ -108,8 +108,8 @@ def ball_displacements(arrays: RunArrays, damper: int) -> Any:
     ndarray
         Displacements and half the clearance [m], in one flat array.
     """
-    own = arrays.ball_damper == damper
-    return np.append((arrays.relative_position - arrays.ball_centre)[:, own], arrays.clearance[damper] / 2)
+    in_damper = arrays.ball_damper == damper
+    return np.append((arrays.relative_position - arrays.ball_centre)[:, in_damper], arrays.clearance[damper] / 2)
 
 
 def draw_structure(axes: Axes, arrays: RunArrays, window: slice, time: Scale, length: Scale) -> None:
@@ -124,15 +124,15 @@ def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, window: slice, time:
 
     Walls far away from the balls are not drawn.
     """
-    own = np.flatnonzero(arrays.ball_damper == damper)
+    balls = np.flatnonzero(arrays.ball_damper == damper)
     half = arrays.clearance[damper] / 2
-    x = (arrays.relative_position - arrays.ball_centre)[window][:, own]
+    x = (arrays.relative_position - arrays.ball_centre)[window][:, balls]
     low, high = float(x.min()), float(x.max())
     travel = WALL_DISTANCE * (high - low) or 2 * half
     for wall in (wall for wall in (-half, half) if low - travel <= wall <= high + travel):
         axes.axhline(wall / length.divisor, color=INK, linewidth=pen(0.5), zorder=3)
-    for k in range(min(len(own), MAX_SERIES)):
-        name = f"ball {k + 1}" if len(own) > 1 else None
+    for k in range(min(len(balls), MAX_SERIES)):
+        name = f"ball {k + 1}" if len(balls) > 1 else None
         position = x[:, k] / length.divisor
         draw_line(axes, arrays.time[window] / time.divisor, position, k, name, colour=(k + 1) % MAX_SERIES)
     axes.margins(y=0.12)

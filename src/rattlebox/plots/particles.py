@@ -194,6 +194,7 @@ def film_particles(
         dpi = width / (WIDTHS["slide"] / 25.4)
         shape = height / width
         scene = _Scene(snapshots, snapshots.case_toml, "slide", renderer, dpi, colour=colour, view=view, shape=shape)
+        # The first picture decides the layout. Were each laid out anew, titles of other widths would shake the film.
         scene.figure.savefig(io.BytesIO(), dpi=dpi)
         scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
@@ -290,6 +291,7 @@ class _Scene:
         case = tomllib.loads(case_toml)
         cavities = _cavities(case["dampers"])
         self._frames, self._cavities, self._renderer = frames, cavities, renderer
+        # One pass over all frames, each of which is read from the file: their colours, motions and the last time.
         columns = [(_values(frame, colour), frame.displacement, frame.time) for frame in frames]
         values = np.concatenate([column for column, _, _ in columns])
         self._moves, self._last = np.array([moves for _, moves, _ in columns]), columns[-1][2]
@@ -373,6 +375,7 @@ class _Scene:
             for drawn, line in panel.lines:
                 placed = (line + frame.displacement[k]) @ self._view.T
                 drawn.set_data(placed[:, 0], placed[:, 1])
+            # The cavity as it is seen is the convex hull of its projected corners.
             corners = (self._cavities[k][1].surface().points + frame.displacement[k]) @ self._view[:2].T
             panel.wall.set_xy(corners[ConvexHull(corners).vertices])
             name = f"{self._cavities[k][0]}, " if len(self._panels) > 1 else ""

@@ -65,6 +65,7 @@ def _plain(
     places: Array, radii: Array, colours: Array, extent: tuple[float, ...], width: int, height: int
 ) -> NDArray[np.uint8]:
     """Draw the nearest sphere at each pixel, shaded by the angle to the light."""
+    # Everything in samples: two in each direction for a pixel, which are averaged at the end for smooth rims.
     light = LIGHT / np.linalg.norm(LIGHT)
     size = (_OVERSAMPLING * height, _OVERSAMPLING * width)
     scale = size[1] / (extent[1] - extent[0])
@@ -73,6 +74,7 @@ def _plain(
     across = (places[:, 0] - extent[0]) * scale
     down = (extent[3] - places[:, 1]) * scale
     for x, y, z, r, colour in zip(across, down, places[:, 2] * scale, radii * scale, colours, strict=True):
+        # Only the window around the sphere is touched, so that the cost grows with the drawn area.
         left, right = max(0, int(x - r)), min(size[1], int(x + r) + 1)
         top, bottom = max(0, int(y - r)), min(size[0], int(y + r) + 1)
         if left >= right or top >= bottom:
@@ -82,11 +84,13 @@ def _plain(
         square = 1 - u**2 - v**2
         w = np.sqrt(np.maximum(square, 0.0))
         window = np.s_[top:bottom, left:right]
+        # A depth buffer: a sample shows the sphere whose surface is nearest to the viewer so far.
         seen = (square > 0) & (z + r * w > nearest[window])
         shade = _AMBIENT + _DIFFUSE * np.maximum(u * light[0] + v * light[1] + w * light[2], 0.0)
         nearest[window][seen] = (z + r * w)[seen]
         picture[window][seen, 3] = 1.0
         picture[window][seen, :3] = colour * shade[seen, None]
+    # Colours of covered samples only: the background has none, and would darken the rims.
     averaged = picture.reshape(height, _OVERSAMPLING, width, _OVERSAMPLING, 4).mean(axis=(1, 3))
     covered = averaged[..., 3:]
     averaged[..., :3] = np.divide(averaged[..., :3], covered, out=np.zeros((height, width, 3)), where=covered > 0)
@@ -103,6 +107,7 @@ def _pyvista(
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[width, height], lighting="none")
     try:
+        # One mesh for all spheres, with as many corners as the largest needs for a round rim.
         cloud = pyvista.PolyData(places)
         cloud["radius"], cloud["colour"] = radii, colours
         pixels = radii.max(initial=0.0) * width / (extent[1] - extent[0])

@@ -298,6 +298,7 @@ def legend_above(axes: Axes, **options: Any) -> None:
     handles, names = axes.get_legend_handles_labels()
     if handles:
         room = letters(axes)
+        # As few rows as possible, and then no more columns than these rows need.
         rows = math.ceil(len(names) / _fitting_columns(names, room))
         columns = math.ceil(len(names) / rows)  # fill the last row as well as possible
         texts = [shorten(name, room - _HANDLE_LETTERS) for name in names]

@@ -45,6 +45,7 @@ def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *
     first, last = a + shift, b + shift
     arrow(axes, (first[0], first[1]), (last[0], last[1]), both=True, width=0.5)
     middle = (first + last) / 2 + 0.2 * shift
+    # Words are never upside down.
     angle = float(np.degrees(np.arctan2(along[1], along[0]))) if rotate else 0.0
     angle = angle - 180 if angle > 90 else angle + 180 if angle <= -90 else angle
     # The words stand beside the line, on the side to which it is shifted.

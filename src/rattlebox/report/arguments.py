@@ -21,6 +21,7 @@ def axes_argument(study: xr.Dataset) -> dict[str, Any] | None:
         return None
     axes: dict[str, Any] = {}
     for path, column in design["columns"].items():
+        # A parameter may vary along another one's axis (linked); along several axes it cannot be written as values.
         along = column["varies_along"] or [dim for dim, _ in design["dims"] if dim == path]
         if len(along) != 1:
             return None

@@ -33,10 +33,10 @@ def input_tables(case: Case) -> list[Table]:
     for field, title in _PARTS.items():
         items = getattr(case, field)
         for number, part in enumerate(items):
-            own = _damper_lines(case, number) if field == "dampers" else iter(())
+            computed = _damper_lines(case, number) if field == "dampers" else iter(())
             name = getattr(part, "name", "") or (str(number + 1) if len(items) > 1 else "")
             heading = f"{title} {name}".rstrip() + f": {_kind(part)}"
-            tables.append(Table(heading, (), [*own, *_lines(part)]))
+            tables.append(Table(heading, (), [*computed, *_lines(part)]))
     tables.append(Table("Run", (), list(_lines(case, ("structure", *_PARTS)))))
     return [table for table in tables if table.rows]
 
@@ -66,6 +66,7 @@ def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:
     modes = case.structure.modes()
     if not len(modes.stiffness):
         return
+    # The mass ratio of a mode is m phi^2, summed over the points and directions in which the damper acts.
     ratio = np.zeros(len(modes.stiffness))
     for point in points:
         shape = np.asarray(modes.shapes[modes.point(point)])
@@ -77,6 +78,7 @@ def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:
 
 def _lines(part: Part, leave_out: Sequence[str] = ()) -> Iterator[tuple[str, str]]:
     """Yield names and values of the fields of a part that are set."""
+    # Numbers that were read from a file would fill pages; the name of the file stands for them.
     from_file = part.fields_from_file()
     for name, field in type(part).model_fields.items():
         if name in _HIDDEN or name in leave_out or field.exclude or name in from_file:
@@ -118,20 +120,20 @@ def _text(value: Any, unit: str | None = None) -> str:
     if isinstance(value, Part):
         return _part(value)
     if isinstance(value, Mapping):
-        return "; ".join(f"{name}: {_text(each, unit)}" for name, each in value.items())
-    if len(value) > _MAX_NUMBERS and all(isinstance(each, (list, tuple)) for each in value):
+        return "; ".join(f"{name}: {_text(item, unit)}" for name, item in value.items())
+    if len(value) > _MAX_NUMBERS and all(isinstance(item, (list, tuple)) for item in value):
         return f"{len(value)} rows of {len(value[0])} numbers"
-    items = [_text(each, unit) for each in value]
+    items = [_text(item, unit) for item in value]
     if len(items) == 1:
         return items[0]
     if len(items) > _MAX_NUMBERS:
-        if all(isinstance(each, (int, float)) for each in value):
+        if all(isinstance(item, (int, float)) for item in value):
             return f"{len(items)} numbers, {items[0]} to {items[-1]}"
         return f"{'; '.join(items[:_MAX_NUMBERS])}; and {len(items) - _MAX_NUMBERS} more"
     numbers, units = zip(*(item.partition(" ")[::2] for item in items), strict=True)
-    if len(set(units)) == 1 and all(isinstance(each, float) for each in value):
+    if len(set(units)) == 1 and all(isinstance(item, float) for item in value):
         return f"{', '.join(numbers)} {units[0]}".rstrip()
-    return ("; " if any(isinstance(each, (list, tuple, Part)) for each in value) else ", ").join(items)
+    return ("; " if any(isinstance(item, (list, tuple, Part)) for item in value) else ", ").join(items)
 
 
 def _part(part: Part) -> str:

@@ -91,17 +91,17 @@ def _impact_limits(run: Run, case: Case) -> Iterator[Limit]:
 
 
 def _particle_limits(run: Run) -> Iterator[Limit]:
-    known = {name: value for name, value in run.diagnostics.items() if math.isfinite(value)}
-    if "steps_per_contact" in known:
-        steps = f"{digits(known['steps_per_contact'], 3)} steps in the shortest contact"
+    finite = {name: value for name, value in run.diagnostics.items() if math.isfinite(value)}
+    if "steps_per_contact" in finite:
+        steps = f"{digits(finite['steps_per_contact'], 3)} steps in the shortest contact"
         yield limit("particles", "time step", steps, f"{MIN_STEPS_PER_CONTACT:g} or more")
-    if "largest_overlap" in known:
-        overlap = f"{amount(known['largest_overlap'], '%', 3)} of the radius"
+    if "largest_overlap" in finite:
+        overlap = f"{amount(finite['largest_overlap'], '%', 3)} of the radius"
         yield limit("particles", "overlap in contacts", overlap, f"{100 * MAX_OVERLAP:g} %")
-    if known.get("softening", 1.0) > 1:
-        change = known.get("softening_change")
+    if finite.get("softening", 1.0) > 1:
+        change = finite.get("softening_change")
         effect = "" if change is None else f", change of the loss up to {digits(change, 2)} m V²"
-        yield limit("particles", "softening of contacts", f"{known['softening']:.4g}{effect}", f"{MAX_CHANGE:g} m V²")
-        if "softened_enduring_share" in known:
-            share = f"{amount(known['softened_enduring_share'], '%', 2)} of the loss"
+        yield limit("particles", "softening of contacts", f"{finite['softening']:.4g}{effect}", f"{MAX_CHANGE:g} m V²")
+        if "softened_enduring_share" in finite:
+            share = f"{amount(finite['softened_enduring_share'], '%', 2)} of the loss"
             yield limit("particles", "enduring contacts", share, f"{100 * MAX_ENDURING_SHARE:g} %")

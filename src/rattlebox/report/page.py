@@ -77,14 +77,15 @@ def section(result: Any, title: str, case: Case | None, question: str | None) ->
     kind = kind_of(result)
     if case is not None and hasattr(result, "assign_attrs") and not isinstance(result.attrs.get("case"), str):
         result = result.assign_attrs(case=case.to_toml())
+    # A dataset may lack its case, or name a file that is gone: the page then states that, and has all the rest.
     problem, cases = "", {}
     try:
         cases = dict(kind.cases(result))
     except RattleboxError as error:  # the dataset has no case, or a file that the case names is gone
         problem = error.complaint
     described: list[Described] = []
-    for name, each in list(cases.items())[:_MAX_CASES]:
-        described.append(describe(name, each, described[0] if described else None))
+    for name, named_case in list(cases.items())[:_MAX_CASES]:
+        described.append(describe(name, named_case, described[0] if described else None))
     if problem:
         described = [Described("", None, (), problem=problem)]
     return Section(
@@ -136,6 +137,7 @@ def data_url(figure: Figure) -> str:
     """Return a figure as a data URL: a small drawing as SVG, a large one or a picture as PNG."""
     import matplotlib as mpl
 
+    # A picture in an SVG would be a PNG in base64; and many lines make an SVG larger than their PNG.
     if not any(axes.images for axes in figure.axes):
         buffer = io.BytesIO()
         # Text as outlines looks the same in every browser; equal reports have equal bytes.
@@ -193,5 +195,5 @@ def sections_of(result: Any, case: Case | None = None, question: str | None = No
             kind_of(result)  # a mapping of damping curves is one result
         except RattleboxError:
             results = result
-    for name, each in results.items():
-        yield section(each, str(name), case, question)
+    for name, one in results.items():
+        yield section(one, str(name), case, question)

@@ -37,6 +37,7 @@ def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
     """Return commands and files that compute a result again."""
     names = {name: _file_name(number, len(cases)) for number, name in enumerate(cases)}
     files = [File(names[name], case.to_toml(), case.short_toml()) for name, case in cases.items()]
+    # A comparison is no single call: its cases run one by one, and a script compares them.
     if call is None:
         if len(cases) < 2:
             return Recipe((), tuple(files), ("The call of the study is not part of its result.",) if files else ())
@@ -92,4 +93,4 @@ def _study_file(call: Call, case: str) -> str:
 
     text = tomli_w.dumps({"kind": call.kind, **call.arguments, "case": {"file": case}})
     # Lists of plain values on one line each.
-    return _LIST.sub(lambda found: "[" + ", ".join(part.strip() for part in found[1].split(",\n") if part) + "]", text)
+    return _LIST.sub(lambda match: "[" + ", ".join(part.strip() for part in match[1].split(",\n") if part) + "]", text)

@@ -105,6 +105,7 @@ def axes_words(study: xr.Dataset) -> str:
 
 def measures_of(study: xr.Dataset) -> list[str]:
     """Return the measures of a study: numbers over its axes, without intervals and statuses."""
+    # Values over more than the axes of the study are series of a run, which have no smallest and largest variant.
     over = set(study["status"].dims) if "status" in study else None
     return [
         str(name)
@@ -131,10 +132,12 @@ def estimate(study: xr.Dataset, name: str) -> Estimate:
     the run.
     """
     values = study[name].astype(float)
+    # Infinite values, such as a loss factor at a zero of the effective mass, have neither mean nor extreme.
     values = values.where(np.isfinite(values))
     if repeated := replica_dims(values):
         from scipy.special import stdtrit
 
+        # Half of Student's interval is t s / sqrt(n), with s^2 = n / (n - 1) times the variance that xarray returns.
         known: Any = values.count(repeated)
         freedom = np.maximum(known - 1, 1)
         half: Any = stdtrit(freedom, 0.975) * values.std(repeated, ddof=0) * np.sqrt(1 / freedom)
@@ -145,11 +148,11 @@ def estimate(study: xr.Dataset, name: str) -> Estimate:
 
 def place_words(study: xr.Dataset, values: xr.DataArray, index: int) -> str:
     """Return the values of the axes at one place of a variable: "damper gap 0.4 mm, load amplitude 1 kN"."""
-    place = dict(zip(values.dims, np.unravel_index(index, values.shape), strict=True)) if values.ndim else {}
+    indices = dict(zip(values.dims, np.unravel_index(index, values.shape), strict=True)) if values.ndim else {}
     words = []
     for coord in axes_of(study):
-        if coord.dims[0] in place:
-            words.append(f"{name_of(coord)} {axis_value(coord, coord.values[place[coord.dims[0]]])}")
+        if coord.dims[0] in indices:
+            words.append(f"{name_of(coord)} {axis_value(coord, coord.values[indices[coord.dims[0]]])}")
     return ", ".join(words)
 
 
@@ -194,8 +197,8 @@ def study_warnings(study: xr.Dataset) -> list[str]:
     if failed:
         what = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in failed.items())
         lines.insert(0, f"{sum(failed.values()):,} of {sum(counts.values()):,} runs have no result: {what}")
-    given = study.attrs.get("warnings", [])
-    lines += [given] if isinstance(given, str) and given else [str(each) for each in given]
+    noted = study.attrs.get("warnings", [])
+    lines += [noted] if isinstance(noted, str) and noted else [str(each) for each in noted]
     return list(dict.fromkeys(lines))
 
 

@@ -199,6 +199,7 @@ class RunArrays(_Frozen):
             else:
                 table = values.pop(group.name, {})
                 fields[group.name] = table if isinstance(table, Table) else Table(group.name, engine, **table)
+        # What is left has a name that runs of this engine do not have.
         for name in values:
             raise TypeError(explain_absence(name, engine))
         self._check_references()
@@ -217,6 +218,7 @@ class RunArrays(_Frozen):
             return
         if np.any(np.diff(self.ball_damper) < 0):
             raise ValueError("ball_damper must not decrease: balls come damper after damper")
+        # A row of n balls has n + 1 contacts, from wall to wall.
         last = np.bincount(self.ball_damper, minlength=max(dampers, 1))[self.impacts.damper]
         contact = self.impacts.contact
         if np.any(contact < 0) or np.any(contact > last):

@@ -35,8 +35,8 @@ def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
         return np.asarray(arrays.particle_mass[:, None] * gravity - inertia / step[:, None, None])
     force = np.zeros((step.size, len(arrays.dampers)))
     for index, damper in enumerate(case.impact_dampers):
-        own = arrays.ball_damper == index
+        in_damper = arrays.ball_damper == index
         masses = np.asarray(damper.masses, dtype=float)
-        inertia = (np.diff(arrays.ball_velocity[:, own], axis=0) + base[:, None]) @ masses
+        inertia = (np.diff(arrays.ball_velocity[:, in_damper], axis=0) + base[:, None]) @ masses
         force[:, index] = masses.sum() * damper.gravity - inertia / step
     return force

@@ -101,9 +101,10 @@ def _columns(run: Record, group: str) -> Iterator[tuple[str, Any]]:
     for v in variables(engine, group):
         if v.dims[0] != along:
             continue
-        for place in product(*(range(len(labels[dim])) for dim in v.dims[1:])):
-            labelled = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], place, strict=True))
-            yield _header(v.name, labelled, v.units), values[v.name][:, *place]
+        # One column for each label of the other dimensions, such as each ball, or each axis of each damper.
+        for index in product(*(range(len(labels[dim])) for dim in v.dims[1:])):
+            labelled = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], index, strict=True))
+            yield _header(v.name, labelled, v.units), values[v.name][:, *index]
 
 
 def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:

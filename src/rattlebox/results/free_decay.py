@@ -44,6 +44,7 @@ def free_decay(arrays: RunArrays, amplitude: float | None = None, point: str | N
     R. W. Clough, J. Penzien (1993), Dynamics of Structures, 2nd ed., McGraw-Hill, ISBN 0-07-011394-7.
     """
     time, omega = arrays.time, 2 * math.pi * arrays.mode_frequency
+    # A decay is free from the moment on at which no load and no motion of the base acts any more.
     acting = np.zeros(time.size, bool)
     for values in (arrays.load, arrays.base_acceleration.reshape(time.size, -1)):
         if values.size:
@@ -52,19 +53,24 @@ def free_decay(arrays: RunArrays, amplitude: float | None = None, point: str | N
     if start > 0.9 * time.size or time.size - start < 8 or not (omega > 0).any():
         return None
     time, q, p = time[start:], arrays.modal_displacement[start:], arrays.modal_velocity[start:]
+    # The mean of the last quarter is the static offset, such as that of gravity, about which the mode swings.
     late = time >= time[-1] - 0.25 * (time[-1] - time[0])
     energy = np.where(omega > 0, 0.5 * (p**2 + (omega * (q - q[late].mean(axis=0))) ** 2), 0.0)
+    # The mode with the most energy decides; one that never moved, or diverged, has no decay.
     top = energy.max(axis=0)
     if not (np.isfinite(top).all() and top.max() > 0):
         return None
     mode = int(np.argmax(top))
+    # Files of runs have no mode shapes: they follow from displacements, which are linear in the modal ones.
     shapes = np.linalg.lstsq(arrays.modal_displacement, arrays.displacement, rcond=None)[0][mode]
     number = arrays.points.index(point) if point is not None else int(np.argmax(np.abs(shapes)))
     scale = abs(float(shapes[number]))
     if scale == 0:
         return None
     first = int(np.argmax(energy[:, mode]))
+    # Impacts feed energy back now and then; the least energy so far only falls, so that each level is passed once.
     time, decay = time[first:], np.minimum.accumulate(energy[first:, mode])
+    # Without an amplitude, the middle of the decay; a short decay is evaluated over as much as it falls.
     if amplitude is None:
         fall = min(2 * _BAND, decay[0] / decay[-1]) if decay[-1] > 0 else 2 * _BAND
         low, span = decay[0] / fall, min(_BAND, fall)
@@ -73,6 +79,7 @@ def free_decay(arrays: RunArrays, amplitude: float | None = None, point: str | N
     if not (span > 1.2 and decay[0] >= low * span * (1 - 1e-9) and decay[-1] <= low):
         return None
     duration = _time_of(time, decay, low) - _time_of(time, decay, low * span)
+    # Within less than a period the energy of a mode is not defined by its samples.
     if duration * omega[mode] < 2 * math.pi:
         return None
     middle = math.sqrt(2 * low * math.sqrt(span)) / omega[mode] * scale

@@ -132,6 +132,7 @@ class Ledger:
         The reference is max|W_load| + max|W_base| + E(0), in which max|V(t) - V(0)| replaces the gravity potential V(0),
         whose zero is arbitrary.
         """
+        # At rest all terms of the balance are rounding errors of the largest energy, and their ratio has no meaning.
         worst = float(np.max(np.abs(self.residual)))
         if worst == 0.0 or max(worst, self._put_in) <= _core.energy_at_rest * self._largest:
             return 0.0
@@ -157,6 +158,7 @@ class Ledger:
             False also if an energy is NaN.
         """
         worst = float(np.max(np.abs(self.residual)))
+        # A loose tolerance permits a larger error, but never one that would make the losses doubtful.
         allowed = min(limit * self._put_in + permitted, _core.worst_energy_residual * self._put_in)
         return worst <= max(allowed, rounding * self._largest + floor)
 

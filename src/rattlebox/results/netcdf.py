@@ -126,17 +126,19 @@ def _write_group(file: Any, run: Record, name: str) -> None:
     _describe(target, title=groups(engine)[name].title)
     values = columns(run, name)
     for v in variables(engine, name):
+        # A dimension of length zero would be an unlimited one in netCDF.
         if any(dim in labels and len(labels[dim]) == 0 for dim in v.dims):
             continue
         for dim in v.dims:
             if dim in target.dimensions:
                 continue
             if dim in labels:
-                known = dimensions(engine)[dim]
-                _write_coordinate(target, dim, labels[dim], known.units, known.long_name)
+                described = dimensions(engine)[dim]
+                _write_coordinate(target, dim, labels[dim], described.units, described.long_name)
             else:
                 target.dimensions[dim] = None
                 target.resize_dimension(dim, len(values[v.name]))
+        # HDF5 needs chunks for a dimension that can grow, such as the number of impacts.
         data = values[v.name]
         chunks = {} if along in labels else {"chunks": (max(data.size, 1),)}
         variable = target.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **_filters(data))

@@ -201,6 +201,7 @@ class SnapshotFile:
         root.attrs.create("Type", b"PolyData", dtype="S8")
         root["NumberOfPoints"] = [count]
         root.create_dataset("Points", (steps * count, 3), "f8")
+        # ParaView draws particles as vertices and walls as polygons of one list of points.
         particles, polygons = np.arange(self._particles + 1), self._polygons()
         corners = np.array([corner for polygon in polygons for corner in polygon], np.int64)
         cells = {"Vertices": (particles, particles[:-1]), "Polygons": (np.cumsum([0, *map(len, polygons)]), corners)}
@@ -210,6 +211,7 @@ class SnapshotFile:
             root[f"{kind}/NumberOfConnectivityIds"] = [connectivity.size]
             root[f"{kind}/Offsets"] = offsets
             root[f"{kind}/Connectivity"] = connectivity
+        # For each step a reader needs the offset of its values: those that move have a block each, the others share one.
         every, once = np.arange(steps), np.zeros(steps, np.int64)
         catalogue = root.create_group("Steps")
         catalogue.attrs["NSteps"] = 0
@@ -266,6 +268,7 @@ class SnapshotFile:
         """Write the next snapshot."""
         import h5py
 
+        # The walls move with their cavities, so their corners are points of each snapshot, too.
         displacement = np.array([each.displacement for each in cavities])
         moving = {
             "velocity": [each.velocity for each in cavities],
@@ -286,6 +289,8 @@ class SnapshotFile:
             for (name, rows), part in zip(blocks.items(), parts, strict=True):
                 root[name][rows] = part
             file.flush()
+            # The digest follows the values, and the count of the steps the digest, so that a process that is killed
+            # in between leaves a snapshot that is recognised as incomplete.
             file[_DIGESTS][number] = np.frombuffer(
                 array_digest(root[name][rows] for name, rows in blocks.items()), "u1"
             )
@@ -379,6 +384,7 @@ class Snapshots:
         A process that is killed while it writes a snapshot may leave one with a wrong digest, or a complete one that
         NSteps, which ParaView reads, does not count yet.
         """
+        # Snapshots are written in order: those with a digest are the first ones.
         written = np.any(file[_DIGESTS][...], axis=1)
         complete = int(written.size if written.all() else written.argmin())
         listed = int(file[ROOT]["Steps"].attrs["NSteps"])

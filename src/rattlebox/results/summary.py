@@ -267,13 +267,13 @@ def _forces(run: Record) -> dict[str, Value]:
 
 def _base_velocity(arrays: RunArrays) -> Any:
     """Return the velocity of the base in the direction of each point, (T, P), up to a constant."""
-    own = arrays.absolute_acceleration - arrays.acceleration
-    if not own.any():
-        return np.zeros_like(own)
+    of_base = arrays.absolute_acceleration - arrays.acceleration
+    if not of_base.any():
+        return np.zeros_like(of_base)
     base = arrays.base_velocity.reshape(arrays.time.size, -1)
     accelerations = arrays.base_acceleration.reshape(arrays.time.size, -1)
-    # `own` is the acceleration of the base projected on the direction of each point.
-    direction, *_ = np.linalg.lstsq(accelerations, own, rcond=None)
+    # `of_base` is the acceleration of the base projected on the direction of each point.
+    direction, *_ = np.linalg.lstsq(accelerations, of_base, rcond=None)
     return base @ direction
 
 
@@ -288,23 +288,23 @@ def is_driven(arrays: RunArrays) -> bool:
 
 def _reductions(reference: Mapping[str, Value], values: Mapping[str, Value]) -> dict[str, Value]:
     """Return the relative reductions of the displacements against a reference run."""
-    found: dict[str, Value] = {}
+    reductions: dict[str, Value] = {}
     for kind in ("peak", "rms"):
         for key, value in values.items():
             before = reference.get(key)
             if key.startswith(f"{kind}_displacement[") and isinstance(before, float) and before > 0:
-                found[key.replace("displacement", "reduction", 1)] = 1 - float(value) / before
-    return found
+                reductions[key.replace("displacement", "reduction", 1)] = 1 - float(value) / before
+    return reductions
 
 
 def _settling_times(reference: Mapping[str, Value], arrays: RunArrays) -> dict[str, Value]:
     """Return the times after which displacements are within the band around zero that the peaks of a reference set."""
-    found: dict[str, Value] = {}
+    times: dict[str, Value] = {}
     for k, point in enumerate(arrays.points):
         peak = reference.get(f"peak_displacement[{point}]")
         if isinstance(peak, float) and peak > 0 and math.isfinite(peak):
-            found[f"settling_time[{point}]"] = settled_after(arrays.time, arrays.displacement[:, k], SETTLED * peak)
-    return found
+            times[f"settling_time[{point}]"] = settled_after(arrays.time, arrays.displacement[:, k], SETTLED * peak)
+    return times
 
 
 def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
@@ -325,6 +325,7 @@ def _steady_results(run: Record, base: Any) -> dict[str, Value]:
     """
     arrays = run.arrays
     time = arrays.time
+    # Batch means need equal steps, and the output times of a run with contacts are not equal.
     count = min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
     even = np.linspace(0.5 * (time[0] + time[-1]), time[-1], count)
 
@@ -407,6 +408,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
 
 def _largest_of(what: str, all_values: tuple[dict[str, Value], ...], count: int = _MAX_POINTS) -> list[tuple[str, str]]:
     """Return key and name of the largest values with keys "what[name]"."""
+    # A comparison lists the same points for all its runs: those with the largest value in any of them.
     keys = list(dict.fromkeys(key for values in all_values for key in values if key.startswith(f"{what}[")))
     highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in keys]
     return [(keys[k], keys[k].partition("[")[2][:-1]) for k in largest_points(highest, count)]

@@ -47,6 +47,7 @@ def _pictures(study: xr.Dataset) -> Iterator[Picture]:
 def _picture(study: xr.Dataset, name: str, dims: list[str]) -> Picture:
     """Return the figure of a measure over its two longest axes, at the best place of any further axes."""
     repeated = words.replica_dims(study[name])
+    # Two axes fit in a figure. The others are held where the measure is largest, which the caption states.
     free = sorted((dim for dim in dims if dim not in repeated), key=lambda dim: -study.sizes[dim])
     shown, fixed = free[:2], free[2:]
     caption = f"{capitalised(name_of(study[name]))} over {joined([name_of(study[dim]) for dim in shown])}"
