@@ -34,7 +34,7 @@ class _Parameter(NamedTuple):
     name: ui.select
     low: ui.input
     high: ui.input
-    count: ui.number
+    values: ui.number
     is_log: ui.switch
 
 

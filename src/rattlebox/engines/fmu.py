@@ -157,7 +157,7 @@ def fmu_and_notes(
     model = re.sub(r"\W", "_", path.stem)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
     variables = list(_variables(packed, input))
-    words = {"name": model, "variables": variables, "version": rattlebox.__version__, "token": token}
+    words: dict[str, object] = {"name": model, "variables": variables, "version": rattlebox.__version__, "token": token}
     words |= {"base_units": BASE_UNITS, "input_time": INPUT_TIME, "notes": packed.notes, "systems": list(libraries)}
     content = {
         "modelDescription.xml": _filled(f"fmi{fmi}.xml", words),

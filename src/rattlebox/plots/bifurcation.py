@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.typing import ColorType
 
 from rattlebox._util.narrow import present
 
@@ -135,7 +136,7 @@ def _draw_periods(axes: Axes, x: Vector, maps: xr.Dataset) -> None:
     axes.set_yticks(rows[:-1] + 0.5, maps["direction"].values.tolist())
     axes.invert_yaxis()
     axes.tick_params(axis="y", length=0)
-    colours = {text: palette(kind) for kind, text in enumerate(_PERIODS) if (kinds == kind).any()}
+    colours: dict[str, ColorType] = {text: palette(kind) for kind, text in enumerate(_PERIODS) if (kinds == kind).any()}
     if np.isnan(kinds).any():
         colours["did not finish"] = "white"
     frame: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}

@@ -133,7 +133,7 @@ def _draw_region(axes: Axes, result: xr.Dataset) -> None:
     # One column for each bar: below and above the value. A value may lie at an end of its range.
     bars = np.maximum(0.0, np.stack([value - lower, upper - value]))
     style: dict[str, Any] = {"color": SERIES_COLOURS[1], "marker": "D", "ms": pen(3.5), "elinewidth": pen(1), "ls": ""}
-    axes.errorbar(*value, xerr=bars[:, :1], yerr=bars[:, 1:], label="value and 95 % intervals", **style)
+    axes.errorbar(value[0], value[1], xerr=bars[:, :1], yerr=bars[:, 1:], label="value and 95 % intervals", **style)
     label(axes, "x", scales[0][2], scales[0][1])
     label(axes, "y", scales[1][2], scales[1][1])
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1))

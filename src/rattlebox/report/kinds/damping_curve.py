@@ -32,7 +32,9 @@ _WAYS = {
 
 def _named(curves: Curves) -> dict[str, xr.Dataset]:
     """Return the curves by name; the name of a single one is empty."""
-    return {"": curves} if hasattr(curves, "data_vars") else dict(curves)
+    import xarray as xr
+
+    return {"": curves} if isinstance(curves, xr.Dataset) else dict(curves)
 
 
 def _cases(curves: Curves) -> Mapping[str, Case]:

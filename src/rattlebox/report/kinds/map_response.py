@@ -96,8 +96,8 @@ def _tables(response: xr.Dataset) -> Iterator[Table]:
             one = response.sel(at=at, number=number).isel(level=-1)
             shares = [_range(one.damping_ratio.sel(mode=mode).values) for mode in modes]
             rows.append((str(at), str(number), _known(one.peak), _known(one.peak_interval, 2), *shares))
-    header = ("points", "number", "peak at the highest level", "± (95 %)")
-    header += tuple(f"damping ratio, mode {mode}" for mode in modes)
+    of_modes = (f"damping ratio, mode {mode}" for mode in modes)
+    header = ("points", "number", "peak at the highest level", "± (95 %)", *of_modes)
     note = f"{len(rows) - _MAX_ROWS} more are in the dataset." if len(rows) > _MAX_ROWS else ""
     yield Table("Dampers", header, rows[:_MAX_ROWS], note, numbers=True)
 
