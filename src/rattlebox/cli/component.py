@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import rattlebox as rb
 from rattlebox._util.atomic_io import atomic_write, require_folder
@@ -12,7 +11,7 @@ from rattlebox.cli.output import output_file
 from rattlebox.engines.fmu import fmu_and_notes
 
 
-def write_fmu(case: Path, out: Path | None, fmi: Any, by: Any, alone: bool, other_systems: bool) -> None:
+def write_fmu(case: Path, out: Path | None, fmi: int, by: str, alone: bool, other_systems: bool) -> None:
     """Write a case file as an FMU and print its name; see `rattlebox.to_fmu`."""
     content = rb.Case.from_file(case)
     with output_file(out, f"{case.stem}.fmu") as (file, note):

@@ -18,7 +18,7 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
 from rattlebox.plots.spheres import default_renderer
-from rattlebox.results import load
+from rattlebox.results import Run, load
 from rattlebox.results.snapshots import Snapshots
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _check_film(out: Path, kind: str | None, number: int | None) -> None:
         raise CaseError(f"--kind {kind}: a film can only show particles", f"run.nc, -o {picture}")
 
 
-def _write_film(run: Any, out: Path, options: dict[str, Any]) -> None:
+def _write_film(run: Run | Snapshots, out: Path, options: dict[str, Any]) -> None:
     if not isinstance(run, Snapshots):
         raise CaseError(
             f"-o {out}: a film needs the snapshots in run.vtkhdf", "run.vtkhdf; output.snapshots in the case creates it"
@@ -132,7 +132,7 @@ def _write_film(run: Any, out: Path, options: dict[str, Any]) -> None:
         sys.exit(STOPPED)
 
 
-def _draw(run: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
+def _draw(run: Run | Snapshots, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
     kinds: tuple[str, ...] = ("particles",) if isinstance(run, Snapshots) else (*run.groups, "responses", "case")
     if (kind or kinds[0]) not in kinds:
         raise CaseError(f"--kind {kind}: this run has no such figure\n  {nearest(str(kind), kinds)}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, is_run
@@ -12,17 +12,20 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.engines.checkpoint import read_unfinished
 from rattlebox.report.kinds.unfinished import UnfinishedRun
 from rattlebox.report.write import write_report
-from rattlebox.results import load
+from rattlebox.results import Run, load
 from rattlebox.results.snapshots import Snapshots
 from rattlebox.studies.design.trial_store import count_trials
 from rattlebox.studies.run.stored import has_map, open_study
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def write(results: Sequence[Path], out: Path | None, title: str | None, question: str | None) -> None:
     """Write a report about results on disk, and print its name."""
     path = out or Path(f"{results[0].resolve().with_suffix('').name}.html")
     replaces = path.exists()
-    by_name: dict[str, Any] = {}
+    by_name: dict[str, object] = {}
     for folder in results:
         name = str(folder)
         if name in by_name:
@@ -34,7 +37,7 @@ def write(results: Sequence[Path], out: Path | None, title: str | None, question
     terminal().print(f"written: {path}{note}", soft_wrap=True)
 
 
-def read_result(path: Path) -> Any:
+def read_result(path: Path) -> Run | UnfinishedRun | xr.Dataset:
     """Return a run, an unfinished run, or the dataset of a study."""
     if not is_run(path):
         trials = count_trials(path)

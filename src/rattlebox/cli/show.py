@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.box import SIMPLE_HEAD
 from rich.table import Column, Table
 from rich.text import Text
@@ -77,14 +78,14 @@ def _axis_table(study: xr.Dataset) -> Table:
     return table
 
 
-def _ends(values: np.ndarray[Any, Any]) -> tuple[Any, Any]:
+def _ends(values: NDArray[Any]) -> tuple[Any, Any]:
     """Return the first and last value of a monotonic axis or of names, the smallest and largest of other numbers."""
     if values.dtype.kind in "fi" and not (np.all(np.diff(values) >= 0) or np.all(np.diff(values) <= 0)):
         return values.min(), values.max()
     return values[0], values[-1]
 
 
-def _trial_table(study: xr.Dataset, heading: str, trials: np.ndarray[Any, Any], total: int) -> Table:
+def _trial_table(study: xr.Dataset, heading: str, trials: NDArray[Any], total: int) -> Table:
     """Return some trials of a design with their parameters and objectives, and the reasons of those without."""
     names = [str(name) for name, values in study.coords.items() if values.dims == ("trial",) and name != "trial"]
     names += [str(name) for name, values in study.data_vars.items() if "goal" in values.attrs]
@@ -120,7 +121,7 @@ def _result_table(study: xr.Dataset) -> Table:
     return table
 
 
-def _format(value: Any, variable: xr.DataArray) -> str:
+def _format(value: object, variable: xr.DataArray) -> str:
     """Return a value of a variable as text with its unit."""
     if not isinstance(value, np.number):
         return " ".join(str(value).split())

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rattlebox.core import _core
 
@@ -28,12 +28,12 @@ class BlockOutput:
     """
 
     measures: Sequence[str] = ()
-    shape: Any = field(default_factory=lambda: np.zeros(0))
+    shape: ArrayLike = field(default_factory=lambda: np.zeros(0))
     base: float = 1.0
-    participation: Any = field(default_factory=lambda: np.zeros(0))
-    residual_mass: Any = 0.0
-    start: Any = 0.0
-    period: Any = float("nan")
+    participation: ArrayLike = field(default_factory=lambda: np.zeros(0))
+    residual_mass: ArrayLike = 0.0
+    start: ArrayLike = 0.0
+    period: ArrayLike = float("nan")
     samples: int = 2
     motion: bool = False
     last: int = 0
@@ -95,6 +95,6 @@ def run_block(
     return {name: values for name, values in arrays.items() if values is not None} | measures
 
 
-def _number(value: Any, grid: list[int]) -> float | NDArray[np.float64]:
+def _number(value: ArrayLike, grid: list[int]) -> float | NDArray[np.float64]:
     array = np.asarray(value, dtype=float)
     return float(array) if array.ndim == 0 else array.reshape((1,) * (len(grid) - array.ndim) + array.shape)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from rattlebox.prepare.time_step import MIN_STEPS_PER_CONTACT, contact_limits
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.model.dampers import ImpactDamper
-    from rattlebox.model.particle_damper import ParticleDamper
+    from rattlebox.model.particle_damper import ContactTable, ParticleDamper
     from rattlebox.prepare.particles import Prepared
     from rattlebox.results.arrays import Table
 
@@ -115,7 +115,7 @@ def _limits_of_particles(prepared: Prepared) -> Iterator[ContactLimit]:
         name = " ".join(damper.label(index).split())
         yield ContactLimit("overlap", index, MAX_OVERLAP, _deep(name, MAX_OVERLAP))
 
-        def steps(log_speed: float, damper: ParticleDamper = damper, table: Any = table) -> float:
+        def steps(log_speed: float, damper: ParticleDamper = damper, table: ContactTable = table) -> float:
             limits = contact_limits(case, damper, table, 10**log_speed, 1.0)
             return min(limit.duration for limit in limits) / step.dt - MIN_STEPS_PER_CONTACT
 

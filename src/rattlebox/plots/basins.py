@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from ..model.errors import Hint
 from ..results.figures import study_figure
 from .labels import StudyAxis, unit_of
-from .style import FAINT, INK, Size, StyledFigure, figure_style, map_colours, pen
+from .style import FAINT, INK, Size, Style, StyledFigure, figure_style, map_colours, pen
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -128,5 +128,5 @@ def _draw_strobes(axes: Axes, maps: xr.Dataset, axis_of: Mapping[str, StudyAxis]
             paths["velocity"]: orbit["orbit_relative_velocity"].values,
         }
         x, y = (state[path] / axis.values.divisor for path, axis in axis_of.items())
-        style: dict[str, Any] = {"markeredgecolor": "white", "markeredgewidth": pen(0.8)}
+        style: Style = {"markeredgecolor": "white", "markeredgewidth": pen(0.8)}
         axes.plot(x, y, "o", markersize=pen(3.5), color=palette(kind), **style)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -15,8 +15,21 @@ from rattlebox._util.narrow import present
 from ..model.errors import Hint, nearest
 from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
-from .labels import LabelledValues, Vector, capitalised, name_of, unit_of
-from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen, scaled
+from .labels import LabelledValues, capitalised, name_of, unit_of
+from .style import (
+    FAINT,
+    INK,
+    SERIES_COLOURS,
+    Size,
+    Style,
+    StyledFigure,
+    Vector,
+    figure_style,
+    label,
+    legend_above,
+    pen,
+    scaled,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -139,7 +152,7 @@ def _draw_periods(axes: Axes, x: Vector, maps: xr.Dataset) -> None:
     colours: dict[str, ColorType] = {text: palette(kind) for kind, text in enumerate(_PERIODS) if (kinds == kind).any()}
     if np.isnan(kinds).any():
         colours["did not finish"] = "white"
-    frame: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}
+    frame: Style = {"edgecolor": FAINT, "linewidth": pen(0.5)}
     handles = [Patch(facecolor=colour, label=text, **frame) for text, colour in colours.items()]
     figure = present(axes.get_figure(root=True))
     figure.legend(

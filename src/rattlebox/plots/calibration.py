@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from .labels import capitalised
-from .style import FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, Size, StyledFigure, figure_style, label, pen, scaled
+from .style import (
+    FAINT,
+    INK,
+    SERIES_COLOURS,
+    SERIES_MARKERS,
+    Size,
+    Style,
+    StyledFigure,
+    figure_style,
+    label,
+    pen,
+    scaled,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -95,7 +107,7 @@ def _draw_data(axes: Axes, result: xr.Dataset) -> None:
     """Draw measured values over the mean of simulated ones, with standard uncertainties on both sides."""
     measured, check = result.measured.values, result.check.values
     x = np.arange(measured.size)
-    bars: dict[str, Any] = {"ls": "", "elinewidth": pen(0.8), "ms": pen(3)}
+    bars: Style = {"ls": "", "elinewidth": pen(0.8), "ms": pen(3)}
     series = (
         ("measured", -0.1, np.ones(x.size), result.error, INK, "o"),
         ("simulated at the result", 0.1, check / measured, result.check_deviation, SERIES_COLOURS[1], "D"),
@@ -113,7 +125,7 @@ def _draw_data(axes: Axes, result: xr.Dataset) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
 
 
-def _axis(one: xr.Dataset, values: Any) -> tuple[float, str, str]:
+def _axis(one: xr.Dataset, values: xr.DataArray) -> tuple[float, str, str]:
     """Return divisor, unit and text of a parameter."""
     unit, path = str(one.unit.item()), str(one.parameter.item())
     divisor, prefixed = (1.0, "") if unit == "1" else scaled(values, unit)
@@ -132,7 +144,7 @@ def _draw_region(axes: Axes, result: xr.Dataset) -> None:
     value, lower, upper = (result[name].values / divisors for name in ("value", "lower", "upper"))
     # One column for each bar: below and above the value. A value may lie at an end of its range.
     bars = np.maximum(0.0, np.stack([value - lower, upper - value]))
-    style: dict[str, Any] = {"color": SERIES_COLOURS[1], "marker": "D", "ms": pen(3.5), "elinewidth": pen(1), "ls": ""}
+    style: Style = {"color": SERIES_COLOURS[1], "marker": "D", "ms": pen(3.5), "elinewidth": pen(1), "ls": ""}
     axes.errorbar(value[0], value[1], xerr=bars[:, :1], yerr=bars[:, 1:], label="value and 95 % intervals", **style)
     label(axes, "x", scales[0][2], scales[0][1])
     label(axes, "y", scales[1][2], scales[1][1])

@@ -20,7 +20,7 @@ from ..model.packing import Bed
 from ..model.particle_damper import ParticleDamper
 from ..prepare.settle import settle
 from .spheres import draw_spheres
-from .style import FAINT, INK, SERIES_COLOURS, pen
+from .style import FAINT, INK, SERIES_COLOURS, Style, pen
 from .technical import SOLID, arrow, dimension, text
 
 Array = NDArray[np.float64]
@@ -95,7 +95,7 @@ def _detail(axes: Axes, left: float, high: float, radius: float, gap: float) -> 
     scale = 0.5 * reach / gap
     surface = centre[0] - 0.5 * gap * scale
     middle = (surface - radius * scale, 0.0)
-    edge: dict[str, Any] = {"facecolor": "none", "edgecolor": INK, "lw": pen(0.8), "zorder": 5}
+    edge: Style = {"facecolor": "none", "edgecolor": INK, "lw": pen(0.8), "zorder": 5}
     for patch in (
         Circle(middle, radius * scale, facecolor=SERIES_COLOURS[0], alpha=0.35, zorder=4),
         Circle(middle, radius * scale, **edge),
@@ -107,7 +107,7 @@ def _detail(axes: Axes, left: float, high: float, radius: float, gap: float) -> 
     text(axes, (centre[0], -reach - 0.05 * high), f"gap {amount(gap, 'm')}, x {scale:.0f}", va="top", fontsize="small")
 
 
-def _solid() -> dict[str, Any]:
+def _solid() -> Style:
     """Return the style of a wall in section."""
     return {"facecolor": SOLID, "edgecolor": INK, "lw": pen(0.8), "hatch": "////"}
 

@@ -21,7 +21,7 @@ from ..model.shear_buildings import ShearBuilding
 from ..model.structures import SDOF, Fixed, Shaker, StructurePart
 from ..model.tuned_mass import TunedMass
 from ..results.case_words import each_damper
-from .style import FAINT, INK, SERIES_COLOURS, label, pen, scaled, shorten
+from .style import FAINT, INK, SERIES_COLOURS, Style, label, pen, scaled, shorten
 from .technical import LOAD_COLOUR, SOLID, Point, arrow, body, dashpot, dimension, ground, mark, spring, text
 
 Marks = Mapping[int, str]
@@ -321,7 +321,7 @@ def _draw_modes(axes: Axes, case: Case, marks: Marks) -> None:
         square = (shape.reshape(len(shape), -1) ** 2).sum(axis=1)
         moved = square > 1e-12 * square.max(initial=0.0)
         numbers = ", ".join(filter(None, attached[name].marks)) if attached else ""
-        style: dict[str, Any] = {"color": SERIES_COLOURS[k], "marker": "o", "ms": pen(3), "ls": ""}
+        style: Style = {"color": SERIES_COLOURS[k], "marker": "o", "ms": pen(3), "ls": ""}
         x, y = frequencies[moved][:_MAX_STEMS] / divisor, square[moved][:_MAX_STEMS]
         axes.plot(x, y, label=f"at {shorten(name, 20)}" + (f" ({numbers})" if numbers else ""), **style)
         axes.vlines(x, 0, y, color=SERIES_COLOURS[k], lw=pen(0.8))

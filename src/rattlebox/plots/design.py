@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,16 +13,16 @@ from matplotlib.ticker import MaxNLocator
 from rattlebox.studies.work.measures import INTERVAL
 
 from ..results.figures import study_figure
-from .labels import LabelledValues, Vector, capitalised
-from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen
+from .labels import LabelledValues, capitalised
+from .style import INK, SERIES_COLOURS, Size, Style, StyledFigure, Vector, figure_style, label, legend_above, pen
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axis import Axis
 
 _MAX_PARAMETERS = 3
-_DOTS: dict[str, Any] = {"linestyle": "", "marker": "o", "color": SERIES_COLOURS[0], "alpha": 0.5, "markeredgewidth": 0}
-_RINGS: dict[str, Any] = {
+_DOTS: Style = {"linestyle": "", "marker": "o", "color": SERIES_COLOURS[0], "alpha": 0.5, "markeredgewidth": 0}
+_RINGS: Style = {
     "linestyle": "",
     "marker": "o",
     "markerfacecolor": "none",
@@ -30,7 +30,7 @@ _RINGS: dict[str, Any] = {
     "markersize": 5,
     "markeredgewidth": 0.6,
 }
-_BEST: dict[str, Any] = {"linestyle": "", "marker": "D", "color": SERIES_COLOURS[1]}
+_BEST: Style = {"linestyle": "", "marker": "D", "color": SERIES_COLOURS[1]}
 
 
 @study_figure("design")
@@ -80,7 +80,7 @@ def _half_width(study: xr.Dataset, name: str, values: LabelledValues) -> Vector 
 
 
 def _draw_trials(
-    axes: Axes, study: xr.Dataset, x: Any, y: Any, x_bar: Vector | None = None, y_bar: Vector | None = None
+    axes: Axes, study: xr.Dataset, x: Vector, y: Vector, x_bar: Vector | None = None, y_bar: Vector | None = None
 ) -> None:
     """Draw trials with their intervals, and rings around those that exceed validity limits."""
     axes.errorbar(x, y, y_bar, x_bar, fmt="none", ecolor=SERIES_COLOURS[0], elinewidth=pen(0.8), alpha=0.7)
@@ -100,7 +100,7 @@ def _draw_progress(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
     limit = json.loads(study.attrs["max_added_mass"])
     # Trials without a value are marked on the axis, by reason, so that gaps of the search are visible.
     heavy = study.added_mass.values > (np.inf if limit is None else limit)
-    style: dict[str, Any] = {"color": INK, "linestyle": "", "transform": axes.get_xaxis_transform(), "clip_on": False}
+    style: Style = {"color": INK, "linestyle": "", "transform": axes.get_xaxis_transform(), "clip_on": False}
     for reason, marker, mask in (("too heavy", "|", heavy), ("no value", "x", ~study.feasible.values & ~heavy)):
         if np.any(mask):
             trials = study.trial.values[mask]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
 from ..results import Run
-from .style import CHANNEL_COLOURS, FAINT, INK, StyledFigure, figure_style, label, pen, scaled, time_axis
+from .style import CHANNEL_COLOURS, FAINT, INK, Style, StyledFigure, figure_style, label, pen, scaled, time_axis
 
 MOMENTS = 8
 """Number of pictures of the ball in its cavity."""
@@ -52,7 +50,7 @@ def _draw_moments(axes: Axes, run: Run) -> None:
     axes.set_xlim(-0.5 * _DISTANCE, (MOMENTS - 0.5) * _DISTANCE)
     axes.set_ylim(-0.62, 0.5)
     axes.set_aspect("equal", anchor="W")
-    thin: dict[str, Any] = {"edgecolor": CHANNEL_COLOURS["viscous"], "linewidth": pen(0.8)}
+    thin: Style = {"edgecolor": CHANNEL_COLOURS["viscous"], "linewidth": pen(0.8)}
     for k, moment in enumerate(np.linspace(0.01, 1.0, MOMENTS) * period):
         x, b = (float(np.interp(moment, time, values)) for values in (displacement, ball))
         rest = k * _DISTANCE

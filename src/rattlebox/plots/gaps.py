@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from matplotlib.patches import Patch
 
-from .style import FAINT, pen
+from .style import FAINT, Style, pen
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,7 +46,7 @@ def gaps_of(study: xr.Dataset, name: str) -> list[Gap]:
 
 def add_gap_legend(figure: Figure, study: xr.Dataset, name: str) -> None:
     """Add a legend of the hatches below a map, with the number of runs for each."""
-    style: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}
+    style: Style = {"edgecolor": FAINT, "linewidth": pen(0.5)}
     handles = [Patch(facecolor=gap.face, hatch=gap.hatch, label=gap.text, **style) for gap in gaps_of(study, name)]
     if handles:
         columns = len(handles) if figure.get_figwidth() > 5 else 2

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from ..results import Run, RunArrays
 from ..results.figures import run_figure
@@ -18,7 +17,9 @@ from .style import (
     INK,
     SERIES_COLOURS,
     Size,
+    Style,
     StyledFigure,
+    Vector,
     figure_style,
     label,
     letters,
@@ -28,7 +29,7 @@ from .style import (
     time_axis,
 )
 
-_SIDES: dict[str, dict[str, Any]] = {
+_SIDES: dict[str, Style] = {
     "trailing wall": {"marker": "o", "color": "colour", "linewidths": 0.0},
     "leading wall": {"marker": "o", "facecolors": "none", "edgecolors": "colour", "linewidths": 0.6},
     "between balls": {"marker": "x", "color": "colour", "linewidths": 0.6},
@@ -94,7 +95,7 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
     return figure
 
 
-def _limit_restitution(axes: Axes, values: Any) -> None:
+def _limit_restitution(axes: Axes, values: Vector) -> None:
     """Limit the axis to the range of the values, at least 0.1, so that a constant appears as a flat line."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     span = max(high - low, 0.1)
@@ -105,7 +106,7 @@ def _limit_restitution(axes: Axes, values: Any) -> None:
         axes.axhline(1.0, color=FAINT, linewidth=pen(0.5), zorder=0)
 
 
-def _scatter(axes: Axes, arrays: RunArrays, x: Any, y: Any) -> None:
+def _scatter(axes: Axes, arrays: RunArrays, x: Vector, y: Vector) -> None:
     """Draw each impact with the colour of its damper and the marker of the side of the contact."""
     log = arrays.impacts
     area = (9.0 if len(log) < 300 else 3.0) * pen(1.0) ** 2
@@ -116,14 +117,14 @@ def _scatter(axes: Axes, arrays: RunArrays, x: Any, y: Any) -> None:
     axes.margins(x=0.02, y=0.08)
 
 
-def _sides(arrays: RunArrays) -> Any:
+def _sides(arrays: RunArrays) -> NDArray[np.str_]:
     """Return the name of the side of each impact."""
     last = np.bincount(arrays.ball_damper, minlength=len(arrays.dampers))[arrays.impacts.damper]
     contact = arrays.impacts.contact
     return np.select([contact == 0, contact == last], ["trailing wall", "leading wall"], "between balls")
 
 
-def _marker_style(marks: dict[str, Any], colour: str) -> dict[str, Any]:
+def _marker_style(marks: Style, colour: str) -> Style:
     """Return the options of a scatter in a colour, with edges in proportion to the font size."""
     style = {name: colour if value == "colour" else value for name, value in marks.items()}
     return style | {"linewidths": pen(marks["linewidths"])}

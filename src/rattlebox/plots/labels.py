@@ -6,18 +6,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.ticker import Formatter
-from numpy.typing import NDArray
 
 from rattlebox._util.quantities import quantity, without_zeros
 
-from .style import label, scaled, shorten
+from .style import Vector, label, scaled, shorten
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
-
-Vector = NDArray[np.float64]
 
 REPLICA = "replica"
 """Dimension of repeated runs that differ in their random seeds only."""
@@ -129,7 +126,7 @@ class _MinorFormatter(Formatter):
         return plain(value) if high < 3 * low or (high < 100 * low and digit in "25") else ""
 
 
-def plain(value: float, _: Any = None) -> str:
+def plain(value: float, _: float = 0.0) -> str:
     """Return a number of a logarithmic axis as text without a power of ten: 0.1, 10."""
     return f"{value:g}"
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 from matplotlib.lines import Line2D
 
 from .gaps import gaps_of
-from .labels import REPLICA, LabelledValues, StudyAxis, Vector, log_ticks, name_of, upper_limit, value_of
-from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, colour_bar, map_colours, pen
+from .labels import REPLICA, LabelledValues, StudyAxis, log_ticks, name_of, upper_limit, value_of
+from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, Style, Vector, colour_bar, map_colours, pen
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
     along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
     x_axis, values = StudyAxis.of(study[along]), study[name]
     measure = LabelledValues.of(values)
-    styles: list[dict[str, Any]] = [{"color": SERIES_COLOURS[0], "marker": SERIES_MARKERS[0]}]
+    styles: list[Style] = [{"color": SERIES_COLOURS[0], "marker": SERIES_MARKERS[0]}]
     for other in others:
         styles = _series_styles(figure, axes, study[other])
         values = values.transpose(other, ...)
@@ -60,12 +60,12 @@ def _clip_peaks(axes: Axes, name: str, values: xr.DataArray, along: str, x_axis:
     # A marker at the upper edge states where a peak is cut off.
     peaks = (values > 1.25 * top).transpose(along, ...).values.reshape(x_axis.values.numbers.size, -1)
     x = x_axis.values.numbers[peaks.any(axis=1)]
-    style: dict[str, Any] = {"marker": "^", "color": INK, "linestyle": ""}
+    style: Style = {"marker": "^", "color": INK, "linestyle": ""}
     axes.plot(x, np.full(x.size, 1.0), transform=axes.get_xaxis_transform(), clip_on=False, **style)
     return [Line2D([], [], label="beyond the scale", **style)]
 
 
-def _draw_line(axes: Axes, x: Vector, member: xr.DataArray, half: xr.DataArray | None, style: dict[str, Any]) -> None:
+def _draw_line(axes: Axes, x: Vector, member: xr.DataArray, half: xr.DataArray | None, style: Style) -> None:
     """Draw a line with its interval of a given half-width, or the median of replicas within their band."""
     middle = member
     if REPLICA in member.dims:
@@ -82,11 +82,11 @@ def _draw_line(axes: Axes, x: Vector, member: xr.DataArray, half: xr.DataArray |
     finite = np.pad(np.isfinite(middle.values), 1)
     isolated = finite[1:-1] & ~finite[:-2] & ~finite[2:]
     if isolated.any():
-        dots: dict[str, Any] = {"linestyle": "", "marker": "o", "markersize": 2.5, "clip_on": False}
+        dots: Style = {"linestyle": "", "marker": "o", "markersize": 2.5, "clip_on": False}
         axes.plot(x[isolated], middle.values[isolated], color=style["color"], **dots)
 
 
-def _series_styles(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, Any]]:
+def _series_styles(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[Style]:
     """Return styles and legend texts of lines; add a colour bar if there are too many lines for a legend."""
     from matplotlib.cm import ScalarMappable
 
@@ -109,7 +109,7 @@ def _mark_gaps(axes: Axes, study: xr.Dataset, name: str, along: str, x_axis: Stu
     marks = []
     for number, gap in enumerate(gaps_of(study, name)):
         mask = gap.mask.transpose(along, ...).values.reshape(x_axis.values.numbers.size, -1).any(axis=1)
-        style: dict[str, Any] = {"marker": gap.marker, "color": INK, "linestyle": ""}
+        style: Style = {"marker": gap.marker, "color": INK, "linestyle": ""}
         height = np.full(mask.sum(), 0.02 + 0.03 * number)
         axes.plot(x_axis.values.numbers[mask], height, transform=axes.get_xaxis_transform(), clip_on=False, **style)
         marks.append(Line2D([], [], label=gap.text, **style))

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from numpy.typing import ArrayLike
 
 from rattlebox._util.exceptions import CaseError
 
 from ..results.figures import study_figure
 from .labels import StudyAxis, unit_of
-from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, colour_bar, figure_style, label, pen
+from .style import FAINT, INK, SERIES_COLOURS, Size, Style, StyledFigure, colour_bar, figure_style, label, pen
 
 if TYPE_CHECKING:
     import xarray
@@ -82,7 +83,7 @@ def _resolution(study: xarray.Dataset) -> float:
     return float(np.log(steps.size) / steps[-1])
 
 
-def _limits(values: Any) -> tuple[float, float]:
+def _limits(values: ArrayLike) -> tuple[float, float]:
     """Return the limits of an axis that shows all finite values and zero."""
     finite = np.asarray(values)[np.isfinite(values)]
     low, high = min(0.0, finite.min(initial=0.0)), max(0.0, finite.max(initial=0.0))
@@ -117,7 +118,7 @@ def _exponents(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> N
     x = axis.values.numbers
     error = 2 * np.nan_to_num(study.standard_error.values * (values / study.exponent).fillna(1.0).values)
     positive, chaotic = values.values > 0, values.values > _resolution(study)
-    style: dict[str, Any] = {"ms": pen(2), "lw": pen(0.6), "mew": 0}
+    style: Style = {"ms": pen(2), "lw": pen(0.6), "mew": 0}
     kinds = ((chaotic, _CHAOTIC, "o"), (positive & ~chaotic, FAINT, "D"), (~positive, _REGULAR, "s"))
     for mask, colour, marker in kinds:
         axes.errorbar(x[mask], values.values[mask], error[mask], fmt=marker, color=colour, **style)

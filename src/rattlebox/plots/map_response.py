@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,7 +17,9 @@ from .style import (
     SERIES_COLOURS,
     SERIES_STYLES,
     Size,
+    Style,
     StyledFigure,
+    Vector,
     figure_style,
     label,
     pen,
@@ -65,7 +67,7 @@ def plot_response_from_map(
     ValueError
         If the size is unknown.
     """
-    chosen: dict[str, Any] = {"at": response["at"].values[0] if at is None else at}
+    chosen: Style = {"at": response["at"].values[0] if at is None else at}
     chosen["number"] = response.number.values[0] if number is None else number
     one, _ = select(response, chosen)
     with figure_style(size):
@@ -102,7 +104,7 @@ def _draw_response(axes: Axes, response: xarray.Dataset, per_level: bool) -> Non
     label(axes, "y", "Amplitude" + " over level" * per_level, prefixed)
 
 
-def _draw_lines(axes: Axes, frequency: Any, values: Any, colour: str, stable: bool) -> None:
+def _draw_lines(axes: Axes, frequency: Vector, values: Vector, colour: str, stable: bool) -> None:
     """Draw motions of each kind, (F, S), as lines that are not connected across a change of their number."""
     counts = np.isfinite(values).sum(axis=1)
     ends = np.flatnonzero(np.diff(counts)) + 1

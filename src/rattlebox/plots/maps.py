@@ -21,6 +21,7 @@ from .selection import select
 from .style import (
     SERIES_COLOURS,
     Size,
+    Style,
     StyledFigure,
     colour_bar,
     figure_style,
@@ -194,7 +195,7 @@ def draw_map(
             [(left[i], low[j]), (right[i], low[j]), (right[i], high[j]), (left[i], high[j])]
             for j, i in np.argwhere(mask)
         ]
-        style: dict[str, Any] = {"facecolors": gap.face, "edgecolors": GREY, "linewidths": 0, "hatch": gap.hatch}
+        style: Style = {"facecolors": gap.face, "edgecolors": GREY, "linewidths": 0, "hatch": gap.hatch}
         axes.add_collection(PolyCollection(cells, zorder=2, **style))
     x_axis.label(axes, "x")
     y_axis.label(axes, "y")

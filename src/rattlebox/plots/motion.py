@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,7 +10,21 @@ from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
 from .panels import MAX_SERIES, draw_largest, draw_line, time_panels, time_window
-from .style import FAINT, INK, Scale, Size, figure_style, label, legend_above, pen, scaled, shorten, time_axis
+from .style import (
+    FAINT,
+    INK,
+    Scale,
+    Size,
+    Style,
+    Vector,
+    figure_style,
+    label,
+    legend_above,
+    pen,
+    scaled,
+    shorten,
+    time_axis,
+)
 
 MAX_NAME_LETTERS = 14
 WALL_DISTANCE = 3.0  # a wall farther away than this multiple of the balls' travel is not drawn
@@ -96,11 +108,11 @@ def _draw_contacts(axes: Axes, run: Run, window: slice, time: Scale) -> None:
 
 def label_panel(axes: Axes, name: str) -> None:
     """Write the name of a damper to the right of its panel."""
-    style: dict[str, Any] = {"rotation": 270, "ha": "left", "va": "center", "transform": axes.transAxes}
+    style: Style = {"rotation": 270, "ha": "left", "va": "center", "transform": axes.transAxes}
     axes.text(1.03, 0.5, shorten(name, MAX_NAME_LETTERS), **style)
 
 
-def ball_displacements(arrays: RunArrays, damper: int) -> Any:
+def ball_displacements(arrays: RunArrays, damper: int) -> Vector:
     """Return the displacements of the balls of one damper from the packed, centred row, and half the clearance.
 
     Returns

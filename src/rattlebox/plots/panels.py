@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +11,7 @@ from rattlebox._util.exceptions import CaseError
 
 from ..results import RunArrays
 from ..results.summary import largest_points
-from .style import FAINT, SERIES_COLOURS, SERIES_STYLES, Size, StyledFigure, legend_above, pen
+from .style import FAINT, SERIES_COLOURS, SERIES_STYLES, Size, StyledFigure, Vector, legend_above, pen
 
 MAX_SERIES = len(SERIES_COLOURS)
 
@@ -42,7 +41,7 @@ def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice
     return slice(int(first), int(last))
 
 
-def draw_line(axes: Axes, x: Any, y: Any, series: int, name: str | None, *, colour: int | None = None) -> None:
+def draw_line(axes: Axes, x: Vector, y: Vector, series: int, name: str | None, *, colour: int | None = None) -> None:
     """Draw one of several lines in the colour and dashes of its number.
 
     Parameters
@@ -60,7 +59,7 @@ def draw_line(axes: Axes, x: Any, y: Any, series: int, name: str | None, *, colo
     )
 
 
-def draw_largest(axes: Axes, x: Any, y: Any, names: Sequence[str]) -> None:
+def draw_largest(axes: Axes, x: Vector, y: Vector, names: Sequence[str]) -> None:
     """Draw lines about zero, of many lines those with the largest values, with a legend if there are several.
 
     Parameters

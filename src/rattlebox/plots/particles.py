@@ -14,10 +14,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from matplotlib.animation import AbstractMovieWriter
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.colors import Colormap, ListedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
@@ -197,7 +201,7 @@ def film_particles(
         # The first picture decides the layout. Were each laid out anew, titles of other widths would shake the film.
         scene.figure.savefig(io.BytesIO(), dpi=dpi)
         scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
-        writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
+        writer: AbstractMovieWriter = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
         with atomic_write(path, _LOST) as name, progress_bar(progress, "pictures") as report:
             writer.setup(scene.figure, os.fspath(name), dpi=dpi)
             try:
@@ -223,7 +227,7 @@ def _checked_pixels(pixels: tuple[int, int]) -> tuple[int, int]:
     return width, height
 
 
-def _close_quietly(writer: Any) -> None:
+def _close_quietly(writer: AbstractMovieWriter) -> None:
     """Close FFmpeg without its message that it was stopped or has no picture yet."""
     log = logging.getLogger("matplotlib.animation")
     before, log.disabled = log.disabled, True
@@ -264,9 +268,9 @@ def _cavities(dampers: Sequence[Mapping[str, Any]]) -> list[tuple[str, Cavity]]:
 @dataclass
 class _Panel:
     axes: Axes
-    image: Any
-    lines: list[Any]
-    wall: Any
+    image: AxesImage
+    lines: list[tuple[Line2D, Array]]
+    wall: Polygon
     extent: tuple[float, float, float, float]
 
 
@@ -301,14 +305,15 @@ class _Scene:
         sides = [(right - left, top - bottom) for left, right, bottom, top in extents]
         ratio = max(h for _, h in sides) / sum(w for w, _ in sides)
         self.figure = StyledFigure(size, min(0.86 * ratio + 0.1, 1.1) if shape is None else shape)
-        panels = self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=[w for w, _ in sides])[0]
+        widths = [w for w, _ in sides]
+        panels = list(self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=widths)[0])
         self._panels = [self._panel(k, axes, extents[k]) for k, axes in enumerate(panels)]
         if colour != "none":
             shaken = "base" in case or case["structure"]["kind"] == "shaker"
             self._draw_key(panels, "Speed relative\nto the base" if shaken and colour == "speed" else _TITLES[colour])
         self.show(0)
 
-    def _colours(self, values: Array, several: bool) -> tuple[Any, Normalize]:
+    def _colours(self, values: Array, several: bool) -> tuple[Colormap, Normalize]:
         """Return the colour map, and the values at its ends; a few outliers in a film do not set them."""
         if self._colour in ("species", "none"):
             count = int(values.max(initial=0)) + 1
@@ -320,11 +325,11 @@ class _Scene:
             low, top = 0.5 * top, 1.5 * top
         return map_colours(), Normalize(low / self._scale.divisor, max(top, 1e-12) / self._scale.divisor)
 
-    def _draw_key(self, panels: Any, title: str) -> None:
+    def _draw_key(self, panels: list[Axes], title: str) -> None:
         """Draw the colour bar, with whole numbers for species."""
         unit = f" ({self._scale.unit})" if self._scale.unit else ""  # two lines at most: pictures of flat boxes are low
         values = ScalarMappable(self._norm, self._map)
-        bar = colour_bar(self.figure, values, list(panels), f"{title}{unit}", aspect=28)
+        bar = colour_bar(self.figure, values, panels, f"{title}{unit}", aspect=28)
         if self._colour == "species":
             bar.set_ticks(list(range(self._map.N)), labels=[str(number) for number in range(self._map.N)])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,7 +16,7 @@ from ..model.errors import nearest
 from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
 from .labels import capitalised, log_ticks, name_of
-from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
+from .style import FAINT, INK, SERIES_COLOURS, Size, Style, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
     import xarray
@@ -140,7 +140,7 @@ def _line_handles(response: xarray.Dataset) -> list[Line2D | Patch]:
     return [*handles, Line2D([], [], color=FAINT, lw=pen(0.8), label="no damper")]
 
 
-def _mark() -> dict[str, Any]:
+def _mark() -> Style:
     """Return the size of marks."""
     return {"ms": pen(2.5), "mew": pen(0.5)}
 

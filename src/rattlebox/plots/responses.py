@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import pairwise, permutations
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,7 +15,7 @@ from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
 from .panels import draw_largest, time_panels, time_window
-from .style import Scale, Size, figure_style, label, scaled, time_axis
+from .style import Scale, Size, Vector, figure_style, label, scaled, time_axis
 
 QUANTITIES = {
     "displacement": ("Displacement", "m"),
@@ -37,7 +37,7 @@ QUANTITIES = {
 class _Panel(NamedTuple):
     """Lines of one panel: values (T, N) [SI] and their names, label and unit of the axis."""
 
-    values: Any
+    values: Vector
     names: list[str]
     text: str
     unit: str

@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, cast
+from typing import IO, Any, Literal, NamedTuple, cast
 
 import matplotlib as mpl
 import numpy as np
@@ -16,8 +16,10 @@ from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
+from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike, NDArray
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import CaseError
@@ -26,6 +28,9 @@ from rattlebox._util.own_files import seal
 from rattlebox._util.quantities import in_unit
 
 Size = Literal["column", "page", "slide"]
+Style = dict[str, Any]
+"""Options of artists of Matplotlib by name."""
+Vector = NDArray[np.float64]
 
 WIDTHS: dict[Size, float] = {"column": 85.0, "page": 178.0, "slide": 254.0}
 """Width of a figure [mm]: one column and the full page of a journal, and a slide."""
@@ -63,7 +68,7 @@ SERIES_STYLES: tuple[Any, ...] = (
 SERIES_MARKERS: tuple[str, ...] = ("o", "^", "s", "D", "v", "P")
 
 
-def _settings(size: Size) -> dict[str, Any]:
+def _settings(size: Size) -> Style:
     font = _FONT[size]
     line = font / 8.0
     return {
@@ -154,7 +159,7 @@ class StyledFigure(Figure):
         super().__init__(figsize=(width, height * width), layout="constrained", dpi=_DPI[size])
         self._size_name: Size = size
 
-    def savefig(self, fname: Any, **options: Any) -> None:
+    def savefig(self, fname: str | os.PathLike[str] | IO[bytes], **options: Any) -> None:
         """Save the figure as `matplotlib.figure.Figure.savefig` does, with editable text in PDF and SVG.
 
         Parameters
@@ -170,7 +175,7 @@ class StyledFigure(Figure):
             else:
                 super().savefig(fname, **options)
 
-    def _save(self, path: Path, options: dict[str, Any]) -> None:
+    def _save(self, path: Path, options: Style) -> None:
         """Write a file atomically; a name without a suffix gets that of the format, as in matplotlib."""
         form = options.pop("format", None) or path.suffix[1:] or str(mpl.rcParams["savefig.format"])
         path = path if path.suffix else path.with_name(f"{path.name}.{form}")
@@ -189,11 +194,12 @@ class StyledFigure(Figure):
         return buffer.getvalue()
 
 
-def map_colours() -> Any:
+def map_colours() -> Colormap:
     """Return the colour map of maps, whose lightness rises evenly, so that it works in greyscale."""
     from cmcrameri import cm  # type: ignore[import-untyped]
 
-    return cm.batlow
+    colours: Colormap = cm.batlow
+    return colours
 
 
 def colour_bar(
@@ -213,7 +219,7 @@ class Scale(NamedTuple):
     unit: str
 
 
-def scaled(values: Any, unit: str) -> Scale:
+def scaled(values: ArrayLike, unit: str) -> Scale:
     """Return the divisor and the unit with the SI prefix that suits the largest value.
 
     Parameters
@@ -271,7 +277,7 @@ def pen(width: float = 0.6) -> float:
     return width * float(mpl.rcParams["font.size"]) / 8.0
 
 
-def time_axis(axes: Axes, time: Any, scale: Scale, ticks: int = 6) -> None:
+def time_axis(axes: Axes, time: Vector, scale: Scale, ticks: int = 6) -> None:
     """Label the time axis of the lowest panel and limit it to the drawn times.
 
     Parameters

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
-from .style import INK, SERIES_COLOURS, pen
+from .style import INK, SERIES_COLOURS, Style, pen
 
 SOLID = "#dfe6ec"
 """Fill of bodies."""
@@ -29,7 +29,7 @@ def text(axes: Axes, at: Point, words: str, **options: Any) -> None:
 def arrow(axes: Axes, start: Point, end: Point, *, both: bool = False, colour: str = INK, width: float = 0.8) -> None:
     """Draw an arrow."""
     style = "<|-|>" if both else "-|>"
-    options: dict[str, Any] = {"lw": pen(width), "mutation_scale": pen(6), "shrinkA": 0, "shrinkB": 0, "zorder": 6}
+    options: Style = {"lw": pen(width), "mutation_scale": pen(6), "shrinkA": 0, "shrinkB": 0, "zorder": 6}
     axes.add_patch(FancyArrowPatch(start, end, arrowstyle=style, color=colour, **options))
 
 
@@ -52,7 +52,7 @@ def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *
     across = abs(shift[0]) < abs(shift[1])
     horizontal = "center" if across or rotate else ("left" if shift[0] > 0 else "right")
     vertical = ("bottom" if shift[1] > 0 else "top") if across else "bottom" if rotate else "center"
-    turned: dict[str, Any] = {"rotation": angle, "rotation_mode": "anchor"}
+    turned: Style = {"rotation": angle, "rotation_mode": "anchor"}
     text(axes, (middle[0], middle[1]), words, ha=horizontal, va=vertical, zorder=7, **turned)
 
 

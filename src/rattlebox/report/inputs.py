@@ -93,14 +93,14 @@ def _lines(part: Part, leave_out: Sequence[str] = ()) -> Iterator[tuple[str, str
             yield name.replace("_", " "), text
 
 
-def _balls(balls: Sequence[Part]) -> tuple[str, Any]:
+def _balls(balls: Sequence[Part]) -> tuple[str, Part | Sequence[Part]]:
     """Return the name and value of the line of balls; equal balls are listed once."""
     if all(ball == balls[0] for ball in balls):
         return "ball" if len(balls) == 1 else f"{len(balls)} balls, each", balls[0]
     return "balls", balls
 
 
-def _kind(part: Any) -> str:
+def _kind(part: object) -> str:
     return str(getattr(part, "kind", "")).replace("_", " ")
 
 

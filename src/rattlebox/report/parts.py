@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from rattlebox.model.case import Case
+
+Result = TypeVar("Result")
 
 
 class Picture(NamedTuple):
@@ -48,22 +50,22 @@ class Call(NamedTuple):
     first: str = ""
 
 
-def nothing(result: Any) -> Iterable[Any]:
+def nothing(result: object) -> tuple[()]:
     """Return no parts."""
     return ()
 
 
 @dataclass(frozen=True)
-class Kind:
+class Kind(Generic[Result]):
     """Content of the report about one kind of result; each function takes the result."""
 
     name: str
-    cases: Callable[[Any], Mapping[str, Case]]
-    question: Callable[[Any], str]
-    answer: Callable[[Any], Iterable[str]]
-    call: Callable[[Any], Call | None]
-    pictures: Callable[[Any], Iterable[Picture]] = nothing
-    tables: Callable[[Any], Iterable[Table]] = nothing
-    warnings: Callable[[Any], Iterable[str]] = nothing
-    limits: Callable[[Any], Iterable[Limit]] = nothing
-    about: Callable[[Any], Iterable[str]] = nothing
+    cases: Callable[[Result], Mapping[str, Case]]
+    question: Callable[[Result], str]
+    answer: Callable[[Result], Iterable[str]]
+    call: Callable[[Result], Call | None]
+    pictures: Callable[[Result], Iterable[Picture]] = nothing
+    tables: Callable[[Result], Iterable[Table]] = nothing
+    warnings: Callable[[Result], Iterable[str]] = nothing
+    limits: Callable[[Result], Iterable[Limit]] = nothing
+    about: Callable[[Result], Iterable[str]] = nothing

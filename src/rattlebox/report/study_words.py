@@ -285,7 +285,7 @@ def study_kind(
     call: Callable[[xr.Dataset], Call | None],
     pictures: Callable[[xr.Dataset], Iterable[Picture]],
     **others: Callable[[xr.Dataset], Any],
-) -> Kind:
+) -> Kind[xr.Dataset]:
     """Return the content of the report about a kind of study; parts that are left out are those of all studies."""
     shared: dict[str, Callable[[xr.Dataset], Any]] = {
         "cases": cases_of,

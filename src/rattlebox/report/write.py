@@ -14,6 +14,8 @@ from rattlebox._util.own_files import claim, seal
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
+    from .page import Section
+
 _SUFFIXES = (".html", ".htm")
 
 
@@ -91,7 +93,7 @@ def _compared(result: Any) -> Any:
     return result
 
 
-def _title(result: Any, sections: list[Any]) -> str:
+def _title(result: object, sections: list[Section]) -> str:
     name = ""
     source = getattr(result, "source", None)
     if source is not None and not isinstance(source, str):

@@ -7,7 +7,7 @@ from 1), and the last is the leading wall.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NoReturn, Self
 
 import numpy as np
@@ -35,7 +35,7 @@ IntArray = NDArray[np.int64]
 _DTYPES: dict[Kind, Any] = {"float": np.float64, "int": np.int64, "bool": np.bool_}
 
 
-def same(a: Any, b: Any) -> bool:
+def same(a: object, b: object) -> bool:
     """Return whether two values are equal to the last bit, where NaN equals NaN."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
@@ -74,7 +74,7 @@ def _as_time(times: ArrayLike) -> FloatArray:
     return time
 
 
-def _as_labels(name: str, values: Any) -> tuple[str, ...]:
+def _as_labels(name: str, values: Iterable[object]) -> tuple[str, ...]:
     """Return labels as strings; raise unless they are different and not empty."""
     labels = tuple(str(label) for label in values)
     if len(set(labels)) != len(labels) or "" in labels or any("\0" in label for label in labels):

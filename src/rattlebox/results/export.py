@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rattlebox._util.atomic_io import atomic_write, check_suffix, disk_errors, require_folder
 from rattlebox._util.exceptions import DataError
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 _DISK_HINT = "free disk space and write the file again"
 
 
-def as_cells(texts: Iterable[Any]) -> Any:
+def as_cells(texts: Iterable[object]) -> NDArray[np.object_]:
     """Return texts as a column of cells of a MATLAB file."""
     values = [str(text) for text in texts]
     cells = np.empty((len(values), 1), dtype=object)
@@ -32,7 +33,7 @@ def as_cells(texts: Iterable[Any]) -> Any:
     return cells
 
 
-def as_column(values: Any) -> Any:
+def as_column(values: NDArray[Any]) -> NDArray[Any]:
     """Return a vector, also an empty one, as a column, and other arrays as they are."""
     return values[:, None] if values.ndim == 1 else values
 
@@ -91,7 +92,7 @@ def _header(name: str, label: str, units: str) -> str:
     return full if units == "1" else f"{full} [{units}]"
 
 
-def _columns(run: Record, group: str) -> Iterator[tuple[str, Any]]:
+def _columns(run: Record, group: str) -> Iterator[tuple[str, NDArray[Any]]]:
     """Return header and values of every column of a CSV file, the index first."""
     engine, labels = run.arrays.engine, run.arrays.labels
     values = columns(run, group)

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rattlebox._util.atomic_io import (
     HDF5_ERRORS,
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
     from .record import Record
 
 Read = TypeVar("Read")
+Node = Any
+"""File or group of h5netcdf or h5py, which have no types."""
 
 FORMAT = 2
 """Version of the layout; files of other versions are rejected."""
@@ -56,13 +59,13 @@ _LARGE: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle
 """Filters of arrays of more than 64 numbers; Fletcher-32 is a checksum, which HDF5 verifies when it reads them."""
 
 
-def _characters(texts: tuple[str, ...]) -> Any:
+def _characters(texts: tuple[str, ...]) -> NDArray[np.bytes_]:
     """Return an array of single UTF-8 bytes, one row per text, padded with zeros."""
     encoded = np.array([text.encode() for text in texts])
-    return encoded.view("S1").reshape(len(texts), -1)
+    return np.asarray(encoded.view("S1").reshape(len(texts), -1))
 
 
-def _texts(characters: Any) -> tuple[str, ...]:
+def _texts(characters: NDArray[np.bytes_]) -> tuple[str, ...]:
     rows = np.ascontiguousarray(characters)
     return tuple(row.tobytes().rstrip(b"\0").decode() for row in rows)
 
@@ -72,16 +75,16 @@ def _attribute(text: str) -> np.bytes_:
     return np.bytes_(text.encode() or b" ")
 
 
-def _describe(target: Any, **attributes: str) -> None:
+def _describe(target: Node, **attributes: str) -> None:
     for name, text in attributes.items():
         target.attrs[name] = _attribute(text)
 
 
-def _filters(data: Any) -> dict[str, Any]:
+def _filters(data: NDArray[Any]) -> dict[str, Any]:
     return _LARGE if data.size > 64 else {}
 
 
-def _write_text(group: Any, name: str, text: str, long_name: str) -> None:
+def _write_text(group: Node, name: str, text: str, long_name: str) -> None:
     if not text:
         return
     characters = np.frombuffer(text.encode(), "S1")
@@ -90,7 +93,7 @@ def _write_text(group: Any, name: str, text: str, long_name: str) -> None:
     _describe(variable, long_name=long_name, _Encoding="utf-8")
 
 
-def _write_coordinate(group: Any, dim: str, values: Any, units: str, long_name: str) -> None:
+def _write_coordinate(group: Node, dim: str, values: Any, units: str, long_name: str) -> None:
     group.dimensions[dim] = len(values)
     if isinstance(values, tuple):
         characters = _characters(values)
@@ -105,7 +108,7 @@ def _write_coordinate(group: Any, dim: str, values: Any, units: str, long_name: 
 
 
 def _write_numbers(
-    file: Any, group: str, numbers: Mapping[str, float], meanings: Mapping[str, tuple[str, str]]
+    file: Node, group: str, numbers: Mapping[str, float], meanings: Mapping[str, tuple[str, str]]
 ) -> None:
     """Write single numbers, integers or floats, with their units and long names."""
     if not numbers:
@@ -118,7 +121,7 @@ def _write_numbers(
         _describe(variable, long_name=long_name, units=units)
 
 
-def _write_group(file: Any, run: Record, name: str) -> None:
+def _write_group(file: Node, run: Record, name: str) -> None:
     """Write a dataset of the run with its coordinates."""
     engine, labels = run.arrays.engine, run.arrays.labels
     target = file.create_group(name)
@@ -180,7 +183,7 @@ def save(run: Record, path: Path, *, replace: bool = True) -> Path:
     return path
 
 
-def _text_attribute(value: Any) -> str:
+def _text_attribute(value: object) -> str:
     # Fixed-length characters have no encoding, so h5netcdf returns non-ASCII bytes escaped.
     raw = value if isinstance(value, bytes) else str(value).encode("ascii", "surrogateescape")
     return "" if raw == b" " else raw.decode()
@@ -217,12 +220,12 @@ def _add_digests(content: IO[bytes]) -> None:
             group.attrs["digest"] = np.bytes_(group_digest(group, nested=False))
 
 
-def _groups(file: Any) -> dict[str, Any]:
+def _groups(file: Node) -> dict[str, Node]:
     """Return the root group and its subgroups by name."""
     return {"/": file} | {name: item for name, item in sorted(file.items()) if not hasattr(item, "shape")}
 
 
-def _read_file(path: Path, read: Callable[[Any], Read], blocks: Collection[str] | None = None) -> Read:
+def _read_file(path: Path, read: Callable[[Node], Read], blocks: Collection[str] | None = None) -> Read:
     """Check format and digests of some groups (default all) of a file, and read from it."""
     import h5netcdf
     import h5py
@@ -239,7 +242,7 @@ def _read_file(path: Path, read: Callable[[Any], Read], blocks: Collection[str] 
         raise DataError(f"{path} is not an intact netCDF-4 file", _DAMAGE_HINT) from error
 
 
-def _check(file: Any, path: Path, blocks: Collection[str] | None) -> None:
+def _check(file: Node, path: Path, blocks: Collection[str] | None) -> None:
     """Raise if a file holds no run, a run of another format, or a damaged group."""
     layout = file.attrs.get("rattlebox_format")
     if layout is None:
@@ -254,7 +257,7 @@ def _check(file: Any, path: Path, blocks: Collection[str] | None) -> None:
             raise DataError(f"{path} is damaged: the group {name!r} has changed", _DAMAGE_HINT)
 
 
-def _read_run(file: Any) -> dict[str, Any]:
+def _read_run(file: Node) -> dict[str, Any]:
     texts: dict[str, Any] = {
         f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance) if f.name in file.attrs
     }
@@ -271,16 +274,16 @@ def _read_run(file: Any) -> dict[str, Any]:
     }
 
 
-def _read_text(file: Any, name: str) -> str:
+def _read_text(file: Node, name: str) -> str:
     return file.variables[name][...].tobytes().decode() if name in file.variables else ""
 
 
-def _read_numbers(file: Any, group: str) -> dict[str, Any]:
+def _read_numbers(file: Node, group: str) -> dict[str, Any]:
     variables = file.groups[group].variables if group in file.groups else {}
     return {name: variable[...].item() for name, variable in variables.items()}
 
 
-def _read_arrays(file: Any) -> RunArrays:
+def _read_arrays(file: Node) -> RunArrays:
     engine = cast("Engine", _text_attribute(file.attrs["engine"]))
     arguments: dict[str, Any] = {"engine": engine, "time": file.groups["motion"].variables["time"][...]}
     for name, group in groups(engine).items():

@@ -41,6 +41,9 @@ from .arrays import FloatArray, IntArray
 if TYPE_CHECKING:
     from rattlebox.core import _core
 
+Node = Any
+"""File or group of h5py, which has no types."""
+
 FORMAT = 4
 """Version of the layout beyond VTKHDF; files of other versions are rejected."""
 
@@ -189,7 +192,7 @@ class SnapshotFile:
         numbers += 2 * self._particles + corners
         return 8 * numbers + SIZE * steps + len(self._case.encode()) + _LAYOUT
 
-    def _create_datasets(self, file: Any) -> None:
+    def _create_datasets(self, file: Node) -> None:
         """Create all datasets and write those that do not change."""
         steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
         file.attrs["rattlebox_format"] = FORMAT
@@ -355,7 +358,7 @@ class Snapshots:
             self.times = self.planned[: self._count_complete(file)]
 
     @contextmanager
-    def _open(self) -> Iterator[Any]:
+    def _open(self) -> Iterator[Node]:
         """Open the file for reading; report errors of HDF5 as damage."""
         import h5py
 
@@ -368,7 +371,7 @@ class Snapshots:
         except HDF5_ERRORS as error:
             raise DataError(f"{self.path} is not an intact HDF5 file", _DAMAGE_HINT) from error
 
-    def _check_format(self, file: Any) -> None:
+    def _check_format(self, file: Node) -> None:
         """Raise if an HDF5 file holds no snapshots, or snapshots of another format."""
         layout = file.attrs.get("rattlebox_format")
         if layout is None or ROOT not in file:
@@ -378,7 +381,7 @@ class Snapshots:
     def _damaged(self, block: str) -> DataError:
         return DataError(f"{self.path} is damaged: {block} has changed", _DAMAGE_HINT)
 
-    def _count_complete(self, file: Any) -> int:
+    def _count_complete(self, file: Node) -> int:
         """Return the number of complete snapshots.
 
         A process that is killed while it writes a snapshot may leave one with a wrong digest, or a complete one that
@@ -392,7 +395,7 @@ class Snapshots:
             raise self._damaged("the number of its steps")
         return complete - (listed < complete and self._read(file, complete - 1) is None)
 
-    def _read(self, file: Any, number: int) -> list[FloatArray] | None:
+    def _read(self, file: Node, number: int) -> list[FloatArray] | None:
         """Return points, moving fields and displacements of a snapshot; None if it is damaged."""
         blocks = _blocks(number, self._points, len(self._places))
         parts = [file[ROOT][name][rows] for name, rows in blocks.items()]

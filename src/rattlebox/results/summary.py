@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from rich.console import Group
 
-    from .arrays import RunArrays
+    from .arrays import FloatArray, RunArrays
     from .record import Record
 
 Value = float | int | str
@@ -203,11 +203,11 @@ def _notes(run: Record) -> tuple[str, ...]:
     return message + run.notes
 
 
-def _largest(x: Any) -> float:
+def _largest(x: FloatArray) -> float:
     return float(np.max(x)) if x.size else float("nan")
 
 
-def _rms(time: Any, x: Any) -> float:
+def _rms(time: FloatArray, x: FloatArray) -> float:
     """Return the root mean square over time of a motion with uneven sample times."""
     if time.size < 2:
         return float(np.abs(x[0]))
@@ -215,14 +215,14 @@ def _rms(time: Any, x: Any) -> float:
         return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
 
 
-def _peak_and_rms(of: str, time: Any, means: Any) -> dict[str, Value]:
+def _peak_and_rms(of: str, time: FloatArray, means: FloatArray) -> dict[str, Value]:
     """Return the largest value and the root mean square of means over each output step, (T - 1,)."""
     with np.errstate(over="ignore"):
         rms = math.sqrt(np.sum(means**2 * np.diff(time)) / (time[-1] - time[0])) if means.size else math.nan
     return {f"peak_{of}": _largest(np.abs(means)), f"rms_{of}": rms}
 
 
-def _accelerations(arrays: RunArrays, point: str, velocity: Any, base: Any) -> dict[str, Value]:
+def _accelerations(arrays: RunArrays, point: str, velocity: FloatArray, base: FloatArray) -> dict[str, Value]:
     """Return peak and RMS of the absolute acceleration of a point, and of that relative to a moving base."""
     time = arrays.time
     with np.errstate(over="ignore"):
@@ -265,7 +265,7 @@ def _forces(run: Record) -> dict[str, Value]:
     return values
 
 
-def _base_velocity(arrays: RunArrays) -> Any:
+def _base_velocity(arrays: RunArrays) -> FloatArray:
     """Return the velocity of the base in the direction of each point, (T, P), up to a constant."""
     of_base = arrays.absolute_acceleration - arrays.acceleration
     if not of_base.any():
@@ -274,7 +274,7 @@ def _base_velocity(arrays: RunArrays) -> Any:
     accelerations = arrays.base_acceleration.reshape(arrays.time.size, -1)
     # `of_base` is the acceleration of the base projected on the direction of each point.
     direction, *_ = np.linalg.lstsq(accelerations, of_base, rcond=None)
-    return base @ direction
+    return np.asarray(base @ direction)
 
 
 def is_driven(arrays: RunArrays) -> bool:
@@ -310,7 +310,7 @@ def _settling_times(reference: Mapping[str, Value], arrays: RunArrays) -> dict[s
 def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
     """Return the peak drift of each storey of a shear building: the displacement of its floor over that of the one below."""
     values: dict[str, Value] = {}
-    below: Any = 0.0
+    below: FloatArray = np.zeros(arrays.time.size)
     while (storey := f"storey {len(values) + 1}") in arrays.points:
         floor = arrays.displacement[:, arrays.points.index(storey)]
         values[f"peak_drift[{storey}]"] = _largest(np.abs(floor - below))
@@ -318,7 +318,7 @@ def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
     return values
 
 
-def _steady_results(run: Record, base: Any) -> dict[str, Value]:
+def _steady_results(run: Record, base: FloatArray) -> dict[str, Value]:
     """Return results over the second half of a driven run, each with half the width of its 95 % interval.
 
     Accelerations and the power lost are means over equal intervals of the length of a mean output step.
@@ -329,11 +329,11 @@ def _steady_results(run: Record, base: Any) -> dict[str, Value]:
     count = min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
     even = np.linspace(0.5 * (time[0] + time[-1]), time[-1], count)
 
-    def late(x: Any) -> Any:
-        return np.interp(even, time, x)
+    def late(x: FloatArray) -> FloatArray:
+        return np.asarray(np.interp(even, time, x))
 
-    def late_rate(x: Any) -> Any:
-        return np.diff(late(x)) / (even[1] - even[0])
+    def late_rate(x: FloatArray) -> FloatArray:
+        return np.asarray(np.diff(late(x)) / (even[1] - even[0]))
 
     values: dict[str, Value] = {}
     least = _fewest_samples(run, even)
@@ -348,7 +348,7 @@ def _steady_results(run: Record, base: Any) -> dict[str, Value]:
     return values
 
 
-def _fewest_samples(run: Record, times: Any) -> float:
+def _fewest_samples(run: Record, times: FloatArray) -> float:
     """Return the fewest samples for an interval of a motion in which no damper acts, from its least damped mode; else 0."""
     arrays = run.arrays
     acts = np.any(arrays.impacts.time >= times[0]) if "impacts" in run.groups else arrays.contacts.any()
@@ -359,7 +359,7 @@ def _fewest_samples(run: Record, times: Any) -> float:
     return 0.0
 
 
-def _with_interval(key: str, x: Any, least: float, *, squared: bool = True) -> dict[str, Value]:
+def _with_interval(key: str, x: FloatArray, least: float, *, squared: bool = True) -> dict[str, Value]:
     """Return the root mean square, or the mean, of a steady series, and half the width of its 95 % interval."""
     series = x**2 if squared else x
     mean = float(np.mean(series))

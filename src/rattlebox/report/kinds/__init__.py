@@ -30,21 +30,21 @@ KINDS: Mapping[str, tuple[str, str]] = {
 }
 """Module in this folder, and its `Kind`, by the attribute `study` of a dataset; or "run" and "comparison"."""
 
-REGISTERED: dict[str, Kind] = {}
+REGISTERED: dict[str, Kind[Any]] = {}
 """Kinds of reports about studies of other packages, by the attribute `study`."""
 
 
-def kind_of(result: Any) -> Kind:
+def kind_of(result: object) -> Kind[Any]:
     """Return the kind of a result; datasets without one of their own are reported as sweeps."""
     found = _name(result)
     if found in REGISTERED:
         return REGISTERED[found]
     module, name = KINDS[found]
-    kind: Kind = getattr(import_module(f"{__name__}.{module}"), name)
+    kind: Kind[Any] = getattr(import_module(f"{__name__}.{module}"), name)
     return kind
 
 
-def _name(result: Any) -> str:
+def _name(result: object) -> str:
     if isinstance(result, Run):
         return "run"
     if isinstance(result, Comparison):

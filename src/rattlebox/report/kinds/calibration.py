@@ -144,7 +144,7 @@ def _call(result: xr.Dataset) -> Call:
     return Call("calibrate", arguments, first=source)
 
 
-KIND = Kind(
+KIND: Kind[xr.Dataset] = Kind(
     name="Calibration",
     cases=_cases,
     question=_question,

@@ -84,7 +84,7 @@ def _limits(comparison: Comparison) -> Iterator[Limit]:
         yield from (limit._replace(name=f"{name}: {limit.name}") for limit in run_limits(run))
 
 
-KIND = Kind(
+KIND: Kind[Comparison] = Kind(
     name="Comparison",
     cases=lambda comparison: {name: run.case for name, run in _runs(comparison).items()},
     question=_question,

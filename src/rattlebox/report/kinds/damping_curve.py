@@ -128,7 +128,7 @@ def _call(curves: Curves) -> Call | None:
     return Call("damping_curve", arguments)
 
 
-KIND = Kind(
+KIND: Kind[Curves] = Kind(
     name="Damping curve",
     cases=_cases,
     question=_question,

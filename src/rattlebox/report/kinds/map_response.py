@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -65,7 +65,9 @@ def _answer(response: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _place(response: xr.Dataset, values: xr.DataArray, pick: Callable[[Array], Any]) -> tuple[dict[Hashable, int], str]:
+def _place(
+    response: xr.Dataset, values: xr.DataArray, pick: Callable[[Array], np.intp]
+) -> tuple[dict[Hashable, int], str]:
     """Return the indices of the picked arrangement of dampers, and a phrase about it."""
     indices = np.unravel_index(int(pick(values.values)), values.shape)
     best = {dim: int(index) for dim, index in zip(values.dims, indices, strict=True)}
@@ -132,7 +134,7 @@ def _worst(errors: xr.DataArray) -> str:
     return amount(float(errors.max()), "%", 2) if np.isfinite(errors).any() else "unknown"
 
 
-KIND = Kind(
+KIND: Kind[xr.Dataset] = Kind(
     name="Response from a loss map",
     cases=_cases,
     question=_question,

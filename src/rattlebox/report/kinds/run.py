@@ -119,7 +119,7 @@ def _about(run: Run) -> Iterator[str]:
         yield f"Method: {origin.method}."
 
 
-KIND = Kind(
+KIND: Kind[Run] = Kind(
     name="Run",
     cases=lambda run: {"": run.case},
     question=_question,

@@ -54,7 +54,7 @@ def _pictures(run: UnfinishedRun) -> Iterator[Picture]:
         )
 
 
-KIND = Kind(
+KIND: Kind[UnfinishedRun] = Kind(
     name="Unfinished run",
     cases=lambda run: {"": run.case},
     question=lambda run: case_question(run.case),
