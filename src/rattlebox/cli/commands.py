@@ -177,12 +177,7 @@ def fmu(
 
 
 @_command(example="pack case.toml --alone -o damper.bin")
-def pack(
-    ctx: typer.Context,
-    case: _CaseFile,
-    out: _NamedAfterCase = None,
-    alone: _Alone = False,
-) -> None:
+def pack(ctx: typer.Context, case: _CaseFile, out: _NamedAfterCase = None, alone: _Alone = False) -> None:
     """Write a case as a packed case, for the C interface rattlebox.h."""
     _check_single(ctx, case)
     from rattlebox.cli.component import write_packed
@@ -275,12 +270,11 @@ def report(
     results: Annotated[
         list[Path],
         typer.Argument(
-            help="Folder written by run or sweep, or a file run.nc. Several runs are compared with each other.",
+            help="Folder written by run or sweep, or a file run.nc. Several runs are compared with each other."
         ),
     ],
     out: Annotated[
-        Path | None,
-        _out("File to write (HTML); default named after the first results, in the current folder."),
+        Path | None, _out("File to write (HTML); default named after the first results, in the current folder.")
     ] = None,
     title: Annotated[str | None, typer.Option(help="Title of the page.")] = None,
     question: Annotated[str | None, typer.Option(help="Question that the results answer, one sentence.")] = None,
@@ -294,9 +288,7 @@ def report(
 
 
 @app.command(cls=_Command, epilog="Example: rattlebox demo -o demo")
-def demo(
-    out: Annotated[Path, _out("Folder for results.")] = Path("demo"),
-) -> None:
+def demo(out: Annotated[Path, _out("Folder for results.")] = Path("demo")) -> None:
     """Simulate a steel ball on a pulsed structure with two restitution models and compare them."""
     from rattlebox.cli.demo import run_demo
 
@@ -323,9 +315,7 @@ def browser_app(
 
 
 @app.command(cls=_Command, epilog="Example: rattlebox schema -o case.schema.json")
-def schema(
-    out: Annotated[Path | None, _out("File to write; default: print on the terminal.")] = None,
-) -> None:
+def schema(out: Annotated[Path | None, _out("File to write; default: print on the terminal.")] = None) -> None:
     """Write the JSON Schema of case files, with which an editor completes and checks them."""
     import json
 

@@ -68,8 +68,7 @@ def _plot(path: Path, out: Path, options: PlotOptions) -> None:
         raise CaseError(str(error)) from None
     if (kind == "particles" or isinstance(run, Snapshots)) and default_renderer() == "plain":
         terminal().print(
-            "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'",
-            soft_wrap=True,
+            "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'", soft_wrap=True
         )
 
 

@@ -21,13 +21,7 @@ from rattlebox._util.own_files import claim, list_files
 from rattlebox._util.progress import progress_bar
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
-from rattlebox.cli.folder import (
-    CHECKPOINT,
-    RUN,
-    SNAPSHOTS,
-    RunFolder,
-    reserve_folder,
-)
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, RunFolder, reserve_folder
 from rattlebox.cli.terminal import terminal
 from rattlebox.engines.checkpoint import CheckpointMismatch
 from rattlebox.engines.simulate import simulate
@@ -89,14 +83,7 @@ def _simulate(case: Case, folder: RunFolder) -> Run:
 
 
 def run_case(
-    path: Path,
-    out: Path,
-    *,
-    csv: bool,
-    mat: bool,
-    figures: bool,
-    checkpoint: Path | None = None,
-    replace: bool = False,
+    path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, checkpoint: Path | None = None, replace: bool = False
 ) -> None:
     """Simulate a case file, write its results and print its summary."""
     case = Case.from_file(path)

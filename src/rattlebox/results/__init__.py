@@ -6,14 +6,4 @@ from .provenance import Provenance
 from .run import Run, load
 from .summary import Comparison, Summary, compare
 
-__all__ = [
-    "Comparison",
-    "Ledger",
-    "Provenance",
-    "Run",
-    "RunArrays",
-    "Summary",
-    "Table",
-    "compare",
-    "load",
-]
+__all__ = ["Comparison", "Ledger", "Provenance", "Run", "RunArrays", "Summary", "Table", "compare", "load"]

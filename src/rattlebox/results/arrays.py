@@ -232,9 +232,9 @@ class RunArrays(_Frozen):
         raise AttributeError(explain_absence(name, vars(self).get("engine", "impact")))
 
     @property
-    def labels(self) -> dict[str, Any]:
+    def labels(self) -> dict[str, tuple[str, ...] | NDArray[Any]]:
         """Coordinates by dimension: times, labels, and numbers of modes (from 1) and particles (from 0)."""
-        known: dict[str, Any] = {
+        known: dict[str, tuple[str, ...] | NDArray[Any]] = {
             "time": self.time,
             "point": self.points,
             "ball": self.balls,

@@ -2,46 +2,60 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .schema import dimensions, groups, variables
+from .schema import Dimension, Variable, dimensions, groups, variables
 
 if TYPE_CHECKING:
     import xarray
 
     from .record import Record
 
+Labels = tuple[str, ...] | NDArray[Any]
+"""Labels along a dimension: names, or numbers."""
 
-def columns(run: Record, group: str) -> dict[str, Any]:
-    """Return the values of all variables of a group, stored and derived, by name."""
-    engine = run.arrays.engine
+
+class Part(NamedTuple):
+    """A variable of a run with its values, and those of its dimensions that no earlier variable has, with their labels.
+
+    Dimensions without labels, such as the number of an impact, are not listed.
+    """
+
+    variable: Variable
+    values: NDArray[Any]
+    labels: list[tuple[Dimension, Labels]]
+
+
+def parts(run: Record, group: str, *, empty: bool = True) -> Iterator[Part]:
+    """Yield the variables of a group, stored and derived; `empty` also those along a dimension without labels."""
+    engine, labels = run.arrays.engine, run.arrays.labels
     stored = run.arrays if groups(engine)[group].along == "time" else getattr(run.arrays, group)
-    return {v.name: getattr(run.ledger if v.derived else stored, v.name) for v in variables(engine, group)}
+    seen: set[str] = set()
+    for v in variables(engine, group):
+        if empty or all(len(labels.get(dim, "-")) for dim in v.dims):
+            new = [dim for dim in v.dims if dim in labels and dim not in seen]
+            seen.update(new)
+            values = getattr(run.ledger if v.derived else stored, v.name)
+            yield Part(v, values, [(dimensions(engine)[dim], labels[dim]) for dim in new])
 
 
 def dataset(run: Record, group: str) -> xarray.Dataset:
     """Return the labelled dataset of a group; every variable has `units` and `long_name`."""
     import xarray
 
-    engine = run.arrays.engine
     data: dict[str, Any] = {}
     coords: dict[str, Any] = {}
-    values, labels = columns(run, group), run.arrays.labels
-    for v in variables(engine, group):
-        attrs = {"units": v.units, "long_name": v.long_name}
-        target = coords if v.coordinate else data
-        target[v.name] = (v.dims, values[v.name], attrs)
-        for dim in v.dims:
-            if dim not in labels or dim in coords:
-                continue
-            described = dimensions(engine)[dim]
-            meaning = {"long_name": described.long_name} | ({"units": described.units} if described.units else {})
-            label = labels[dim]
+    for v, values, labels in parts(run, group):
+        for dim, names in labels:
+            meaning = {"long_name": dim.long_name} | ({"units": dim.units} if dim.units else {})
             # NumPy would convert an empty tuple to an array of floats.
-            label = np.array(label, dtype=str) if isinstance(label, tuple) else label
-            coords[dim] = (dim, label, meaning)
-    attrs = {"title": groups(engine)[group].title, "status": run.status, "message": run.message}
+            coords[dim.name] = (dim.name, np.array(names, str) if isinstance(names, tuple) else names, meaning)
+        target = coords if v.coordinate else data
+        target[v.name] = (v.dims, values, {"units": v.units, "long_name": v.long_name})
+    attrs = {"title": groups(run.arrays.engine)[group].title, "status": run.status, "message": run.message}
     return xarray.Dataset(data, coords, attrs | asdict(run.provenance) | {"case": run.case_toml})

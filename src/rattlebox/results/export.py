@@ -16,8 +16,8 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import claim, list_files
 from rattlebox._util.owned_folder import digest_of
 
-from .datasets import columns
-from .schema import dimensions, groups, variables
+from .datasets import parts
+from .schema import groups
 
 if TYPE_CHECKING:
     from .record import Record
@@ -49,24 +49,15 @@ def to_mat(run: Record, path: Path) -> Path:
 
     check_suffix(path, ".mat")
     require_folder(path)
-    engine, labels = run.arrays.engine, run.arrays.labels
     content: dict[str, Any] = {}
     units: dict[str, dict[str, str]] = {}
     for group in run.groups:
-        values = columns(run, group)
-        struct: dict[str, Any] = {}
-        unit: dict[str, str] = {}
-        for v in variables(engine, group):
-            for dim in v.dims:
-                if dim not in labels or dim in struct:
-                    continue
-                label = labels[dim]
-                struct[dim] = as_cells(label) if isinstance(label, tuple) else as_column(label)
-                unit[dim] = dimensions(engine)[dim].units
-            struct[v.name] = as_column(values[v.name])
-            unit[v.name] = v.units
-        content[group] = struct
-        units[group] = unit
+        struct, unit = content.setdefault(group, {}), units.setdefault(group, {})
+        for v, values, labels in parts(run, group):
+            for dim, names in labels:
+                struct[dim.name] = as_cells(names) if isinstance(names, tuple) else as_column(names)
+                unit[dim.name] = dim.units
+            struct[v.name], unit[v.name] = as_column(values), v.units
     info: dict[str, Any] = asdict(run.provenance)
     info |= {
         "case_toml": run.case_toml,
@@ -78,12 +69,7 @@ def to_mat(run: Record, path: Path) -> Path:
         "diagnostics": dict(run.diagnostics) or np.zeros((0, 0)),
     }
     with atomic_write(path, _DISK_HINT) as name:
-        savemat(
-            name,
-            content | {"units": units, "info": info},
-            long_field_names=True,
-            appendmat=False,
-        )
+        savemat(name, content | {"units": units, "info": info}, long_field_names=True, appendmat=False)
     return path
 
 
@@ -94,18 +80,16 @@ def _header(name: str, label: str, units: str) -> str:
 
 def _columns(run: Record, group: str) -> Iterator[tuple[str, NDArray[Any]]]:
     """Return header and values of every column of a CSV file, the index first."""
-    engine, labels = run.arrays.engine, run.arrays.labels
-    values = columns(run, group)
-    along = groups(engine)[group].along
+    labels, along = run.arrays.labels, groups(run.arrays.engine)[group].along
     if along == "time":
         yield _header("time", "", "s"), run.arrays.time
-    for v in variables(engine, group):
+    for v, values, _ in parts(run, group):
         if v.dims[0] != along:
             continue
         # One column for each label of the other dimensions, such as each ball, or each axis of each damper.
         for index in product(*(range(len(labels[dim])) for dim in v.dims[1:])):
-            labelled = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], index, strict=True))
-            yield _header(v.name, labelled, v.units), values[v.name][:, *index]
+            label = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], index, strict=True))
+            yield _header(v.name, label, v.units), values[(slice(None), *index)]
 
 
 def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:

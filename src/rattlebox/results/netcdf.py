@@ -34,9 +34,9 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import register_format
 
 from .arrays import RunArrays
-from .datasets import columns
+from .datasets import Labels, parts
 from .provenance import Provenance
-from .schema import COUNTS, DIAGNOSTICS, Engine, Kind, dimensions, groups, variables
+from .schema import COUNTS, DIAGNOSTICS, Engine, Kind, groups, variables
 from .snapshots import ROOT as SNAPSHOTS
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _write_text(group: Node, name: str, text: str, long_name: str) -> None:
     _describe(variable, long_name=long_name, _Encoding="utf-8")
 
 
-def _write_coordinate(group: Node, dim: str, values: Any, units: str, long_name: str) -> None:
+def _write_coordinate(group: Node, dim: str, values: Labels, units: str, long_name: str) -> None:
     group.dimensions[dim] = len(values)
     if isinstance(values, tuple):
         characters = _characters(values)
@@ -123,30 +123,22 @@ def _write_numbers(
 
 def _write_group(file: Node, run: Record, name: str) -> None:
     """Write a dataset of the run with its coordinates."""
-    engine, labels = run.arrays.engine, run.arrays.labels
+    group = groups(run.arrays.engine)[name]
     target = file.create_group(name)
-    along = groups(engine)[name].along
-    _describe(target, title=groups(engine)[name].title)
-    values = columns(run, name)
-    for v in variables(engine, name):
-        # A dimension of length zero would be an unlimited one in netCDF.
-        if any(dim in labels and len(labels[dim]) == 0 for dim in v.dims):
-            continue
-        for dim in v.dims:
-            if dim in target.dimensions:
-                continue
-            if dim in labels:
-                described = dimensions(engine)[dim]
-                _write_coordinate(target, dim, labels[dim], described.units, described.long_name)
-            else:
-                target.dimensions[dim] = None
-                target.resize_dimension(dim, len(values[v.name]))
+    _describe(target, title=group.title)
+    # A dimension of length zero would be an unlimited one in netCDF.
+    for v, values, labels in parts(run, name, empty=False):
+        for dim, names in labels:
+            _write_coordinate(target, dim.name, names, dim.units, dim.long_name)
+        grows = group.along not in run.arrays.labels
+        if grows and group.along not in target.dimensions:
+            target.dimensions[group.along] = None
+            target.resize_dimension(group.along, len(values))
         # HDF5 needs chunks for a dimension that can grow, such as the number of impacts.
-        data = values[v.name]
-        chunks = {} if along in labels else {"chunks": (max(data.size, 1),)}
-        variable = target.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **_filters(data))
-        if data.size:
-            variable[...] = data
+        chunks = {"chunks": (max(values.size, 1),)} if grows else {}
+        variable = target.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **_filters(values))
+        if values.size:
+            variable[...] = values
         _describe(variable, units=v.units, long_name=v.long_name)
 
 
