@@ -44,6 +44,7 @@ FORMAT = 3
 _FREE_FIELDS: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}
 """Fields of the case that may differ when a run resumes: the results do not depend on them."""
 
+_OTHER_FILE = "another file, or remove this one"
 _DISK_HINT = "free disk space and give the same command again; it resumes from the last checkpoint"
 
 
@@ -106,9 +107,11 @@ def read_unfinished(path: Path) -> Unfinished:
     except (DataError, MemoryError):
         raise
     except Exception:  # NumPy and zipfile raise nearly any exception for damaged files
-        raise DataError(
-            f"{path} is not an intact checkpoint: its description is damaged", "another file, or remove this one"
-        ) from None
+        raise _damaged(path, "its description") from None
+
+
+def _damaged(path: Path, block: str) -> DataError:
+    return DataError(f"{path} is not an intact checkpoint: {block} is damaged", _OTHER_FILE)
 
 
 class Checkpoint:
@@ -176,9 +179,7 @@ class Checkpoint:
             raise
         # NumPy and zipfile raise nearly any exception for damaged files; `block` is the part that was being read.
         except Exception:
-            raise DataError(
-                f"{self.path} is not an intact checkpoint: {block} is damaged", "another file, or remove this one"
-            ) from None
+            raise _damaged(self.path, block) from None
         self.time = data.time
         return data
 
@@ -188,7 +189,7 @@ class Checkpoint:
             raise CheckpointMismatch(
                 f"{self.path} holds another run\n  the case files agree but their numbers differ: a file that the case "
                 "names has changed, or a library that prepares the run",
-                "another file, or remove this one",
+                _OTHER_FILE,
             )
 
     def write(self, dem: _core.Dem, packed: _core.DemProblem, records: _core.Records, seconds: float) -> None:
@@ -199,8 +200,7 @@ class Checkpoint:
             "time": time,
             "seconds": seconds,
             "numbers": self._fingerprint(packed),
-            **self._about,
-        }
+        } | self._about
         arrays = {f"records.{name}": getattr(records, name) for name in records.fields()}
         arrays |= {f"position.{k}": cavity.position for k, cavity in enumerate(packed.cavities)}
         arrays["state"] = dem.save()
@@ -217,7 +217,7 @@ class Checkpoint:
     def _compare(self, about: Mapping[str, Any]) -> None:
         stored = {name: about[name] for name in self._about}
         if lines := differences(stored, self._about):
-            hint = "another file, or remove this one"
+            hint = _OTHER_FILE
             if len(lines) == 1 and stored["core"] != self._about["core"]:
                 hint = f"RATTLEBOX_SIMD={stored['core']} in the environment, or another file"
             raise CheckpointMismatch("\n".join([f"{self.path} holds another run", *lines]), hint)

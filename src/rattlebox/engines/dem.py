@@ -31,6 +31,7 @@ from rattlebox.results.arrays import RunArrays
 from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
+from rattlebox.results.schema import PARTNERS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,10 +88,9 @@ def continue_dem(
 
 def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
     """Raise if a file cannot be written, or both are the same."""
-    if checkpoint is not None and checkpoint.is_dir():
-        raise DataError(f"{checkpoint} is a folder; a checkpoint must be a file", f"{checkpoint / 'run.checkpoint'}")
-    if snapshots is not None and snapshots.is_dir():
-        raise DataError(f"{snapshots} is a folder; snapshots must be a file", f"{snapshots / 'run.vtkhdf'}")
+    for file, kind, name in ((checkpoint, "a checkpoint", "run.checkpoint"), (snapshots, "snapshots", "run.vtkhdf")):
+        if file is not None and file.is_dir():
+            raise DataError(f"{file} is a folder; {kind} must be a file", str(file / name))
     if snapshots is not None:
         check_suffix(snapshots, ".vtkhdf")
     if checkpoint is not None and snapshots is not None and checkpoint.resolve() == snapshots.resolve():
@@ -101,11 +101,7 @@ def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
 
 
 def _simulate(
-    case: Case,
-    threads: int | None,
-    progress: Progress | None,
-    file: Checkpoint | None,
-    snapshots: Path | None,
+    case: Case, threads: int | None, progress: Progress | None, file: Checkpoint | None, snapshots: Path | None
 ) -> Run:
     method = instance(case.method, Dem)
     data = None if file is None else file.read()
@@ -148,45 +144,26 @@ def _result(
     overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
     lost = sum((getattr(raw, name)[-1].sum(axis=1) for name in LOSSES), np.zeros(len(arrays.dampers)))
     moves = arrays.base_velocity[:, None] + arrays.cavity_velocity
-    softened = effects(
-        resolved_case,
-        step.motions,
-        moves,
-        lost,
-        totals.enduring_loss,
-        raw.rolling_loss[-1].sum(axis=1),
-        _relative_speeds(arrays),
-    )
+    rolled = raw.rolling_loss[-1].sum(axis=1)
+    speeds_inside = _relative_speeds(arrays)
+    softened = effects(resolved_case, step.motions, moves, lost, totals.enduring_loss, rolled, speeds_inside)
     diagnostics, notes = step_diagnostics(resolved_case, prepared.tables, step, overlaps, speeds, softened)
     touches = totals.first_touches
     name, message = _status_and_message(resolved_case, arrays, dem, status, step, active.checkpoint)
+    notes = [*notes, *prepared.notes, *plausibility_notes(resolved_case)]
+    if status == Status.finished:
+        notes += particle_notes(resolved_case, touches, arrays.contacts, arrays.centre_of_mass, overlaps)
+    notes += [*table_notes(resolved_case, speeds), *extrapolation_notes(totals.extrapolated)]
+    counts = {count: getattr(totals, count) for count in ("steps", "rebuilds", "refreshes")}
+    counts |= {f"first_touches_{partner}": int(touches[:, Partner[partner]].sum()) for partner in PARTNERS}
     return Run(
         arrays,
         case,
         Provenance.now(method=case.method.kind, seed=case.seed),
         status=name,
         message=message,
-        notes=(
-            *notes,
-            *prepared.notes,
-            *plausibility_notes(resolved_case),
-            *(
-                particle_notes(resolved_case, touches, arrays.contacts, arrays.centre_of_mass, overlaps)
-                if status == Status.finished
-                else ()
-            ),
-            *table_notes(resolved_case, speeds),
-            *extrapolation_notes(totals.extrapolated),
-        ),
-        counts={
-            "steps": totals.steps,
-            "rebuilds": totals.rebuilds,
-            "refreshes": totals.refreshes,
-            "first_touches_particle": int(touches[:, Partner.particle].sum()),
-            "first_touches_wall": int(touches[:, Partner.wall].sum()),
-            "extrapolated": totals.extrapolated,
-            "memory_bytes": totals.memory_bytes,
-        },
+        notes=tuple(notes),
+        counts=counts | {"extrapolated": totals.extrapolated, "memory_bytes": totals.memory_bytes},
         diagnostics={**diagnostics, **prepared.fills},
         wall_time=active.seconds,
     )
@@ -255,10 +232,8 @@ def _status_and_message(
     softened = case.particle_dampers[cavity].softening_factor > 1
     name, message = describe(status, stopped.time, where, stopped.speed, case.method.kind, softened=softened)
     if status == Status.interrupted:
-        return (
-            name,
-            message if checkpoint is None else f"{message} Run the case again to resume from {checkpoint.path}.",
-        )
+        again = "" if checkpoint is None else f" Run the case again to resume from {checkpoint.path}."
+        return name, message + again
     message += f" The step was {step.dt:.4g} s."
     if checkpoint is not None and checkpoint.time is not None:
         message += f" The last checkpoint, at t = {checkpoint.time:.6g} s, is in {checkpoint.path.name}."

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,16 @@ if TYPE_CHECKING:
     from rattlebox.results.arrays import Table
 
 
+Damper = TypeVar("Damper", "ImpactDamper", "ParticleDamper")
+
 _CONTACT_GAP = 1e-9
 """Gap over the clearance below which a ball counts as touching."""
+
+
+def _named(dampers: Sequence[Damper]) -> Iterator[tuple[str, Damper]]:
+    """Yield dampers with their names, in which line breaks are spaces."""
+    for index, damper in enumerate(dampers):
+        yield " ".join(damper.label(index).split()), damper
 
 
 def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tuple[str, ...]:
@@ -38,9 +46,8 @@ def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tu
     """
     notes: list[str] = []
     first = 0
-    for index, damper in enumerate(case.impact_dampers):
+    for index, (name, damper) in enumerate(_named(case.impact_dampers)):
         count = len(damper.balls)
-        name = " ".join(damper.label(index).split())
         here = impacts.damper == index
         if here.any():
             notes += _deep_overlaps(damper, name, impacts.contact[here], impacts.peak_overlap[here])
@@ -61,8 +68,7 @@ def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[n
         Largest overlap [m] and approach speed [m/s] of each contact, those of one damper after the other; 0 without contact.
     """
     first = 0
-    for index, damper in enumerate(case.impact_dampers):
-        name = " ".join(damper.label(index).split())
+    for name, damper in _named(case.impact_dampers):
         count = len(damper.balls) + 1
         contacts = slice(first, first + count)
         touched = np.flatnonzero(speeds[contacts])
@@ -94,8 +100,7 @@ def validity_limits(case: Case, prepared: Prepared | None) -> Iterator[ContactLi
         yield from _limits_of_particles(prepared)
         return
     first = 0
-    for index, damper in enumerate(case.impact_dampers):
-        name = " ".join(damper.label(index).split())
+    for name, damper in _named(case.impact_dampers):
         radii, shares = _overlap_limits(damper)
         for k, law in enumerate(_contact_laws(damper)):
             yield ContactLimit("overlap", first + k, radii[k] * shares[k], _deep(name, shares[k]))
@@ -111,8 +116,8 @@ def _limits_of_particles(prepared: Prepared) -> Iterator[ContactLimit]:
     from scipy.optimize import brentq  # takes as long to import as a short run
 
     case, step = prepared.case, prepared.step
-    for index, (damper, table) in enumerate(zip(case.particle_dampers, prepared.tables, strict=True)):
-        name = " ".join(damper.label(index).split())
+    dampers = zip(_named(case.particle_dampers), prepared.tables, strict=True)
+    for index, ((name, damper), table) in enumerate(dampers):
         yield ContactLimit("overlap", index, MAX_OVERLAP, _deep(name, MAX_OVERLAP))
 
         def steps(log_speed: float, damper: ParticleDamper = damper, table: ContactTable = table) -> float:
@@ -123,13 +128,11 @@ def _limits_of_particles(prepared: Prepared) -> Iterator[ContactLimit]:
         slowest, fastest = -6.0, 6.0
         if steps(slowest) > 0 > steps(fastest):
             speed = 10 ** float(brentq(steps, slowest, fastest, xtol=1e-6))
-            yield ContactLimit(
-                "speed",
-                index,
-                speed,
+            text = (
                 f"approach speeds in {name} leave fewer than {MIN_STEPS_PER_CONTACT:g} steps in a contact: export the "
-                "damper with a motion that is as fast, or with a shorter step",
+                "damper with a motion that is as fast, or with a shorter step"
             )
+            yield ContactLimit("speed", index, speed, text)
         for contact in dict.fromkeys(entry.contact for entry in table.entries):
             yield from _limit_of_table(contact, name, index)
 
@@ -219,8 +222,7 @@ def table_notes(case: Case, speeds: Sequence[float]) -> Iterator[str]:
     speeds
         Largest approach speed in each damper [m/s].
     """
-    for index, (damper, speed) in enumerate(zip(case.particle_dampers, speeds, strict=True)):
-        name = " ".join(damper.label(index).split())
+    for (name, damper), speed in zip(_named(case.particle_dampers), speeds, strict=True):
         yield from dict.fromkeys(
             note for entry in damper.contact_table.entries for note in _fast_impact(entry.contact, name, speed)
         )
@@ -303,8 +305,7 @@ def particle_notes(
     centre_of_mass
         Centre of mass of the particles in each cavity, (T, dampers, 3) [m].
     """
-    for index, damper in enumerate(case.particle_dampers):
-        name = " ".join(damper.label(index).split())
+    for index, (name, damper) in enumerate(_named(case.particle_dampers)):
         yield from _beyond_measurement(name, _deepest_measured(damper, overlaps[index]))
         if not first_touches[index].any() and not contacts[:, index].any():
             room = float(damper.cavity.room(damper.start.position, damper.contents.radius).min())

@@ -87,12 +87,7 @@ def simulate(
         if snapshots is None and case.output.snapshots:
             raise Hint("output.snapshots requests snapshots, but no file is given", 'snapshots="run.vtkhdf"')
         with progress_bar(progress, "steps") as report:
-            return simulate_dem(
-                case,
-                progress=report,
-                checkpoint=_path(checkpoint),
-                snapshots=_path(snapshots),
-            )
+            return simulate_dem(case, progress=report, checkpoint=_path(checkpoint), snapshots=_path(snapshots))
     if checkpoint is not None or snapshots is not None:
         raise Hint(
             "the case has no particles; checkpoints and snapshots are for particle dampers only", "leave them out"
@@ -105,10 +100,7 @@ def _path(path: str | os.PathLike[str] | None) -> Path | None:
 
 
 def simulate_many(
-    cases: Iterable[Case],
-    *,
-    threads: int | None = None,
-    progress: bool | Callable[[int, int], object] = True,
+    cases: Iterable[Case], *, threads: int | None = None, progress: bool | Callable[[int, int], object] = True
 ) -> list[Run]:
     """Run several cases at the same time, each 1-D case on one thread.
 

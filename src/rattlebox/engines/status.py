@@ -67,13 +67,8 @@ ADVICE: dict[Status, dict[str, str]] = {
         "dem": "Shorten dt, or use a smaller fraction.",
     },
     Status.refused: {"": "Run the variant alone to see the reason."},
-    Status.false_contact: {
-        "": "Compare with another method, and report the case.",
-    },
-    Status.escaped: {
-        "": "Shorten dt, or use a stiffer contact.",
-        "softened": "Shorten dt, or lower the softening.",
-    },
+    Status.false_contact: {"": "Compare with another method, and report the case."},
+    Status.escaped: {"": "Shorten dt, or use a stiffer contact.", "softened": "Shorten dt, or lower the softening."},
 }
 """Advice by status and kind of method; "" for all other methods, "softened" for softened contacts."""
 
