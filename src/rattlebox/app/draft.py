@@ -82,7 +82,7 @@ class Draft:
                 return None
         return node
 
-    def set_value(self, path: Path_, value: Any) -> None:
+    def set_value(self, path: Path_, value: object) -> None:
         """Set the value at a path; None removes it. The text is written anew, without its comments."""
         if not self.is_toml:  # a change of older tables would replace the text that the user is writing
             return
@@ -133,14 +133,14 @@ def by_field(message: str) -> dict[str, str]:
     return errors
 
 
-def outside(node: Any, folder: Path) -> None:
+def outside(node: object, folder: Path) -> None:
     """Raise if a case names a file that is not in the folder."""
     for file in _named_files(node):
         if not (folder / file).resolve().is_relative_to(folder.resolve()):
             raise rb.CaseError(f"case: the file {file!r} is outside of the folder of this page", f"a copy in {folder}")
 
 
-def _named_files(node: Any, is_file: bool = False) -> list[str]:
+def _named_files(node: object, is_file: bool = False) -> list[str]:
     if isinstance(node, str):
         return [node] if is_file else []
     if isinstance(node, dict):
@@ -157,7 +157,7 @@ def _has_long_key(text: str) -> bool:
     return False
 
 
-def _depth(node: Any) -> int:
+def _depth(node: object) -> int:
     """Return the depth of nested tables and lists, without recursion."""
     # Level by level: a recursion would itself be too deep for what is to be refused.
     level, deepest = [node], 0
@@ -175,7 +175,7 @@ def _depth(node: Any) -> int:
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s].*)?$")
 
 
-def quantity(value: Any) -> tuple[float, str] | None:
+def quantity(value: object) -> tuple[float, str] | None:
     """Return number and unit of a value such as "0.4 mm" or 0.5; None if it is something else."""
     if isinstance(value, bool):
         return None
@@ -190,21 +190,21 @@ def rounded(value: float) -> float:
     return float(f"{value:.4g}")
 
 
-def numeric_paths(node: Any, above: Path_ = ()) -> list[Path_]:
+def numeric_paths(node: object, above: Path_ = ()) -> list[Path_]:
     """Return the paths of all single numbers with or without a unit in the tables of a case."""
     if isinstance(node, (dict, list)):
-        items: Sequence[tuple[Any, Any]] = list(node.items() if isinstance(node, dict) else enumerate(node))
+        items: Sequence[tuple[str | int, object]] = list(node.items() if isinstance(node, dict) else enumerate(node))
         if isinstance(node, list) and not all(isinstance(item, dict) for item in node):
             return []
         return [path for key, item in items for path in numeric_paths(item, (*above, key))]
     return [above] if above and quantity(node) is not None else []
 
 
-def leaves(toml: str) -> dict[str, Any]:
+def leaves(toml: str) -> dict[str, object]:
     """Return all single values and lists of a case file by path, but for the descriptions of materials."""
-    values: dict[str, Any] = {}
+    values: dict[str, object] = {}
 
-    def walk(node: Any, path: Path_) -> None:
+    def walk(node: object, path: Path_) -> None:
         if isinstance(node, dict):
             for key, item in node.items():
                 walk(item, (*path, key))
@@ -218,7 +218,7 @@ def leaves(toml: str) -> dict[str, Any]:
     return values
 
 
-def short(value: Any) -> str:
+def short(value: object) -> str:
     """Return a value of a case file as text of at most 30 characters."""
     if isinstance(value, list):
         return ", ".join(map(short, value)) if len(value) < 4 else f"{len(value)} values"

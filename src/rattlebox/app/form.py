@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 from nicegui import ui
+from nicegui.elements.mixins.validation_element import ValidationElement
 
 import rattlebox as rb
 
@@ -67,7 +68,7 @@ def helps(table: Schema) -> dict[str, str]:
     return found
 
 
-def fields(table: Schema, given: Any) -> list[tuple[str, Schema, bool]]:
+def fields(table: Schema, given: object) -> list[tuple[str, Schema, bool]]:
     """Return name, schema and whether it is shown at once, of the fields of a table; of synonyms only one."""
     # Synonyms, such as damper and dampers, share their title; the one that is set is shown.
     by_title: dict[str, list[str]] = {}
@@ -83,7 +84,7 @@ def fields(table: Schema, given: Any) -> list[tuple[str, Schema, bool]]:
     return sorted(result, key=lambda entry: not entry[2])
 
 
-def parse(text: str) -> Any:
+def parse(text: str) -> object:
     """Return the value that a user typed: a number, a list, true or false, else text; None for nothing."""
     text = text.strip()
     if not text:
@@ -95,7 +96,7 @@ def parse(text: str) -> Any:
     return value if isinstance(value, (int, float, list, bool)) else text
 
 
-def written(value: Any) -> str:
+def written(value: object) -> str:
     """Return a value as a user types it."""
     return value if isinstance(value, str) else "" if value is None else json.dumps(value)
 
@@ -105,8 +106,8 @@ class Form:
 
     def __init__(self, draft: Draft, changed: Callable[[], object]) -> None:
         self._draft, self._changed = draft, changed
-        self._inputs: dict[str, Any] = {}
-        self._labels: dict[str, Any] = {}
+        self._inputs: dict[str, ValidationElement] = {}
+        self._labels: dict[str, ui.label] = {}
         self.box = ui.column().classes("w-full gap-1")
         self.follow_case()
 
@@ -146,7 +147,7 @@ class Form:
             label = self._labels[holder if holder in self._labels else ""]
             label.set_text("\n".join(filter(None, [label.text, text])))
 
-    def _set(self, path: Path_, value: Any, *, rebuild: bool = False) -> None:
+    def _set(self, path: Path_, value: object, *, rebuild: bool = False) -> None:
         if self._silent:
             return
         self._draft.set_value(path, value)
@@ -157,7 +158,7 @@ class Form:
     def _error_label(self, name: str) -> None:
         self._labels[name] = ui.label("").classes("text-red-700 text-sm whitespace-pre-wrap")
 
-    def _table(self, table: Schema, path: Path_, given: Any) -> None:
+    def _table(self, table: Schema, path: Path_, given: object) -> None:
         texts, rest = helps(table), []
         for name, node, shown in fields(table, given):
             if shown:
@@ -196,7 +197,7 @@ class Form:
                 where = path if number is None else (*path, number)
                 self._item(choices, where, item)
 
-    def _add_button(self, choices: list[Schema], path: Path_, value: Any, several: bool) -> None:
+    def _add_button(self, choices: list[Schema], path: Path_, value: object, several: bool) -> None:
         def add(kind: str) -> None:
             item = {"kind": kind} if kind else {}
             if value is None:
@@ -212,7 +213,7 @@ class Form:
             for kind in kinds:
                 ui.menu_item(kind.replace("_", " "), on_click=lambda kind=kind: add(kind))
 
-    def _item(self, choices: list[Schema], path: Path_, item: Any) -> None:
+    def _item(self, choices: list[Schema], path: Path_, item: object) -> None:
         if not isinstance(item, dict):
             return
         kinds = {kind_of(choice): choice for choice in choices}

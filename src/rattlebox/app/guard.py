@@ -5,8 +5,9 @@ from __future__ import annotations
 import secrets
 from collections.abc import Iterable
 from http.cookies import CookieError, SimpleCookie
-from typing import Any
 from urllib.parse import parse_qs, unquote
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 MOST_BYTES = 2_000_000
 """Largest body of a request [B]."""
@@ -15,11 +16,11 @@ MOST_BYTES = 2_000_000
 class Guard:
     """ASGI middleware that accepts requests of the user's browser only."""
 
-    def __init__(self, app: Any, token: str, hosts: Iterable[str]) -> None:
+    def __init__(self, app: ASGIApp, token: str, hosts: Iterable[str]) -> None:
         self._app, self._token, self._hosts = app, token, frozenset(hosts)
         self._cookie = "rattlebox_" + "".join(c for c in min(self._hosts) if c.isalnum())
 
-    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Forward a request or refuse it."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
@@ -32,7 +33,7 @@ class Guard:
         # The token in the address becomes a cookie, so that later requests do not carry it in their addresses.
         cookie = f"{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/".encode()
 
-        async def with_cookie(message: Any) -> None:
+        async def with_cookie(message: Message) -> None:
             if message["type"] == "http.response.start" and self._has_token_in_url(scope):
                 extra = [(b"set-cookie", cookie), (b"referrer-policy", b"no-referrer")]
                 message = {**message, "headers": [*message.get("headers", []), *extra]}
@@ -40,7 +41,7 @@ class Guard:
 
         await self._app(scope, _limited(receive), with_cookie)
 
-    def _refusal(self, scope: Any, headers: dict[str, str]) -> tuple[int, str] | None:
+    def _refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
         if headers.get("host") not in self._hosts:
             return 403, "another host"
         # Pages of other origins can send requests to this port; browsers state their origin.
@@ -60,7 +61,7 @@ class Guard:
             return 400, "the length of the body is not a number"
         return None
 
-    def _has_token_in_url(self, scope: Any) -> bool:
+    def _has_token_in_url(self, scope: Scope) -> bool:
         try:
             tokens = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=50).get("token", [""])
         except ValueError:  # too many fields
@@ -75,11 +76,11 @@ class Guard:
         return morsel is not None and secrets.compare_digest(morsel.value.encode(), self._token.encode())
 
 
-def _limited(receive: Any) -> Any:
+def _limited(receive: Receive) -> Receive:
     """Return `receive` that ends a body, also one in parts, which is too large."""
     size = 0
 
-    async def receive_part() -> Any:
+    async def receive_part() -> Message:
         nonlocal size
         message = await receive()
         if message["type"] == "http.request":
@@ -91,7 +92,7 @@ def _limited(receive: Any) -> Any:
     return receive_part
 
 
-async def _refuse(scope: Any, send: Any, status: int, reason: str) -> None:
+async def _refuse(scope: Scope, send: Send, status: int, reason: str) -> None:
     if scope["type"] == "websocket":
         await send({"type": "websocket.close", "code": 1008, "reason": reason})
         return

@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from nicegui import run as threads
 from nicegui import ui
+from nicegui.events import EChartPointClickEventArguments, ValueChangeEventArguments
+from numpy.typing import NDArray
 
 import rattlebox as rb
 
@@ -20,6 +22,10 @@ from .jobs import TaskFailed, Worker
 from .results import MAP_FORMATS, download_map, maps, new_name, stored_map
 from .runs import offer
 from .views import prefixed
+
+Array = NDArray[Any]
+Options = dict[str, Any]
+"""Options of ECharts."""
 
 NONE = "(none)"
 VIRIDIS = ["#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#fde725"]
@@ -48,8 +54,8 @@ class MapTab:
         self._draft, self._folder, self._show = draft, folder, show
         self._worker: Worker | None = None
         self._name = ""
-        self._typed: dict[str, Any] = {}
-        self._grid: tuple[list[str], list[np.ndarray[Any, Any]], list[str]] | None = None
+        self._typed: dict[str, tuple[object, ...]] = {}
+        self._grid: tuple[list[str], list[Array], list[str]] | None = None
         self._proposed: dict[int, tuple[str, str]] = {}
         self._rows = [self._row(number) for number in range(2)]
         self.follow_case()
@@ -180,7 +186,7 @@ class MapTab:
         if worker is not None:
             worker.stop()
 
-    async def _open_map(self, event: Any) -> None:
+    async def _open_map(self, event: ValueChangeEventArguments) -> None:
         """Show a map of the folder."""
         if event.value:
             self._name, self._typed = event.value, {}
@@ -225,7 +231,7 @@ class MapTab:
         self._chart.options.update(draw(scale * values.values, points, titles, label, texts))
         self._chart.update()
 
-    def _as_typed(self, axis: str, values: Any, unit: str) -> tuple[Any, str]:
+    def _as_typed(self, axis: str, values: Array, unit: str) -> tuple[Array, str]:
         """Return the values of an axis in the unit in which the user typed its range, and this unit."""
         typed = [quantity(text) for text in self._typed.get(axis, ())[:2]]
         for stored, end in zip((values[0], values[-1]), typed, strict=False):
@@ -233,7 +239,7 @@ class MapTab:
                 return values * (end[0] / stored), end[1]
         return values, unit
 
-    def _watch_point(self, event: Any) -> None:
+    def _watch_point(self, event: EChartPointClickEventArguments) -> None:
         """Put the values of a point of the map into the case."""
         if self._grid is None:
             return
@@ -257,25 +263,25 @@ class MapTab:
         await offer(self._failure, download_map, self._folder, self._name, suffix)
 
 
-def _number(text: Any) -> Any:
+def _number(text: str | int) -> str | float:
     try:
         return float(text)
     except ValueError:
         return text
 
 
-def _axis(kind: str, title: str, gap: int, **more: Any) -> dict[str, Any]:
+def _axis(kind: str, title: str, gap: int, **more: object) -> Options:
     return {"type": kind, "name": title, "nameLocation": "middle", "nameGap": gap, "scale": True, **more}
 
 
-def _counted(texts: Any) -> str:
+def _counted(texts: Array) -> str:
     """Return the remarks on the points of a map in lines, with the number of points that have each."""
     parts = [part for text in texts.ravel() if text for part in text.split("; ")]
     lines = [f"warning: {parts.count(part)} of {texts.size} points: {part}" for part in dict.fromkeys(parts)]
     return "\n".join([*lines, "The triangles mark these points."] if lines else [])
 
 
-def _marks(texts: Any, data: list[Any]) -> dict[str, Any]:
+def _marks(texts: Array, data: list[list[Any]]) -> Options:
     """Return triangles at the points with remarks: place in the picture, number of the point, and text."""
     marked = [
         {"value": [*place[:2], number], "name": text}
@@ -286,7 +292,7 @@ def _marks(texts: Any, data: list[Any]) -> dict[str, Any]:
     return {"type": "scatter", "data": marked, "animation": False, "tooltip": {"formatter": "{b}"}, **form}
 
 
-def _lines(values: Any, points: list[Any], titles: list[str], label: str, texts: Any) -> dict[str, Any]:
+def _lines(values: Array, points: list[Array], titles: list[str], label: str, texts: Array) -> Options:
     data = [[float(x), _finite(y)] for x, y in zip(points[0], values, strict=True)]
     line = {"type": "line", "data": data, "symbolSize": 8, "color": rb.plots.SERIES_COLOURS[0], "animation": False}
     steps = points[0][1:] / points[0][:-1] if (points[0] > 0).all() else np.zeros(1)
@@ -300,7 +306,7 @@ def _lines(values: Any, points: list[Any], titles: list[str], label: str, texts:
     }
 
 
-def _heat(values: Any, points: list[Any], titles: list[str], label: str, texts: Any) -> dict[str, Any]:
+def _heat(values: Array, points: list[Array], titles: list[str], label: str, texts: Array) -> Options:
     cells = [[i, j, _finite(values[i, j])] for i in range(values.shape[0]) for j in range(values.shape[1])]
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
@@ -313,12 +319,9 @@ def _heat(values: Any, points: list[Any], titles: list[str], label: str, texts: 
         "xAxis": _axis("category", titles[0], 30, data=first),
         "yAxis": _axis("category", titles[1], 60, data=second),
         "visualMap": {**colours, "seriesIndex": 0, "top": "center", "text": [f"{high:.4g}", f"{low:.4g}"]},
-        "series": [
-            {"type": "heatmap", "data": cells, "animation": False},
-            _marks(texts, cells),
-        ],
+        "series": [{"type": "heatmap", "data": cells, "animation": False}, _marks(texts, cells)],
     }
 
 
-def _finite(value: Any) -> float | None:
+def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 from nicegui import app, ui
 from nicegui import run as threads
+from nicegui.events import UploadEventArguments, ValueChangeEventArguments
 
 import rattlebox as rb
 
@@ -200,7 +201,7 @@ class Page:
             box.classes(**{"remove" if self.draft.is_toml else "add": "opacity-50 pointer-events-none"})
         self._changed()
 
-    def _text_edited(self, event: Any) -> None:
+    def _text_edited(self, event: ValueChangeEventArguments) -> None:
         if event.value != self.draft.text:
             self.draft.set_text(event.value or "")
             self._follow(self._text)
@@ -240,7 +241,7 @@ class Page:
         for label in (self._summary, self._warnings, self._notes, self._about):
             label.set_text("")
 
-    def _use_template(self, event: Any) -> None:
+    def _use_template(self, event: ValueChangeEventArguments) -> None:
         if event.value is not None:
             self.use_text(template(event.value), PINNED.get(event.value, USUAL))
 
@@ -481,7 +482,7 @@ class Page:
                 button = ui.button(name, on_click=lambda name=name: self._open(name)).on_click(dialog.close)
                 button.props("flat dense no-caps")
 
-            async def read(event: Any) -> None:
+            async def read(event: UploadEventArguments) -> None:
                 dialog.close()
                 self._use_file(event.file.name, await event.file.read())
 

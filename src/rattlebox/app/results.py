@@ -9,11 +9,11 @@ import re
 import tempfile
 import tomllib
 import zipfile
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from errno import EEXIST
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -187,27 +187,37 @@ def download(folder: Path, name: str, suffix: str) -> bytes:
         return run.case.to_toml().encode()
     if suffix == "py":
         return python_script(run.case.to_toml()).encode()
+    if suffix == "csv":
+        return _zipped(run, name)
+    write: dict[str, Callable[[Path], object]] = {
+        "mat": run.to_mat,
+        "png": lambda file: run.plot.motion().savefig(file, dpi=200),
+        "html": run.report,
+    }
+    return _written(f"{name}.{suffix}", write, FORMATS)
+
+
+def _zipped(run: rb.Run, name: str) -> bytes:
+    """Return the tables of a run in an archive."""
+    content = io.BytesIO()
+    with tempfile.TemporaryDirectory() as scratch, zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
+        for file in run.to_csv(scratch):
+            archive.write(file, f"{name}/{file.name}")
+    return content.getvalue()
+
+
+def _written(name: str, write: Mapping[str, Callable[[Path], object]], formats: Iterable[str]) -> bytes:
+    """Return the content of a file that one of the functions, by suffix, writes."""
+    suffix = name.rpartition(".")[2]
+    if suffix not in write:
+        raise rb.DataError(f"{suffix!r} is not a kind of file", ", ".join(formats))
     with tempfile.TemporaryDirectory() as scratch:
-        target = Path(scratch) / f"{name}.{suffix}"
-        if suffix == "csv":
-            files = run.to_csv(scratch)
-            packed = io.BytesIO()
-            with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-                for file in files:
-                    archive.write(file, f"{name}/{file.name}")
-            return packed.getvalue()
-        if suffix == "mat":
-            run.to_mat(target)
-        elif suffix == "png":
-            run.plot.motion().savefig(target, dpi=200)
-        elif suffix == "html":
-            run.report(target)
-        else:
-            raise rb.DataError(f"{suffix!r} is not a kind of file", ", ".join(FORMATS))
-        return target.read_bytes()
+        file = Path(scratch) / name
+        write[suffix](file)
+        return file.read_bytes()
 
 
-def stored_map(folder: Path, name: str) -> tuple[Any, str]:
+def stored_map(folder: Path, name: str) -> tuple[xr.Dataset, str]:
     """Return the study of a map and the name of the drawn variable: its measure, or the ratio to that without damper."""
     store = inside(folder, name, ".zarr")
     study = rb.open_study(store).load()
@@ -221,7 +231,7 @@ def stored_map(folder: Path, name: str) -> tuple[Any, str]:
     return study.assign({f"{measure}_ratio": ratio}), f"{measure}_ratio"
 
 
-def map_script(study: Any, drawn: str) -> str:
+def map_script(study: xr.Dataset, drawn: str) -> str:
     """Return a Python script that computes a map as the page draws it."""
     measure = json.loads(study.attrs["measures"])[0]
     axes = {str(dim): study[dim].values.tolist() for dim in study[measure].dims}
@@ -246,14 +256,9 @@ def download_map(folder: Path, name: str, suffix: str) -> bytes:
         # The words of the flags stand beside each row, since a table has no legend.
         words = rb.study_remarks(study).rename("remarks")
         return bytes(study.assign(remarks=words).to_dataframe().to_csv().encode())
-    with tempfile.TemporaryDirectory() as scratch:
-        target = Path(scratch) / f"{name}.{suffix}"
-        if suffix == "nc":
-            study.to_netcdf(target)
-        elif suffix == "png":
-            rb.plot_map(study, drawn).savefig(target, dpi=200)
-        elif suffix == "html":
-            rb.write_report(study, target)
-        else:
-            raise rb.DataError(f"{suffix!r} is not a kind of file", ", ".join(MAP_FORMATS))
-        return target.read_bytes()
+    write: dict[str, Callable[[Path], object]] = {
+        "nc": study.to_netcdf,
+        "png": lambda file: rb.plot_map(study, drawn).savefig(file, dpi=200),
+        "html": lambda file: rb.write_report(study, file),
+    }
+    return _written(f"{name}.{suffix}", write, MAP_FORMATS)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from nicegui import ui
+from nicegui.events import GenericEventArguments
 
 from .draft import FIRST, Draft, Path_, dotted, numeric_paths, quantity, rounded
 from .form import written
@@ -62,14 +63,14 @@ class Sliders:
         share = not unit and abs(number) <= 1
         low = (-1.0 if name.endswith("start") else 0.0) if share else -1.0
 
-        def text(position: float) -> Any:
+        def text(position: float) -> str | float:
             value = rounded(position if share else number * 4**position)
             return f"{value:g} {unit}" if unit else value
 
         with ui.column().classes("gap-0").style("width:150px"):
             label = ui.label(f"{name.removeprefix('damper.')}: {written(self._draft.value(path))}").classes("text-xs")
 
-            def move(event: Any) -> None:
+            def move(event: GenericEventArguments) -> None:
                 value = text(float(event.args))
                 label.set_text(f"{name.removeprefix('damper.')}: {written(value)}")
                 self._shown[1][name] = value

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 import rattlebox as rb
 
 from .binary import encode
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+Arrays = dict[str, Array]
+Chart = dict[str, Any]
+"""Chart or series for the browser."""
 
 MOST_SAMPLES = 6000
 """Samples of a curve; of longer runs every n-th sample is drawn, as the page states."""
@@ -32,7 +41,7 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     motion, energy = run.motion, run.energy
     time = motion.time.values
     rows = _rows(time.size)
-    arrays: dict[str, Any] = {"time": time[rows]}
+    arrays: Arrays = {"time": time[rows]}
     along = _along(run)
     points = (
         [str(point) for point in motion.point.values] if "displacement" in motion and run.case.modes.decay.size else []
@@ -82,13 +91,13 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
 
 def comparison(runs: Mapping[str, rb.Run]) -> bytes:
     """Return charts of several runs: motion of the first point, or of the base, and losses in the dampers."""
-    arrays: dict[str, Any] = {}
+    arrays: Arrays = {}
     losses = {
         name: sum((_total(run.energy[each]) for each in _LOSSES if each in run.energy), np.zeros(run.motion.time.size))
         for name, run in runs.items()
     }
     unit, scale = prefixed("J", losses.values())
-    charts: list[dict[str, Any]] = [
+    charts: list[Chart] = [
         {"title": "Motion of the first point", "x": "Time (s)", "y": "Displacement (mm)", "series": []},
         {"title": "Energy lost in the dampers", "x": "Time (s)", "y": f"Energy ({unit})", "series": []},
     ]
@@ -105,13 +114,13 @@ def comparison(runs: Mapping[str, rb.Run]) -> bytes:
     return encode(arrays, charts=charts)
 
 
-def _charts(arrays: dict[str, Any], points: Sequence[str], run: rb.Run, unit: str) -> list[dict[str, Any]]:
+def _charts(arrays: Arrays, points: Sequence[str], run: rb.Run, unit: str) -> list[Chart]:
     """Return the charts of a run: title, labels of the axes, and series with their arrays and the number of their colour."""
 
-    def series(number: int, name: str, y: str, x: str = "time", **more: Any) -> dict[str, Any]:
+    def series(number: int, name: str, y: str, x: str = "time", **more: object) -> Chart:
         return {"name": name, "x": x, "y": y, "colour": number, **more}
 
-    def chart(title: str, x: str, y: str, lines: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+    def chart(title: str, x: str, y: str, lines: list[Chart], **more: object) -> Chart:
         return {"title": title, "x": x, "y": y, "series": lines, **more}
 
     motion = [series(k, point, f"displacement {point}") for k, point in enumerate(points)]
@@ -153,7 +162,7 @@ _LOSSES = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 """Losses in dampers."""
 
 
-def prefixed(unit: str, values: Iterable[Any]) -> tuple[str, float]:
+def prefixed(unit: str, values: Iterable[ArrayLike]) -> tuple[str, float]:
     """Return the unit with a prefix, and the factor to it, for numbers in an SI unit; the largest is then at least 2."""
     finite = [np.abs(each[np.isfinite(each)]) for each in map(np.asarray, values)]
     largest = max((float(each.max(initial=0.0)) for each in finite), default=0.0)
@@ -168,7 +177,7 @@ def _rows(count: int) -> slice:
     return slice(0, None, max(1, -(-count // MOST_SAMPLES)))
 
 
-def _along(run: rb.Run) -> np.ndarray[Any, Any] | None:
+def _along(run: rb.Run) -> Array | None:
     """Return the direction of the first damper; None if the motion is along one line."""
     if "axis" not in run.motion.dims:
         return None
@@ -178,22 +187,22 @@ def _along(run: rb.Run) -> np.ndarray[Any, Any] | None:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
-def _component(values: Any, along: Any) -> Any:
-    return values if values.ndim == 1 or along is None else values @ along
+def _component(values: Array, along: Array | None) -> Array:
+    return values if values.ndim == 1 or along is None else np.asarray(values @ along)
 
 
-def _total(values: Any) -> np.ndarray[Any, Any]:
+def _total(values: xr.DataArray) -> Array:
     """Return an energy summed over all modes, dampers and partners."""
     others = tuple(axis for axis, dim in enumerate(values.dims) if dim != "time")
     return np.asarray(values.values.sum(axis=others), float)
 
 
-def _balls(run: rb.Run, rows: slice) -> dict[str, Any]:
+def _balls(run: rb.Run, rows: slice) -> Arrays:
     """Return positions in the cavity, the phase portrait, the impacts and the frames of a 1-D run."""
     motion, log = run.motion, run.impacts
     time = motion.time.values
     frames = np.linspace(time[0], time[-1], min(MOST_FRAMES, max(2, time.size)))
-    arrays: dict[str, Any] = {"frame time": frames}
+    arrays: Arrays = {"frame time": frames}
     if run.case.modes.decay.size:
         names = [str(point) for point in motion.point.values]
         point = run.case.impact_dampers[0].point if run.case.impact_dampers else None

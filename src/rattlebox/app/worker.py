@@ -118,7 +118,9 @@ def _view(result: rb.Run, case: rb.Case, compare: bool) -> bytes:
     return view_of_run(result, bare)
 
 
-def sweep(report: Report, toml: str, folder: str, name: str, axes: dict[str, Any], measure: str, compare: bool) -> None:
+def sweep(
+    report: Report, toml: str, folder: str, name: str, axes: dict[str, tuple[Any, ...]], measure: str, compare: bool
+) -> None:
     """Run a case over one or two axes and write the map to the folder, and the same without dampers if requested."""
     case = rb.Case.from_toml(toml, folder=Path(folder))
     spaced = {path: _spaced(*values) for path, values in axes.items()}
