@@ -13,7 +13,8 @@ from matplotlib.patches import Patch
 from ..model.errors import Hint
 from ..results.figures import study_figure
 from .labels import StudyAxis, unit_of
-from .style import FAINT, INK, Size, Style, StyledFigure, figure_style, map_colours, pen
+from .style import FAINT, INK, StyledFigure, figure_style, map_colours, pen
+from .types import Size, Style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,12 +23,7 @@ if TYPE_CHECKING:
 
 _COLOURED = 6
 _OTHER, _NONE, _FAILED, _TRANSIENT = range(_COLOURED, _COLOURED + 4)
-_TEXTS = {
-    _OTHER: "smaller basins",
-    _NONE: "no period found",
-    _FAILED: "did not finish",
-    _TRANSIENT: "still transient",
-}
+_TEXTS = {_OTHER: "smaller basins", _NONE: "no period found", _FAILED: "did not finish", _TRANSIENT: "still transient"}
 
 
 @study_figure("basins")

@@ -16,20 +16,8 @@ from ..model.errors import Hint, nearest
 from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
 from .labels import LabelledValues, capitalised, name_of, unit_of
-from .style import (
-    FAINT,
-    INK,
-    SERIES_COLOURS,
-    Size,
-    Style,
-    StyledFigure,
-    Vector,
-    figure_style,
-    label,
-    legend_above,
-    pen,
-    scaled,
-)
+from .style import FAINT, INK, SERIES_COLOURS, StyledFigure, figure_style, label, legend_above, pen, scaled
+from .types import Size, Style, Vector
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,19 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .labels import capitalised
-from .style import (
-    FAINT,
-    INK,
-    SERIES_COLOURS,
-    SERIES_MARKERS,
-    Size,
-    Style,
-    StyledFigure,
-    figure_style,
-    label,
-    pen,
-    scaled,
-)
+from .style import FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, StyledFigure, figure_style, label, pen, scaled
+from .types import Size, Style
 
 if TYPE_CHECKING:
     import xarray as xr

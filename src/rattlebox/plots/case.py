@@ -17,7 +17,8 @@ from ..results.case_words import each_damper
 from ..results.figures import run_figure
 from .case_dampers import draw_damper
 from .case_structures import draw_structure
-from .style import Size, StyledFigure, figure_style, shorten
+from .style import StyledFigure, figure_style, shorten
+from .types import Size
 
 _MAX_DAMPERS = 3
 """Most dampers in a drawing; further ones are named below it."""

@@ -20,8 +20,9 @@ from ..model.packing import Bed
 from ..model.particle_damper import ParticleDamper
 from ..prepare.settle import settle
 from .spheres import draw_spheres
-from .style import FAINT, INK, SERIES_COLOURS, Style, pen
+from .style import FAINT, INK, SERIES_COLOURS, pen
 from .technical import SOLID, arrow, dimension, text
+from .types import Style
 
 Array = NDArray[np.float64]
 

@@ -21,8 +21,9 @@ from ..model.shear_buildings import ShearBuilding
 from ..model.structures import SDOF, Fixed, Shaker, StructurePart
 from ..model.tuned_mass import TunedMass
 from ..results.case_words import each_damper
-from .style import FAINT, INK, SERIES_COLOURS, Style, label, pen, scaled, shorten
+from .style import FAINT, INK, SERIES_COLOURS, label, pen, scaled, shorten
 from .technical import LOAD_COLOUR, SOLID, Point, arrow, body, dashpot, dimension, ground, mark, spring, text
+from .types import Style
 
 Marks = Mapping[int, str]
 """Text in the mark of each damper, by its number in the case."""

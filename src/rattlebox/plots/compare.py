@@ -13,7 +13,8 @@ from rattlebox._util.exceptions import CaseError
 from ..results import Run
 from .energy import draw_ledger
 from .motion import ball_displacements, draw_cavity, draw_structure
-from .style import Size, StyledFigure, figure_style, letters, scaled, shorten, time_axis
+from .style import StyledFigure, figure_style, letters, scaled, shorten, time_axis
+from .types import Size
 
 
 def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:

@@ -8,18 +8,8 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from .style import (
-    FAINT,
-    SERIES_COLOURS,
-    SERIES_MARKERS,
-    SERIES_STYLES,
-    Size,
-    StyledFigure,
-    figure_style,
-    label,
-    pen,
-    scaled,
-)
+from .style import FAINT, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, StyledFigure, figure_style, label, pen, scaled
+from .types import Size
 
 if TYPE_CHECKING:
     import xarray

@@ -14,7 +14,8 @@ from rattlebox.studies.work.measures import INTERVAL
 
 from ..results.figures import study_figure
 from .labels import LabelledValues, capitalised
-from .style import INK, SERIES_COLOURS, Size, Style, StyledFigure, Vector, figure_style, label, legend_above, pen
+from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, label, legend_above, pen
+from .types import Size, Style, Vector
 
 if TYPE_CHECKING:
     import xarray as xr

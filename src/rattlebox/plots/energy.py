@@ -13,7 +13,6 @@ from .style import (
     INK,
     SERIES_STYLES,
     Scale,
-    Size,
     StyledFigure,
     figure_style,
     label,
@@ -22,6 +21,7 @@ from .style import (
     scaled,
     time_axis,
 )
+from .types import Size
 
 LOG_DECADES = 6.0
 _LEDGER_LABELS = {

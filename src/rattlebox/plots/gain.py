@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
 from ..results import Run
-from .style import CHANNEL_COLOURS, FAINT, INK, Style, StyledFigure, figure_style, label, pen, scaled, time_axis
+from .style import CHANNEL_COLOURS, FAINT, INK, StyledFigure, figure_style, label, pen, scaled, time_axis
+from .types import Style
 
 MOMENTS = 8
 """Number of pictures of the ball in its cavity."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from matplotlib.patches import Patch
 
-from .style import FAINT, Style, pen
+from .style import FAINT, pen
+from .types import Style
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,10 +16,7 @@ from .style import (
     FAINT,
     INK,
     SERIES_COLOURS,
-    Size,
-    Style,
     StyledFigure,
-    Vector,
     figure_style,
     label,
     letters,
@@ -28,6 +25,7 @@ from .style import (
     shorten,
     time_axis,
 )
+from .types import Size, Style, Vector
 
 _SIDES: dict[str, Style] = {
     "trailing wall": {"marker": "o", "color": "colour", "linewidths": 0.0},

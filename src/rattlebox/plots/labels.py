@@ -9,7 +9,8 @@ from matplotlib.ticker import Formatter
 
 from rattlebox._util.quantities import quantity, without_zeros
 
-from .style import Vector, label, scaled, shorten
+from .style import label, scaled, shorten
+from .types import Vector
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 
 from .gaps import gaps_of
 from .labels import REPLICA, LabelledValues, StudyAxis, log_ticks, name_of, upper_limit, value_of
-from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, Style, Vector, colour_bar, map_colours, pen
+from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, colour_bar, map_colours, pen
+from .types import Style, Vector
 
 if TYPE_CHECKING:
     import xarray as xr

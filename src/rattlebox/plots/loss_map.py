@@ -11,7 +11,8 @@ from .gaps import add_gap_legend
 from .labels import value_of
 from .lines import draw_lines
 from .maps import draw_map
-from .style import Size, StyledFigure, figure_style, letters, shorten
+from .style import StyledFigure, figure_style, letters, shorten
+from .types import Size
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,8 @@ from rattlebox._util.exceptions import CaseError
 
 from ..results.figures import study_figure
 from .labels import StudyAxis, unit_of
-from .style import FAINT, INK, SERIES_COLOURS, Size, Style, StyledFigure, colour_bar, figure_style, label, pen
+from .style import FAINT, INK, SERIES_COLOURS, StyledFigure, colour_bar, figure_style, label, pen
+from .types import Size, Style
 
 if TYPE_CHECKING:
     import xarray

@@ -11,20 +11,8 @@ from matplotlib.lines import Line2D
 from .labels import log_ticks
 from .response import level_handles
 from .selection import select
-from .style import (
-    FAINT,
-    INK,
-    SERIES_COLOURS,
-    SERIES_STYLES,
-    Size,
-    Style,
-    StyledFigure,
-    Vector,
-    figure_style,
-    label,
-    pen,
-    scaled,
-)
+from .style import FAINT, INK, SERIES_COLOURS, SERIES_STYLES, StyledFigure, figure_style, label, pen, scaled
+from .types import Size, Style, Vector
 
 if TYPE_CHECKING:
     import xarray

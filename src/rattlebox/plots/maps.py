@@ -18,18 +18,8 @@ from .gaps import GREY, add_gap_legend, gaps_of
 from .labels import REPLICA, LabelledValues, StudyAxis, capitalised, upper_limit, value_of
 from .lines import draw_lines
 from .selection import select
-from .style import (
-    SERIES_COLOURS,
-    Size,
-    Style,
-    StyledFigure,
-    colour_bar,
-    figure_style,
-    legend_above,
-    letters,
-    map_colours,
-    shorten,
-)
+from .style import SERIES_COLOURS, StyledFigure, colour_bar, figure_style, legend_above, letters, map_colours, shorten
+from .types import Size, Style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -167,14 +157,7 @@ def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> 
 
 
 def draw_map(
-    figure: Figure,
-    axes: Axes,
-    study: xr.Dataset,
-    name: str,
-    x: str,
-    y: str,
-    *,
-    text: str | None = None,
+    figure: Figure, axes: Axes, study: xr.Dataset, name: str, x: str, y: str, *, text: str | None = None
 ) -> None:
     """Draw a measure in colours over two axes, with hatches where runs did not finish."""
     values = study[name]

@@ -10,21 +10,8 @@ from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
 from .panels import MAX_SERIES, draw_largest, draw_line, time_panels, time_window
-from .style import (
-    FAINT,
-    INK,
-    Scale,
-    Size,
-    Style,
-    Vector,
-    figure_style,
-    label,
-    legend_above,
-    pen,
-    scaled,
-    shorten,
-    time_axis,
-)
+from .style import FAINT, INK, Scale, figure_style, label, legend_above, pen, scaled, shorten, time_axis
+from .types import Size, Style, Vector
 
 MAX_NAME_LETTERS = 14
 WALL_DISTANCE = 3.0  # a wall farther away than this multiple of the balls' travel is not drawn

@@ -11,7 +11,8 @@ from rattlebox._util.exceptions import CaseError
 
 from ..results import RunArrays
 from ..results.summary import largest_points
-from .style import FAINT, SERIES_COLOURS, SERIES_STYLES, Size, StyledFigure, Vector, legend_above, pen
+from .style import FAINT, SERIES_COLOURS, SERIES_STYLES, StyledFigure, legend_above, pen
+from .types import Size, Vector
 
 MAX_SERIES = len(SERIES_COLOURS)
 

@@ -35,7 +35,8 @@ from ..results import Run
 from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots
 from .spheres import Renderer, draw_spheres
-from .style import INK, SERIES_COLOURS, WIDTHS, Size, StyledFigure, colour_bar, figure_style, map_colours, pen, scaled
+from .style import INK, SERIES_COLOURS, WIDTHS, StyledFigure, colour_bar, figure_style, map_colours, pen, scaled
+from .types import Size
 
 Array = NDArray[np.float64]
 

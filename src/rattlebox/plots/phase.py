@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from ..analysis import phase_portrait
 from ..results import Run
 from ..results.figures import run_figure
-from .style import FAINT, INK, Size, StyledFigure, colour_bar, figure_style, label, map_colours, pen, scaled
+from .style import FAINT, INK, StyledFigure, colour_bar, figure_style, label, map_colours, pen, scaled
+from .types import Size
 
 
 @run_figure("phase_portrait")

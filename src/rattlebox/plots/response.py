@@ -16,7 +16,8 @@ from ..model.errors import nearest
 from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
 from .labels import capitalised, log_ticks, name_of
-from .style import FAINT, INK, SERIES_COLOURS, Size, Style, StyledFigure, figure_style, label, pen, scaled
+from .style import FAINT, INK, SERIES_COLOURS, StyledFigure, figure_style, label, pen, scaled
+from .types import Size, Style
 
 if TYPE_CHECKING:
     import xarray
@@ -29,11 +30,7 @@ _DISPLACEMENTS = "amplitude", "peak", "rms", "bare_amplitude"
 
 @study_figure("frequency_response")
 def plot_frequency_response(
-    response: xarray.Dataset,
-    of: str | Sequence[str] | None = None,
-    *,
-    per_level: bool = False,
-    size: Size = "column",
+    response: xarray.Dataset, of: str | Sequence[str] | None = None, *, per_level: bool = False, size: Size = "column"
 ) -> Figure:
     """Draw measures of the steady motion over frequency, one colour per level and one panel per measure.
 

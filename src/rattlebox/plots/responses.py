@@ -15,7 +15,8 @@ from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
 from .panels import draw_largest, time_panels, time_window
-from .style import Scale, Size, Vector, figure_style, label, scaled, time_axis
+from .style import Scale, figure_style, label, scaled, time_axis
+from .types import Size, Vector
 
 QUANTITIES = {
     "displacement": ("Displacement", "m"),

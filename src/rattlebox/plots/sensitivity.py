@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..results.figures import study_figure
-from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, pen, shorten
+from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, pen, shorten
+from .types import Size
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -19,7 +19,7 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import CaseError
@@ -27,10 +27,7 @@ from rattlebox._util.narrow import present
 from rattlebox._util.own_files import seal
 from rattlebox._util.quantities import in_unit
 
-Size = Literal["column", "page", "slide"]
-Style = dict[str, Any]
-"""Options of artists of Matplotlib by name."""
-Vector = NDArray[np.float64]
+from .types import Size, Style, Vector
 
 WIDTHS: dict[Size, float] = {"column": 85.0, "page": 178.0, "slide": 254.0}
 """Width of a figure [mm]: one column and the full page of a journal, and a slide."""
@@ -57,14 +54,7 @@ CHANNEL_COLOURS: dict[str, str] = {
 """Fill colour of each energy channel; neighbours in the ledger differ clearly in lightness."""
 
 SERIES_COLOURS: tuple[str, ...] = ("#0b3d6b", "#d1742c", "#5f9ea0", "#a33b5c", "#8c8c2e", "#7a6fb0")
-SERIES_STYLES: tuple[Any, ...] = (
-    "-",
-    (0, (5, 1.5)),
-    (0, (1, 1.2)),
-    (0, (6, 1.5, 1, 1.5)),
-    (0, (3, 1)),
-    (0, (8, 2)),
-)
+SERIES_STYLES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1)), (0, (8, 2)))
 SERIES_MARKERS: tuple[str, ...] = ("o", "^", "s", "D", "v", "P")
 
 

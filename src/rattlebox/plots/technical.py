@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
-from .style import INK, SERIES_COLOURS, Style, pen
+from .style import INK, SERIES_COLOURS, pen
+from .types import Style
 
 SOLID = "#dfe6ec"
 """Fill of bodies."""
