@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import os
 import re
+import tomllib
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -338,6 +339,37 @@ def test_warnings_are_complete() -> None:
     for note in run.notes:
         assert str(typeset(note)) in page.source
     assert f"{100 * run.diagnostics['largest_overlap']:.3g} % of the radius" in page.text
+
+
+def test_overlaps_are_compared_with_the_radius_of_their_own_ball(tmp_path: Path) -> None:
+    """The limit of overlaps is that of the contact nearest to it; all other cases here have balls of one size."""
+    small, large = (
+        rb.ImpactDamper(
+            ball=rb.Sphere(radius=radius, material="steel"),
+            gap="0.2 mm",
+            contact=rb.Tsuji(restitution=0.6),
+            start=start,
+        )
+        for radius, start in (("2 mm", 0.0), ("25 mm", 0.9))
+    )
+    structure = rb.SDOF(mass="5 kg", frequency="40 Hz", damping_ratio=0.01, velocity="0.5 m/s")
+    run = rb.simulate(case(structure=structure, damper=(small, large), load=()))
+    log, radii = run.arrays.impacts, np.array([2e-3, 25e-3])
+    assert np.nanargmax(log.peak_overlap) != np.nanargmax(log.peak_overlap / radii[log.damper])
+    worst = amount(float(np.nanmax(log.peak_overlap / radii[log.damper])), "%", 3)
+    assert f"{worst} of the radius" in Page(run.report(tmp_path / "report.html")).text
+
+
+def test_every_limit_has_a_meaning_and_every_meaning_a_limit() -> None:
+    """The table of limits lists what the reports state; few results exceed enough limits to show all of them."""
+    folder = Path(rb.__file__).parent / "report"
+    table = tomllib.loads((folder / "limits.toml").read_text(encoding="utf-8"))
+    source = "".join(file.read_text(encoding="utf-8") for file in folder.rglob("*.py"))
+    source = source.replace("limit(_NAME,", 'limit("response_from_map",').replace(
+        'limit("choices" if only_choices else "design", "search"', 'limit("choices", "search") limit("design", "search"'
+    )
+    stated = set(re.findall(r'limit\(\s*"(\w+)",\s*"([^"]+)"', source))
+    assert stated == {(kind, name) for kind, meanings in table.items() for name in meanings}
 
 
 def test_user_texts_are_escaped(tmp_path: Path) -> None:

@@ -181,13 +181,5 @@ def _call(study: xr.Dataset) -> Call | None:
 
 
 KIND = words.study_kind(
-    "Design",
-    _question,
-    _answer,
-    _call,
-    _pictures,
-    cases=_cases,
-    tables=_tables,
-    limits=_limits,
-    about=_about,
+    "Design", _question, _answer, _call, _pictures, cases=_cases, tables=_tables, limits=_limits, about=_about
 )
