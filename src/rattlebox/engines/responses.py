@@ -38,61 +38,6 @@ def structure_arrays(
         Contact force on each cavity [N].
     shapes
         Mode shapes at each cavity, (M,) or (M, 3) [kg^-1/2].
-    """
-    modes = case.modes
-    at_points = _shapes_at_points(modes)
-    load = np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T
-    return {
-        "time": time,
-        "points": tuple(modes.lines()),
-        "loads": tuple(f"{signal.kind} {number}" for number, signal in enumerate(case.loads, 1)),
-        "displacement": q @ at_points.T,
-        "velocity": p @ at_points.T,
-        "base_displacement": base[0],
-        "base_velocity": base[1],
-        "base_acceleration": base[2],
-        "cavity_force": force,
-        "load": load,
-        "mode_frequency": np.sqrt(modes.stiffness) / (2 * np.pi),
-        "mode_energy": 0.5 * (p**2 + modes.stiffness * q**2),
-        **responses(case, q, p, load, base[2], force, shapes),
-    }
-
-
-def _shapes_at_points(modes: ModalModel) -> FloatArray:
-    """Return the mode shapes in the directions in which the points move, (P, M)."""
-    lines = modes.lines()
-    return np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
-
-
-def responses(
-    case: Case,
-    q: FloatArray,
-    p: FloatArray,
-    load: FloatArray,
-    base: FloatArray,
-    force: FloatArray,
-    shapes: Iterable[FloatArray],
-) -> dict[str, Any]:
-    """Compute accelerations, modal coordinates and the force on the base from modal motion and forces.
-
-    Parameters
-    ----------
-    q, p : (T, M) float
-        Modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
-    load : (T, L) float
-        Loads [N].
-    base : (T,) or (T, 3) float
-        Acceleration of the base [m/s^2]; three components in a 3-D run.
-    force : (T, D) or (T, D, 3) float
-        Contact force on each cavity [N].
-    shapes
-        Mode shapes at each cavity, (M,) or (M, 3) [kg^-1/2].
-
-    Returns
-    -------
-    dict of str to (T, ...) float
-        Variables of the group "motion", by name.
 
     Notes
     -----
@@ -106,7 +51,11 @@ def responses(
     ----------
     R. W. Clough, J. Penzien (1993), Dynamics of Structures, 2nd ed., McGraw-Hill, ISBN 0-07-011394-7.
     """
-    modes, three_d = case.modes, base.ndim == 2
+    modes, acceleration_of_base = case.modes, base[2]
+    three_d = acceleration_of_base.ndim == 2
+    lines = modes.lines()
+    at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
+    load = np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T
     # Forces of springs and dashpots in modal coordinates; coupled damping adds a full matrix.
     internal = 2 * modes.decay * p + modes.stiffness * q
     if modes.coupling is not None:
@@ -119,14 +68,26 @@ def responses(
         driven += force[:, index] @ shape.T if three_d else np.multiply.outer(force[:, index], shape)
     inertia = _inertia(case, modes, three_d)
     if inertia is not None:
-        driven -= base @ inertia.T if three_d else np.multiply.outer(base, inertia)
-    acceleration = (driven - internal) @ _shapes_at_points(modes).T
+        driven -= acceleration_of_base @ inertia.T if three_d else np.multiply.outer(acceleration_of_base, inertia)
+    acceleration = (driven - internal) @ at_points.T
     return {
+        "time": time,
+        "points": tuple(lines),
+        "loads": tuple(f"{signal.kind} {number}" for number, signal in enumerate(case.loads, 1)),
+        "displacement": q @ at_points.T,
+        "velocity": p @ at_points.T,
         "acceleration": acceleration,
-        "absolute_acceleration": acceleration + base_at_points(case, base),
+        "absolute_acceleration": acceleration + base_at_points(case, acceleration_of_base),
         "modal_displacement": q,
         "modal_velocity": p,
-        "interface_force": _interface_force(case, internal, inertia, force, base),
+        "base_displacement": base[0],
+        "base_velocity": base[1],
+        "base_acceleration": acceleration_of_base,
+        "cavity_force": force,
+        "interface_force": _interface_force(case, internal, inertia, force, acceleration_of_base),
+        "load": load,
+        "mode_frequency": np.sqrt(modes.stiffness) / (2 * np.pi),
+        "mode_energy": 0.5 * (p**2 + modes.stiffness * q**2),
     }
 
 

@@ -89,7 +89,7 @@ def _columns(run: Record, group: str) -> Iterator[tuple[str, NDArray[Any]]]:
         # One column for each label of the other dimensions, such as each ball, or each axis of each damper.
         for index in product(*(range(len(labels[dim])) for dim in v.dims[1:])):
             label = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], index, strict=True))
-            yield _header(v.name, label, v.units), values[(slice(None), *index)]
+            yield _header(v.name, label, v.units), np.moveaxis(values, 0, -1)[index]
 
 
 def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:
