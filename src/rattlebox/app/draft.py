@@ -157,7 +157,7 @@ def _has_long_key(text: str) -> bool:
     return False
 
 
-def _depth(node: object) -> int:
+def _depth(node: Any) -> int:
     """Return the depth of nested tables and lists, without recursion."""
     # Level by level: a recursion would itself be too deep for what is to be refused.
     level, deepest = [node], 0

@@ -106,7 +106,7 @@ class Form:
 
     def __init__(self, draft: Draft, changed: Callable[[], object]) -> None:
         self._draft, self._changed = draft, changed
-        self._inputs: dict[str, ValidationElement] = {}
+        self._inputs: dict[str, ValidationElement[Any]] = {}
         self._labels: dict[str, ui.label] = {}
         self.box = ui.column().classes("w-full gap-1")
         self.follow_case()

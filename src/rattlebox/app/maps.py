@@ -131,7 +131,7 @@ class MapTab:
         if draft.case is None or self._worker is not None:
             self._failure.set_text("" if draft.case else "The case is not valid; see the form.")
             return
-        axes = {}
+        axes: dict[str, tuple[object, ...]] = {}
         for name, low, high, count, spacing in self._rows:
             if name.value != NONE:
                 values = [int(v) if v.isdecimal() else v for v in (str(low.value).strip(), str(high.value).strip())]
@@ -186,7 +186,7 @@ class MapTab:
         if worker is not None:
             worker.stop()
 
-    async def _open_map(self, event: ValueChangeEventArguments) -> None:
+    async def _open_map(self, event: ValueChangeEventArguments[str | None]) -> None:
         """Show a map of the folder."""
         if event.value:
             self._name, self._typed = event.value, {}
@@ -244,10 +244,11 @@ class MapTab:
         if self._grid is None:
             return
         axes, points, units = self._grid
-        if isinstance(event.data, dict):  # one of the triangles
-            indices = list(np.unravel_index(event.data["value"][2], [len(each) for each in points]))
+        data: Any = event.data
+        if isinstance(data, dict):  # one of the triangles
+            indices = list(np.unravel_index(data["value"][2], [values.size for values in points]))
         else:
-            indices = [event.data_index] if len(axes) == 1 else [int(number) for number in event.data[:2]]
+            indices = [event.data_index] if len(axes) == 1 else [int(number) for number in data[:2]]
         draft = self._draft
         paths = {dotted(path): path for path in numeric_paths(draft.given)}
         for axis, values, unit, index in zip(axes, points, units, indices, strict=True):

@@ -201,7 +201,7 @@ class Page:
             box.classes(**{"remove" if self.draft.is_toml else "add": "opacity-50 pointer-events-none"})
         self._changed()
 
-    def _text_edited(self, event: ValueChangeEventArguments) -> None:
+    def _text_edited(self, event: ValueChangeEventArguments[str | None]) -> None:
         if event.value != self.draft.text:
             self.draft.set_text(event.value or "")
             self._follow(self._text)
@@ -241,7 +241,7 @@ class Page:
         for label in (self._summary, self._warnings, self._notes, self._about):
             label.set_text("")
 
-    def _use_template(self, event: ValueChangeEventArguments) -> None:
+    def _use_template(self, event: ValueChangeEventArguments[str | None]) -> None:
         if event.value is not None:
             self.use_text(template(event.value), PINNED.get(event.value, USUAL))
 
