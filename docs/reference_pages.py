@@ -14,7 +14,6 @@ from sphinx.util import logging
 
 import rattlebox as rb
 from rattlebox.model.base import Part
-from rattlebox.model.signatures import part_signature
 
 log = logging.getLogger(__name__)
 
@@ -152,8 +151,7 @@ def types_of(subject):
     if not callable(subject):
         return {}
     try:
-        part = isinstance(subject, type) and issubclass(subject, Part)
-        signature = part_signature(subject) if part else inspect.signature(subject)
+        signature = inspect.signature(subject)
     except (TypeError, ValueError):
         return {}
     return {

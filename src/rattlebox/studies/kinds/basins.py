@@ -186,7 +186,6 @@ class Basins(Study):
 
 
 basins = study_function(Basins)
-"""Run a study of this kind: see `Basins`."""
 
 
 def _plane(case: Case) -> dict[str, float]:

@@ -203,7 +203,6 @@ class Bifurcation(Study):
 
 
 bifurcation = study_function(Bifurcation)
-"""Run a study of this kind: see `Bifurcation`."""
 
 
 def _check_order(design: Grid, direction: str) -> None:

@@ -288,7 +288,6 @@ class Design(Study):
 
 
 design = study_function(Design)
-"""Run a study of this kind: see `Design`."""
 
 
 def _stopped(trials: Trials, store: Any) -> Stopped:

@@ -220,7 +220,6 @@ class FrequencyResponse(Study):
 
 
 frequency_response = study_function(FrequencyResponse)
-"""Run a study of this kind: see `FrequencyResponse`."""
 
 
 def _driver(case: Case) -> tuple[str, Harmonic]:

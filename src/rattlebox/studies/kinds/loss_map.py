@@ -42,8 +42,8 @@ class LossMap(Study):
     r"""Compute loss and effective mass of a damper on a shaker over amplitude and frequency.
 
     In the first harmonic, the force that drives the damper is its apparent mass m' - i m'' times the acceleration of the
-    cavity. For the structure, m' is an added mass, and pi m'' V^2 is the loss per cycle at the velocity amplitude V.
-    `rb.response_from_map` computes the response of structures from a map. `to_netcdf` writes it to a file.
+    cavity. For the structure, m' is an added mass, and :math:`\pi m'' V^2` is the loss per cycle at the velocity amplitude
+    V. `rb.response_from_map` computes the response of structures from a map. `to_netcdf` writes it to a file.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class LossMap(Study):
     Returns
     -------
     xarray.Dataset
-        Over amplitude and frequency: `loss_factor` m''/|m'|, `effective_mass` m' [kg], `damping_mass` m'' [kg],
+        Over amplitude and frequency: `loss_factor` :math:`m''/|m'|`, `effective_mass` m' [kg], `damping_mass` m'' [kg],
         `reduced_loss` (loss per cycle over m V^2), `loss_per_cycle` [J], `impacts_per_cycle` (impact dampers only),
         `force_harmonics` [N] (over `harmonic`, too: amplitudes of the force on the particles), `force_variation` [N] (of
         the complex amplitude of the first harmonic from cycle to cycle, root mean square), `status`; `particle_mass` m [kg].
@@ -160,4 +160,3 @@ class LossMap(Study):
 
 
 loss_map = study_function(LossMap)
-"""Run a study of this kind: see `LossMap`."""

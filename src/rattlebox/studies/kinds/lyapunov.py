@@ -163,7 +163,6 @@ class Lyapunov(Study):
 
 
 lyapunov = study_function(Lyapunov)
-"""Run a study of this kind: see `Lyapunov`."""
 
 
 @plain_dataclass

@@ -183,7 +183,6 @@ class Sensitivity(Study):
 
 
 sensitivity = study_function(Sensitivity)
-"""Run a study of this kind: see `Sensitivity`."""
 
 
 def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed: int) -> xr.Dataset:

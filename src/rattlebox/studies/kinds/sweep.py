@@ -136,7 +136,6 @@ class Sweep(Study):
 
 
 sweep = study_function(Sweep)
-"""Run a study of this kind: see `Sweep`."""
 
 
 def result_notes(work: ImpactWork | ParticleWork, result: xarray.Dataset) -> dict[str, str]:
