@@ -1,7 +1,7 @@
 """A few spheres in a cavity on the modes of a structure, in plain Python, written from the documentation only.
 
 Motion is integrated by the classical Runge-Kutta method. Begin and end of each contact are located to rounding, and steps
-begin there anew, short ones first, so that the restitution law and the contact history start at the begin of the contact.
+begin there anew, short ones first, so that the restitution law and the contact history start at the start of the contact.
 """
 
 import math
