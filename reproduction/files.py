@@ -55,7 +55,8 @@ def grouped(named: Mapping[str, Case], runs: Sequence[Case]) -> dict[str, Column
     """Group runs by the named case from which they differ in the fewest numbers, then by the least."""
     bases = {name: _fields(case) for name, case in named.items()}
     groups: dict[str, list[dict[str, float]]] = {name: [] for name in named}
-    for numbers, others in {repr(fields): fields for fields in map(_fields, runs)}.values():
+    different = {(*numbers.items(), *others.items()): (numbers, others) for numbers, others in map(_fields, runs)}
+    for numbers, others in different.values():
         changes = {
             name: {path: value for path, value in numbers.items() if base.get(path) != value}
             for name, (base, fixed) in bases.items()

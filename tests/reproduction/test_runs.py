@@ -1,5 +1,6 @@
 """Runs of figures as case and study files."""
 
+import numpy as np
 import pytest
 
 import rattlebox as rb
@@ -42,6 +43,12 @@ def test_a_run_belongs_to_the_nearest_case():
         "wall": {"damper.start": [0.9]},
         "centred": {"damper.start": [0.1], "load.amplitude": [100.0]},
     }
+
+
+def test_equal_runs_are_listed_once():
+    """Runs with equal numbers are listed once, also if one has numbers of NumPy; only runs with plain numbers were tested."""
+    runs = [paper_case(duration=9.0), paper_case().model_copy(update={"duration": np.float64(9.0)})]
+    assert grouped({"centred": paper_case()}, runs) == {"centred": {"duration": [9.0]}}
 
 
 def test_run_that_is_no_variant():
