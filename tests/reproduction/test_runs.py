@@ -46,7 +46,7 @@ def test_a_run_belongs_to_the_nearest_case():
 
 
 def test_equal_runs_are_listed_once():
-    """Runs with equal numbers are listed once, also if one has numbers of NumPy; only runs with plain numbers were tested."""
+    """Equal runs are listed once, also if one has numbers of NumPy; only plain numbers were tested."""
     runs = [paper_case(duration=9.0), paper_case().model_copy(update={"duration": np.float64(9.0)})]
     assert grouped({"centred": paper_case()}, runs) == {"centred": {"duration": [9.0]}}
 
