@@ -1,16 +1,22 @@
 """Displays in notebooks and representations in the interpreter."""
 
+import ast
 import copy
 import inspect
 import pickle
+import pydoc
 import re
+import typing
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.results import compare
+from rattlebox.results import compare, figures
+from rattlebox.results.arrays import RunArrays, Table
+from rattlebox.results.schema import BOTH, groups, variables
 
 TIME = np.linspace(0.0, 2.0, 20_001)
 
@@ -156,9 +162,54 @@ def test_signatures_are_readable(name, thing):
 def test_signatures_of_parts_have_the_names_of_calls():
     """The signature of a part has the accepted names, also the singular ones, and quantities accept text."""
     parameters = inspect.signature(rb.ImpactDamper).parameters
-    assert str(parameters["gap"]) == "gap: float | str | None = None"
+    assert str(parameters["gap"]) == "gap: number or text with unit | None = None"
     assert str(parameters["ball"]) == "ball: Sphere | None = None" and "kind" not in parameters
-    assert str(inspect.signature(rb.Box)) == "(*, size: tuple[float | str, float | str, float | str])"
+    length = "number or text with unit"
+    assert str(inspect.signature(rb.Box)) == f"(*, size: tuple[{length}, {length}, {length}])"
+    assert str(parameters["start"]) == "start: float | str | Sequence[float | str] = 0.0"
     assert str(inspect.signature(rb.Constant)).startswith("(e: float, *")
     inspect.signature(rb.Cylinder).bind(diameter="1 cm", length="2 cm")
     inspect.signature(rb.Random).bind("1 N^2/Hz", "1 s")
+
+
+@pytest.mark.parametrize("part", [rb.Record, rb.SDOF, rb.ParticleDamper, rb.Case], ids=lambda part: part.__name__)
+def test_help_shows_what_users_need(part):
+    """The help of a part has no names of pydantic, of which it listed 400 lines; no test read it."""
+    text = pydoc.render_doc(part, renderer=pydoc.plaintext)
+    assert "number or text with unit" in text
+    own = text.replace("pydantic.main.BaseModel", "", 1)
+    assert not re.search(r"pydantic|model_|__\w+__|parse_obj|ClassVar|deprecated", own), own
+    assert len(text.splitlines()) < 260
+
+
+def test_names_that_complete(run):
+    """Completion lists the fields and methods of a case and the figures of a run, with their signatures."""
+    case = run.case
+    assert {"structure", "duration", "replaced", "to_file"} <= set(dir(case))
+    assert not [name for name in dir(case) if name.startswith(("model_", "__"))]
+    assert "frequencies" in dir(case.structure)
+    assert [str(name) for name in inspect.signature(run.plot.motion).parameters] == ["size", "between"]
+    assert "between" in run.plot.motion.__doc__
+
+
+def test_declared_attributes_exist():
+    """The attributes that editors show are those of the schema, and the figures those that are registered."""
+    declared = {RunArrays: set(), Table: set()}
+    for engine in BOTH:
+        for group in groups(engine).values():
+            holder = RunArrays if group.along == "time" else Table
+            declared[holder] |= {v.name for v in variables(engine, group.name) if not v.derived}
+    others = {"engine", "time", "points", "balls", "dampers", "loads", "impacts", "particles", "group"}
+    for holder, names in declared.items():
+        assert set(holder.__annotations__) - others == names - others
+    tree = ast.parse(Path(figures.__file__).read_text(encoding="utf-8"))
+    plots = next(node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == "Plots")
+    shown = next(node for node in plots.body if isinstance(node, ast.If)).body
+    methods = {node.name: ast.unparse(node.args) for node in shown if isinstance(node, ast.FunctionDef)}
+    assert set(methods) == set(figures._REGISTRY)
+    for name, arguments in methods.items():
+        parameters = list(inspect.signature(figures._REGISTRY[name].draw).parameters.values())[1:]
+        scope = {**vars(figures), **vars(typing)}
+        exec(f"def method({arguments}): pass", scope)
+        stated = list(inspect.signature(scope["method"]).parameters.values())[1:]
+        assert [(p.name, p.kind, p.default) for p in stated] == [(p.name, p.kind, p.default) for p in parameters]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from functools import cache
 from inspect import Parameter, Signature
 from reprlib import Repr
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, get_args
@@ -50,6 +51,10 @@ class _PartMeta(_ModelType):
 
     __signature__ = _ReadableSignature()
 
+    def __dir__(cls) -> list[str]:  # noqa: N805
+        """Return what users need: neither pydantic's names nor those by which parts describe themselves to the package."""
+        return [name for name in super().__dir__() if not name.startswith("__") and name not in _internal_names()]
+
     def __call__(cls, *args: Any, **values: Any) -> Any:  # noqa: N805
         if args:
             names: tuple[str, ...] = getattr(cls, "positional", ())
@@ -76,6 +81,7 @@ def _signature(part: type[Part]) -> Signature:
         default: Any = Parameter.empty
         if not field.is_required():
             default = field.get_default(call_default_factory=True)
+            default = () if isinstance(default, np.ndarray) else default
         elif name in alternatives:
             annotation, metadata, default = Annotated[annotation, *metadata] | None, (), None
         if name in singular:
@@ -90,6 +96,11 @@ def _signature(part: type[Part]) -> Signature:
         )
         (positional if name in part.positional else named).append(shown)
     return Signature([*sorted(positional, key=lambda each: part.positional.index(each.name)), *named])
+
+
+@cache
+def _internal_names() -> frozenset[str]:
+    return frozenset({*type.__dir__(BaseModel), *vars(Part), "kinds", "model_post_init"})
 
 
 _NAMES = frozenset({"name", "title", "point"})
@@ -176,6 +187,9 @@ class Part(BaseModel, metaclass=_PartMeta):
 
     def __str__(self) -> str:
         return repr(self)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*dir(type(self)), *type(self).model_fields})
 
     def fields_from_file(self) -> tuple[str, ...]:
         """Return the fields whose values were read from a file."""

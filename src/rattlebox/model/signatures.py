@@ -12,6 +12,7 @@ from pydantic import WithJsonSchema
 from .also_accepts import AlsoAccepts
 from .units import SI
 
+_QUANTITY = "number or text with unit"
 _JSON_TYPES = {"string": "str", "number": "float"}
 
 
@@ -25,12 +26,12 @@ class PlainText(str):
 
 
 def type_text(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
-    """Return the name of a type without validators; a quantity with a unit accepts text as well.
+    """Return the name of a type without validators.
 
     Examples
     --------
     >>> type_text(Annotated[float, SI("m")] | None)
-    'float | str | None'
+    'number or text with unit | None'
     """
     return " | ".join(_members(annotation, metadata))
 
@@ -55,7 +56,7 @@ def _members(annotation: Any, metadata: tuple[Any, ...] = ()) -> list[str]:
         members = ["None" if annotation is NoneType else getattr(annotation, "__name__", str(annotation))]
     for each in metadata:
         if _takes_text(each):
-            members = [re.sub(r"\bfloat\b(?! \| str)", "float | str", name) for name in members]
+            members = [re.sub(r"\bfloat\b(?: \| str)?", _QUANTITY, name) for name in members if name != "str"]
         elif isinstance(each, AlsoAccepts):
             members += [_JSON_TYPES[each.schema["type"]]] if each.schema else []
             members = members if each.schema else [*_members(arguments[0]), *members]

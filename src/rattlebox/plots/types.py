@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-Size = Literal["column", "page", "slide"]
+from rattlebox.results.figures import Size as Size
+
 Style = dict[str, Any]
 """Options of artists of Matplotlib by name."""
 Vector = NDArray[np.float64]

@@ -8,7 +8,7 @@ from 1), and the last is the leading wall.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, NoReturn, Self
+from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,7 @@ from .schema import (
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 _DTYPES: dict[Kind, Any] = {"float": np.float64, "int": np.int64, "bool": np.bool_}
 
@@ -119,6 +120,24 @@ class Table(_Frozen):
 
     group: str
     engine: Engine
+    # For editors and type checkers; a table has the columns of its group.
+    damper: IntArray
+    contact: IntArray
+    time: FloatArray
+    approach_speed: FloatArray
+    restitution: FloatArray
+    separation_speed: FloatArray
+    duration: FloatArray
+    peak_overlap: FloatArray
+    peak_force: FloatArray
+    energy_lost: FloatArray
+    complete: BoolArray
+    position: FloatArray
+    velocity: FloatArray
+    spin: FloatArray
+    radius: FloatArray
+    mass: FloatArray
+    species: IntArray
 
     def __init__(self, group: str, engine: Engine, **columns: ArrayLike) -> None:
         along = groups(engine)[group].along
@@ -137,9 +156,11 @@ class Table(_Frozen):
         first = variables(self.engine, self.group)[0]
         return len(vars(self)[first.name])
 
-    def __getattr__(self, name: str) -> NDArray[Any]:
-        known = [key for key in vars(self) if key not in ("group", "engine")]
-        raise AttributeError(f"there is no column {name!r}; there are {', '.join(known)}")
+    if not TYPE_CHECKING:  # with it any name would be an attribute
+
+        def __getattr__(self, name: str) -> NoReturn:
+            known = [key for key in vars(self) if key not in ("group", "engine")]
+            raise AttributeError(f"there is no column {name!r}; there are {', '.join(known)}")
 
 
 class RunArrays(_Frozen):
@@ -163,6 +184,47 @@ class RunArrays(_Frozen):
     loads: tuple[str, ...]
     impacts: Table
     particles: Table
+    # For editors and type checkers; a run has the variables of its engine.
+    displacement: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    absolute_acceleration: FloatArray
+    modal_displacement: FloatArray
+    modal_velocity: FloatArray
+    interface_force: FloatArray
+    ball_position: FloatArray
+    ball_velocity: FloatArray
+    relative_position: FloatArray
+    relative_velocity: FloatArray
+    cavity_force: FloatArray
+    base_displacement: FloatArray
+    base_velocity: FloatArray
+    base_acceleration: FloatArray
+    load: FloatArray
+    ball_damper: IntArray
+    ball_centre: FloatArray
+    clearance: FloatArray
+    mode_frequency: FloatArray
+    mode_energy: FloatArray
+    ball_energy: FloatArray
+    contact_energy: FloatArray
+    gravity_energy: FloatArray
+    load_work: FloatArray
+    base_work: FloatArray
+    viscous_loss: FloatArray
+    normal_loss: FloatArray
+    plastic_loss: FloatArray
+    cavity_displacement: FloatArray
+    cavity_velocity: FloatArray
+    cavity_moment: FloatArray
+    centre_of_mass: FloatArray
+    momentum: FloatArray
+    contacts: IntArray
+    particle_mass: FloatArray
+    kinetic_energy: FloatArray
+    rotation_energy: FloatArray
+    sliding_loss: FloatArray
+    rolling_loss: FloatArray
 
     def __init__(
         self,
@@ -228,8 +290,10 @@ class RunArrays(_Frozen):
         """Return whether the run has a variable or a table of that name."""
         return name in vars(self)
 
-    def __getattr__(self, name: str) -> NDArray[Any]:
-        raise AttributeError(explain_absence(name, vars(self).get("engine", "impact")))
+    if not TYPE_CHECKING:  # with it any name would be an attribute
+
+        def __getattr__(self, name: str) -> NoReturn:
+            raise AttributeError(explain_absence(name, vars(self).get("engine", "impact")))
 
     @property
     def labels(self) -> dict[str, tuple[str, ...] | NDArray[Any]]:

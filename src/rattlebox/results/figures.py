@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+import inspect
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .record import Record
+
+Size = Literal["column", "page", "slide"]
+"""Width of a figure."""
 
 Draw = TypeVar("Draw", bound="Callable[..., Figure]")
 
@@ -50,7 +54,44 @@ def figures_of_studies() -> dict[str, Callable[..., Figure]]:
 
 
 class Plots:
-    """Figures of one run, as methods; `dir` lists those that the run has."""
+    """Figures of one run, as methods; `dir` lists those that the run has, also of plug-ins."""
+
+    if TYPE_CHECKING:  # what an editor shows; the functions in rattlebox.plots have the documentation and draw
+
+        def case(self, *, size: Size = "page") -> Figure:
+            """Draw the case; see `rattlebox.plots.plot_case`."""
+
+        def energy(self, *, size: Size = "column", log: bool = False) -> Figure:
+            """Draw the energy ledger; see `rattlebox.plots.plot_energy`."""
+
+        def impacts(self, *, size: Size = "column", log: bool = False) -> Figure:
+            """Draw the impact log of a 1-D run; see `rattlebox.plots.plot_impacts`."""
+
+        def motion(self, *, size: Size = "column", between: tuple[float, float] | None = None) -> Figure:
+            """Draw displacements and balls over time; see `rattlebox.plots.plot_motion`."""
+
+        def particles(
+            self,
+            *,
+            number: int = -1,
+            colour: Literal["speed", "spin", "radius", "species", "none"] = "speed",
+            view: str | tuple[float, float] = "oblique",
+            size: Size = "page",
+            renderer: Literal["pyvista", "plain"] | None = None,
+        ) -> Figure:
+            """Draw the particles of a 3-D run; see `rattlebox.plots.plot_particles`."""
+
+        def phase_portrait(self, of: str | None = None, *, size: Size = "column") -> Figure:
+            """Draw velocity over displacement; see `rattlebox.plots.plot_phase_portrait`."""
+
+        def responses(
+            self,
+            *,
+            of: str | Iterable[str] | None = None,
+            size: Size = "column",
+            between: tuple[float, float] | None = None,
+        ) -> Figure:
+            """Draw responses over time, one panel for each; see `rattlebox.plots.plot_responses`."""
 
     def __init__(self, run: Record) -> None:
         self._run = run
@@ -68,5 +109,8 @@ class Plots:
         def drawn(*arguments: Any, **options: Any) -> Figure:
             return draw(run, *arguments, **options)
 
+        known = inspect.signature(draw)
+        drawn.__signature__ = known.replace(parameters=list(known.parameters.values())[1:])  # type: ignore[attr-defined]
+        drawn.__name__ = drawn.__qualname__ = name
         drawn.__doc__ = draw.__doc__
         return drawn
