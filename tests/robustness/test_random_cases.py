@@ -267,7 +267,9 @@ def test_random_case(case: rb.Case) -> None:
     assert violations(case) == []
 
 
-@pytest.mark.parametrize("file", sorted((Path(__file__).parent / "found").glob("*.toml")), ids=lambda file: file.stem)
+@pytest.mark.parametrize(
+    "file", sorted((Path(__file__).parent / "regressions").glob("*.toml")), ids=lambda file: file.stem
+)
 def test_case_that_failed_before(file: Path) -> None:
     """Cases that failed in an earlier version do not fail again."""
     assert violations(rb.Case.from_file(file)) == []

@@ -82,7 +82,7 @@ _watched_only: ContextVar[bool] = ContextVar("watched_only", default=False)
 
 
 def _identity(path: Path) -> Identity | None:
-    """Return what tells the file at a path from another one and from a changed one; None if there is none."""
+    """Return numbers that differ between the file at a path, a changed one and another one; None if there is none."""
     try:
         status = path.stat()
     except OSError:
