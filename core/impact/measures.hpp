@@ -2,6 +2,7 @@
 // equations are in rattlebox/studies/measures.py.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <optional>
 
@@ -90,27 +91,78 @@ public:
         return base;
     }
 
-    // Acceleration of the point relative to the base, mean over the interval before sample i. Samples of the
-    // acceleration itself would miss most of the short pulses of contacts.
-    real mean_relative_acceleration(std::size_t i) const {
-        return (point(i).p - point(i - 1).p) / (time(i) - time(i - 1));
+    enum class Frame { base, absolute };
+
+    // Acceleration of the point at the begin and the end of the step before sample i. Springs, dashpots,
+    // harmonic loads and the base act with their values at these times. Contacts and other loads, whose
+    // pulses may be shorter than the step, act with their mean over the step. A mean of the whole, the
+    // difference of the velocities, would lack (pi f dt)^2 / 6 of a motion of frequency f.
+    std::array<real, 2> accelerations(std::size_t i, Frame frame) const {
+        const std::vector<real>& shape = window_.shape;
+        const std::size_t m = shape.size();
+        const auto along = [&](const std::vector<real>& other) {
+            real sum = 0;
+            for (std::size_t k = 0; k < m; ++k) sum += shape[k] * other[k];
+            return sum;
+        };
+        real mean = 0;
+        each_contact_force(i, [&](std::size_t damper, real force) {
+            mean += force * along(problem_.dampers[damper].shape);
+        });
+        std::array<real, 2> result{};
+        for (std::size_t end = 0; end < 2; ++end) {
+            const real* y = state(i - 1 + end);
+            const auto speed = [&](std::size_t k) { return y[2 * k + 1]; };
+            for (std::size_t k = 0; k < m; ++k)
+                result[end] -= shape[k] * (2 * problem_.modes[k].decay * speed(k) +
+                                           problem_.modes[k].stiffness * y[2 * k]);
+            if (m > 0)
+                couple(problem_.coupling, m, speed,
+                       [&](std::size_t k, real sum) { result[end] += shape[k] * sum; });
+        }
+        for (const Load& load : problem_.loads) {
+            const real weight =
+                along(load.shape) + (load.base && frame == Frame::absolute ? window_.base : 0);
+            if (!load.base && load.signal.kind != Signal::Kind::harmonic) {
+                mean += weight * load.signal.mean(time(i - 1), time(i));
+                continue;
+            }
+            for (std::size_t end = 0; end < 2; ++end)
+                result[end] += weight * load.signal.value(time(i - 1 + end));
+        }
+        for (real& each : result) each += mean;
+        return result;
     }
 
-    real mean_acceleration(std::size_t i) const {
-        return mean_relative_acceleration(i) + window_.base * mean_base_acceleration(i);
+    real peak_acceleration(Frame frame) const {
+        real most = 0;
+        for (std::size_t i = 1; i < count(); ++i)
+            for (const real each : accelerations(i, frame)) most = std::fmax(most, std::fabs(each));
+        return most;
     }
 
-    // Force of all balls on their cavities, mean over the interval before sample i, from the change of their
-    // momentum.
-    real mean_damper_force(std::size_t i) const {
+    real rms_acceleration(Frame frame) const { // trapezoids
+        real total = 0;
+        for (std::size_t i = 1; i < count(); ++i)
+            for (const real each : accelerations(i, frame)) total += 0.5 * square(each);
+        return std::sqrt(total / static_cast<real>(last()));
+    }
+
+    // Calls f with the damper and the force of each ball on its cavity, mean over the interval before sample
+    // i, from the change of its momentum. Balls that touch each other exchange momentum within one damper.
+    template <class F> void each_contact_force(std::size_t i, F&& f) const {
         const real *v0 = velocities(problem_, state(i - 1)), *v1 = velocities(problem_, state(i));
         const real base = mean_base_acceleration(i), step = time(i) - time(i - 1);
-        real force = 0;
         for (std::size_t b = 0; b < balls(); ++b) {
             const auto damper = static_cast<std::size_t>(problem_.ball_damper[b]);
-            force -=
-                problem_.ball_mass[b] * ((v1[b] - v0[b]) / step + base - problem_.dampers[damper].gravity);
+            f(damper,
+              -problem_.ball_mass[b] * ((v1[b] - v0[b]) / step + base - problem_.dampers[damper].gravity));
         }
+    }
+
+    real mean_damper_force(std::size_t i) const {
+        real force = 0;
+        each_contact_force(i, [&](std::size_t, real each) { force += each; });
         return force;
     }
 
@@ -441,19 +493,13 @@ inline constexpr Measure measures[] = {
     {"rms_velocity", true, false,
      [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).p; }); }},
     {"peak_acceleration", true, false,
-     [](const Observer& o) {
-         return o.peak_of_means([&](std::size_t i) { return o.mean_acceleration(i); });
-     }},
+     [](const Observer& o) { return o.peak_acceleration(Observer::Frame::absolute); }},
     {"rms_acceleration", true, false,
-     [](const Observer& o) { return o.rms_of_means([&](std::size_t i) { return o.mean_acceleration(i); }); }},
+     [](const Observer& o) { return o.rms_acceleration(Observer::Frame::absolute); }},
     {"peak_relative_acceleration", true, false,
-     [](const Observer& o) {
-         return o.peak_of_means([&](std::size_t i) { return o.mean_relative_acceleration(i); });
-     }},
+     [](const Observer& o) { return o.peak_acceleration(Observer::Frame::base); }},
     {"rms_relative_acceleration", true, false,
-     [](const Observer& o) {
-         return o.rms_of_means([&](std::size_t i) { return o.mean_relative_acceleration(i); });
-     }},
+     [](const Observer& o) { return o.rms_acceleration(Observer::Frame::base); }},
     {"peak_damper_force", true, false,
      [](const Observer& o) {
          return o.peak_of_means([&](std::size_t i) { return o.mean_damper_force(i); });

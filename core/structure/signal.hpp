@@ -89,6 +89,8 @@ struct Signal {
         return p;
     }
 
+    real value(real t) const { return piece(t).value(t); }
+
     // Returns the mean over an interval.
     real mean(real from, real to) const {
         real sum = 0;

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.space import unit_vector
+from rattlebox.results.acceleration import base_at_points, force_on_modes, inertia, internal_force
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
-    from rattlebox.model.modes import ModalModel
 
 FloatArray = NDArray[np.float64]
 
@@ -56,19 +56,9 @@ def structure_arrays(
     lines = modes.lines()
     at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
     load = np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T
-    # Forces of springs and dashpots in modal coordinates; coupled damping adds a full matrix.
-    internal = 2 * modes.decay * p + modes.stiffness * q
-    if modes.coupling is not None:
-        internal = internal + p @ modes.coupling
+    internal = internal_force(modes, q, p)
     # Modal forces of loads, contacts and the acceleration of the base; their sum less the internal ones accelerates.
-    driven = np.zeros_like(q)
-    for index, signal in enumerate(case.loads):
-        driven += np.multiply.outer(load[:, index], modes.shape(signal.point, signal.direction))
-    for index, shape in enumerate(shapes):
-        driven += force[:, index] @ shape.T if three_d else np.multiply.outer(force[:, index], shape)
-    inertia = _inertia(case, modes, three_d)
-    if inertia is not None:
-        driven -= acceleration_of_base @ inertia.T if three_d else np.multiply.outer(acceleration_of_base, inertia)
+    driven = force_on_modes(case, load, acceleration_of_base, force, shapes)
     acceleration = (driven - internal) @ at_points.T
     return {
         "time": time,
@@ -84,58 +74,28 @@ def structure_arrays(
         "base_velocity": base[1],
         "base_acceleration": acceleration_of_base,
         "cavity_force": force,
-        "interface_force": _interface_force(case, internal, inertia, force, acceleration_of_base),
+        "interface_force": _interface_force(case, internal, inertia(case, three_d), force, acceleration_of_base),
         "load": load,
         "mode_frequency": np.sqrt(modes.stiffness) / (2 * np.pi),
         "mode_energy": 0.5 * (p**2 + modes.stiffness * q**2),
     }
 
 
-def _inertia(case: Case, modes: ModalModel, three_d: bool) -> FloatArray | None:
-    """Return the participation of the modes, (M,) or (M, 3) [kg^1/2]; None if it is unknown."""
-    if not three_d and modes.spatial:
-        return None  # the base of a 1-D run has no direction, and does not move
-    if modes.participation is None or not three_d or modes.spatial:
-        return modes.participation
-    return np.multiply.outer(modes.participation, unit_vector(case.particle_dampers[0].direction))
-
-
-def base_at_points(case: Case, base: FloatArray) -> FloatArray:
-    """Project a motion of the base on the direction of each point.
-
-    Parameters
-    ----------
-    base : (T,) or (T, 3) float
-        Displacement, velocity or acceleration of the base; three components in a 3-D run.
-
-    Returns
-    -------
-    (T, P) float
-        Component of the motion at each point.
-    """
-    modes = case.modes
-    if base.ndim == 1:
-        return np.repeat(base[:, None], len(modes.lines()), axis=1)
-    along = base @ unit_vector(case.particle_dampers[0].direction)
-    parts = [base if name in modes.spatial else along[:, None] for name in modes.shapes]
-    return np.concatenate([*parts, np.zeros((len(base), 0))], axis=1)
-
-
 def _interface_force(
-    case: Case, internal: FloatArray, inertia: FloatArray | None, force: FloatArray, base: FloatArray
+    case: Case, internal: FloatArray, moved: FloatArray | None, force: FloatArray, base: FloatArray
 ) -> FloatArray:
     """Return the force on the base; NaN if the participation of the modes is unknown."""
     modes = case.modes
     if not modes.decay.size:
         return np.asarray(force.sum(axis=1))
-    if inertia is None:
+    if moved is None:
         return np.full(base.shape, np.nan)
     residual = modes.residual_mass
     if residual is None:
-        return np.asarray(internal @ inertia)
+        return np.asarray(internal @ moved)
     if base.ndim == 1:
-        return np.asarray(internal @ inertia - residual * base)
+        return np.asarray(internal @ moved - residual * base)
     if not modes.spatial:
         axis = unit_vector(case.particle_dampers[0].direction)
         residual = residual * np.multiply.outer(axis, axis)
-    return np.asarray(internal @ inertia - base @ residual)
+    return np.asarray(internal @ moved - base @ residual)

@@ -16,6 +16,7 @@ from rattlebox._util.html import bullets, paragraph, table
 from rattlebox._util.quantities import MISSING, digits, quantity
 from rattlebox._util.settling import settled_after
 
+from .acceleration import accelerations_of_steps, base_at_points
 from .damper_force import mean_damper_force
 from .free_decay import free_decay
 from .schema import PARTNERS
@@ -150,16 +151,19 @@ def _main_results(run: Record) -> dict[str, Value]:
         values |= {f"share_in[{damper}]": float(share) for damper, share in shares}
     values["energy_residual"] = run.energy_residual
     if arrays.mode_frequency.size:
-        base = _base_velocity(arrays)
+        relative, absolute = _accelerations(run)
         for k, point in enumerate(arrays.points):
             x = arrays.displacement[:, k]
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
             values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
-            values |= _accelerations(arrays, point, arrays.velocity[:, k], base[:, k])
+            if absolute is not None:
+                values |= _peak_and_rms(f"acceleration[{point}]", arrays.time, absolute[:, :, k])
+            if relative is not None and relative is not absolute:
+                values |= _peak_and_rms(f"relative_acceleration[{point}]", arrays.time, relative[:, :, k])
         values |= _storey_drifts(arrays)
         values |= _modal_motion(arrays)
         if is_driven(arrays):
-            values |= _steady_results(run, base)
+            values |= _steady_results(run, absolute)
         elif (decay := free_decay(arrays)) is not None:
             values["equivalent_damping_ratio"] = decay.damping_ratio
             values["damping_amplitude"] = decay.amplitude
@@ -215,22 +219,36 @@ def _rms(time: FloatArray, x: FloatArray) -> float:
         return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
 
 
-def _peak_and_rms(of: str, time: FloatArray, means: FloatArray) -> dict[str, Value]:
-    """Return the largest value and the root mean square of means over each output step, (T - 1,)."""
+def _peak_and_rms(of: str, time: FloatArray, values: FloatArray) -> dict[str, Value]:
+    """Return peak and root mean square of means over each output step, (T - 1,), or of values at its ends, (2, T - 1)."""
     with np.errstate(over="ignore"):
-        rms = math.sqrt(np.sum(means**2 * np.diff(time)) / (time[-1] - time[0])) if means.size else math.nan
-    return {f"peak_{of}": _largest(np.abs(means)), f"rms_{of}": rms}
+        squares = np.sum(_squares(values) * np.diff(time))
+        rms = math.sqrt(squares / (time[-1] - time[0])) if values.size else math.nan
+    return {f"peak_{of}": _largest(np.abs(values)), f"rms_{of}": rms}
 
 
-def _accelerations(arrays: RunArrays, point: str, velocity: FloatArray, base: FloatArray) -> dict[str, Value]:
-    """Return peak and RMS of the absolute acceleration of a point, and of that relative to a moving base."""
-    time = arrays.time
-    with np.errstate(over="ignore"):
-        step = np.diff(time)
-        values = _peak_and_rms(f"acceleration[{point}]", time, np.diff(velocity + base) / step)
-        if base.any():
-            values |= _peak_and_rms(f"relative_acceleration[{point}]", time, np.diff(velocity) / step)
-    return values
+def _squares(values: FloatArray) -> FloatArray:
+    """Return the mean square in each output step of means over it, (T - 1,), or of values at its ends, (2, T - 1)."""
+    return np.asarray(values**2 if values.ndim == 1 else (values**2).mean(axis=0))
+
+
+def _accelerations(run: Record) -> tuple[FloatArray | None, FloatArray | None]:
+    """Return the accelerations of the points in each output step, relative to the base and absolute, (2, T - 1, P).
+
+    They are the same array if the base does not move, and None without the case, which knows the shapes of the modes.
+    """
+    arrays = run.arrays
+    if not run.source or arrays.time.size < 2:
+        return None, None
+    with suppress(RattleboxError), np.errstate(over="ignore", invalid="ignore"):
+        case = run.case
+        shapes = np.array(list(case.modes.lines().values())).reshape(len(arrays.points), -1)
+        relative = accelerations_of_steps(arrays, case, shapes.T)
+        if not arrays.base_acceleration.any():
+            return relative, relative
+        base = base_at_points(case, arrays.base_acceleration)
+        return relative, relative + np.stack([base[:-1], base[1:]])
+    return None, None
 
 
 def _modal_motion(arrays: RunArrays) -> dict[str, Value]:
@@ -263,18 +281,6 @@ def _forces(run: Record) -> dict[str, Value]:
     if np.isfinite(force).all() and force.any():
         values |= {"peak_interface_force": _largest(force), "rms_interface_force": _rms(time, force)}
     return values
-
-
-def _base_velocity(arrays: RunArrays) -> FloatArray:
-    """Return the velocity of the base in the direction of each point, (T, P), up to a constant."""
-    of_base = arrays.absolute_acceleration - arrays.acceleration
-    if not of_base.any():
-        return np.zeros_like(of_base)
-    base = arrays.base_velocity.reshape(arrays.time.size, -1)
-    accelerations = arrays.base_acceleration.reshape(arrays.time.size, -1)
-    # `of_base` is the acceleration of the base projected on the direction of each point.
-    direction, *_ = np.linalg.lstsq(accelerations, of_base, rcond=None)
-    return np.asarray(base @ direction)
 
 
 def is_driven(arrays: RunArrays) -> bool:
@@ -318,10 +324,10 @@ def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
     return values
 
 
-def _steady_results(run: Record, base: FloatArray) -> dict[str, Value]:
+def _steady_results(run: Record, accelerations: FloatArray | None) -> dict[str, Value]:
     """Return results over the second half of a driven run, each with half the width of its 95 % interval.
 
-    Accelerations and the power lost are means over equal intervals of the length of a mean output step.
+    The series are means of squares, and of the power lost, over equal intervals of about the length of a mean output step.
     """
     arrays = run.arrays
     time = arrays.time
@@ -329,23 +335,32 @@ def _steady_results(run: Record, base: FloatArray) -> dict[str, Value]:
     count = min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
     even = np.linspace(0.5 * (time[0] + time[-1]), time[-1], count)
 
-    def late(x: FloatArray) -> FloatArray:
-        return np.asarray(np.interp(even, time, x))
+    def late(cumulative: FloatArray) -> FloatArray:
+        return np.asarray(np.diff(np.interp(even, time, cumulative)) / (even[1] - even[0]))
 
-    def late_rate(x: FloatArray) -> FloatArray:
-        return np.asarray(np.diff(late(x)) / (even[1] - even[0]))
+    def late_means(steps: FloatArray) -> FloatArray:
+        # Interpolated samples would be too small between the crests.
+        return late(np.concatenate([[0.0], np.cumsum(steps * np.diff(time))]))
 
     values: dict[str, Value] = {}
     least = _fewest_samples(run, even)
     for k, point in enumerate(arrays.points):
-        values |= _with_interval(f"steady_rms_displacement[{point}]", late(arrays.displacement[:, k]), least)
-        accelerations = late_rate(arrays.velocity[:, k] + base[:, k])
-        values |= _with_interval(f"steady_rms_acceleration[{point}]", accelerations, least)
+        x = arrays.displacement[:, k]
+        values |= _root_with_interval(f"steady_rms_displacement[{point}]", late_means(_squares(_ends(x))), least)
+        if accelerations is not None:
+            squares = late_means(_squares(accelerations[:, :, k]))
+            values |= _root_with_interval(f"steady_rms_acceleration[{point}]", squares, least)
     force = arrays.interface_force.reshape(time.size, -1)
     if np.isfinite(force).all() and force.any():
-        values |= _with_interval("steady_rms_interface_force", late(np.linalg.norm(force, axis=1)), least)
-    values |= _with_interval("steady_loss_power", late_rate(run.ledger.losses), least, squared=False)
+        squares = late_means(_squares(_ends(np.linalg.norm(force, axis=1))))
+        values |= _root_with_interval("steady_rms_interface_force", squares, least)
+    values |= _with_interval("steady_loss_power", late(run.ledger.losses), least)
     return values
+
+
+def _ends(x: FloatArray) -> FloatArray:
+    """Return samples (T,) as values at both ends of each output step, (2, T - 1)."""
+    return np.stack([x[:-1], x[1:]])
 
 
 def _fewest_samples(run: Record, times: FloatArray) -> float:
@@ -359,15 +374,16 @@ def _fewest_samples(run: Record, times: FloatArray) -> float:
     return 0.0
 
 
-def _with_interval(key: str, x: FloatArray, least: float, *, squared: bool = True) -> dict[str, Value]:
-    """Return the root mean square, or the mean, of a steady series, and half the width of its 95 % interval."""
-    series = x**2 if squared else x
-    mean = float(np.mean(series))
-    half = float(half_widths(series[None], least)[0][0])
-    lower, upper = mean - half, mean + half
-    if squared:
-        lower, mean, upper = (math.sqrt(max(square, 0.0)) for square in (lower, mean, upper))
-    return {key: mean, _error_of(key): 0.5 * (upper - lower)}
+def _with_interval(key: str, series: FloatArray, least: float) -> dict[str, Value]:
+    """Return the mean of a steady series, and half the width of its 95 % interval."""
+    return {key: float(np.mean(series)), _error_of(key): float(half_widths(series[None], least)[0][0])}
+
+
+def _root_with_interval(key: str, squares: FloatArray, least: float) -> dict[str, Value]:
+    """Return the root of the mean of steady squares, and half the width of its 95 % interval."""
+    mean, half = float(np.mean(squares)), float(half_widths(squares[None], least)[0][0])
+    lower, middle, upper = (math.sqrt(max(square, 0.0)) for square in (mean - half, mean, mean + half))
+    return {key: middle, _error_of(key): 0.5 * (upper - lower)}
 
 
 def _error_of(key: str) -> str:
@@ -506,8 +522,9 @@ class Summary(_Report):
         Numbers in SI units: `status`, `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
         `share_normal`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `energy_residual`,
         `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`, `rms_displacement[point]`,
-        `peak_acceleration[point]` and `rms_acceleration[point]` (absolute, mean over each output step), the same for
-        `relative_acceleration[point]` if the base moves, `damper_force[damper]` (mean over each output step),
+        `peak_acceleration[point]` and `rms_acceleration[point]` (absolute; contacts and pulses act with their mean over each
+        output step), the same for `relative_acceleration[point]` if the base moves, `damper_force[damper]` (mean over each
+        output step),
         `interface_force`, `base_acceleration`, `load[load]` and, with several modes, `modal_displacement[mode 1]`;
         `peak_drift[storey 2]` of shear buildings, `computing_time`. For runs
         that are driven to their end `steady_rms_displacement[point]` over the second half, and

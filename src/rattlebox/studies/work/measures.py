@@ -53,7 +53,9 @@ class Measures(Catalogue[Measure]):
     Over a window of the length t, which holds n cycles, with the sample step h:
 
         rms                  sqrt(1 / t integral of x^2 dt), by the trapezoidal rule
-        mean over a step     (v_k - v_(k - 1)) / h, of an acceleration
+        mean over a step     of the force of a damper, from the change of the momentum of its balls
+        acceleration         a_k + c_k, that of springs, dashpots, base and harmonic loads at both ends of a step, with the
+                             mean c_k of contacts and other loads over the step, whose pulses may be shorter
         settling_time        see `rattlebox.analysis.settling_time`
         loss_per_cycle       W = loss in the damper / n
         reduced_loss         W / (m V^2); m is the mass of all balls or particles, V the velocity amplitude of the cavity
@@ -98,16 +100,16 @@ _MEASURES: dict[str, Measure] = {
     "rms": Measure("m", "RMS displacement", samples=True, average="root mean square"),
     "peak_velocity": Measure("m/s", "peak velocity", samples=True),
     "rms_velocity": Measure("m/s", "RMS velocity", samples=True, average="root mean square"),
-    "peak_acceleration": Measure("m/s^2", "peak absolute acceleration, mean over a sample step", samples=True),
+    "peak_acceleration": Measure("m/s^2", "peak absolute acceleration, without peaks of contacts", samples=True),
     "rms_acceleration": Measure(
-        "m/s^2", "RMS absolute acceleration, mean over a sample step", samples=True, average="root mean square"
+        "m/s^2", "RMS absolute acceleration, without peaks of contacts", samples=True, average="root mean square"
     ),
     "peak_relative_acceleration": Measure(
-        "m/s^2", "peak acceleration relative to the base, mean over a sample step", samples=True
+        "m/s^2", "peak acceleration relative to the base, without peaks of contacts", samples=True
     ),
     "rms_relative_acceleration": Measure(
         "m/s^2",
-        "RMS acceleration relative to the base, mean over a sample step",
+        "RMS acceleration relative to the base, without peaks of contacts",
         samples=True,
         average="root mean square",
     ),

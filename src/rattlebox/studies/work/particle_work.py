@@ -20,7 +20,6 @@ from rattlebox.analysis.cycle_loss import UNSTEADY, CycleLoss, cycle_loss
 from rattlebox.analysis.shaken import MIN_SAMPLES, StillCavity, harmonic_loss
 from rattlebox.core._core import Status
 from rattlebox.engines.dem import continue_dem, simulate_dem
-from rattlebox.engines.responses import base_at_points
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
@@ -28,6 +27,7 @@ from rattlebox.model.space import unit_vector
 from rattlebox.prepare.particles import refusal_reason, settle_all
 from rattlebox.prepare.time_step import WARNINGS, exceeded_limits
 from rattlebox.results import Run
+from rattlebox.results.acceleration import accelerations_of_steps, base_at_points
 from rattlebox.results.damper_force import mean_damper_force
 from rattlebox.results.schema import variables
 from rattlebox.studies.work.case_work import CaseWork, Extra
@@ -48,8 +48,10 @@ class Window:
     ----------
     start
         Start of the window [s].
-    displacement, velocity, base_velocity : (T,) float
-        Displacement [m] and velocity [m/s] of the observed point, and velocity of the base in its direction [m/s].
+    displacement, velocity, base_acceleration : (T,) float
+        Displacement [m] and velocity [m/s] of the observed point, and acceleration of the base in its direction [m/s^2].
+    shape : (M,) float
+        Mode shape of the observed point [kg^-1/2].
     frequency
         Frequency of the first harmonic load or motion [Hz]; NaN if there is none or its amplitude is zero.
     """
@@ -59,7 +61,8 @@ class Window:
     start: float
     displacement: NDArray[np.float64]
     velocity: NDArray[np.float64]
-    base_velocity: NDArray[np.float64]
+    base_acceleration: NDArray[np.float64]
+    shape: NDArray[np.float64]
     frequency: float
 
     def value(self, name: str) -> float:
@@ -96,15 +99,20 @@ class Window:
         """Return the root mean square over the window."""
         return math.sqrt(float(trapezoid(values**2, self.run.arrays.time)) / self.length)
 
-    @property
-    def acceleration(self) -> NDArray[np.float64]:
-        """Absolute acceleration of the point, averaged between samples [m/s^2]."""
-        return np.diff(self.velocity + self.base_velocity) / np.diff(self.run.arrays.time)
+    @cached_property
+    def relative_acceleration(self) -> NDArray[np.float64]:
+        """Acceleration of the point relative to the base at both ends of each output step, (2, T - 1) [m/s^2]."""
+        return np.asarray(accelerations_of_steps(self.run.arrays, self.run.case, self.shape[:, None])[:, :, 0])
 
     @property
-    def relative_acceleration(self) -> NDArray[np.float64]:
-        """Acceleration of the point relative to the base, averaged between samples [m/s^2]."""
-        return np.diff(self.velocity) / np.diff(self.run.arrays.time)
+    def acceleration(self) -> NDArray[np.float64]:
+        """Absolute acceleration of the point in the same form [m/s^2]."""
+        return self.relative_acceleration + np.stack([self.base_acceleration[:-1], self.base_acceleration[1:]])
+
+    def rms_of_steps(self, values: NDArray[np.float64]) -> float:
+        """Return the root mean square of values at both ends of each output step."""
+        steps = np.diff(self.run.arrays.time)
+        return math.sqrt(float(np.sum(0.5 * (values**2).sum(axis=0) * steps)) / self.length)
 
     @property
     def damper_force(self) -> NDArray[np.float64]:
@@ -168,9 +176,9 @@ _FORMULAS: dict[str, Callable[[Window], float]] = {
     "peak_velocity": lambda w: np.abs(w.velocity).max(),
     "rms_velocity": lambda w: w.rms(w.velocity),
     "peak_acceleration": lambda w: np.abs(w.acceleration).max(),
-    "rms_acceleration": lambda w: math.sqrt(np.mean(w.acceleration**2)),
+    "rms_acceleration": lambda w: w.rms_of_steps(w.acceleration),
     "peak_relative_acceleration": lambda w: np.abs(w.relative_acceleration).max(),
-    "rms_relative_acceleration": lambda w: math.sqrt(np.mean(w.relative_acceleration**2)),
+    "rms_relative_acceleration": lambda w: w.rms_of_steps(w.relative_acceleration),
     "peak_damper_force": lambda w: w.damper_force.max(),
     "rms_damper_force": lambda w: math.sqrt(np.mean(w.damper_force**2)),
     "peak_interface_force": lambda w: w.interface_force.max(),
@@ -393,24 +401,28 @@ class ParticleWork(CaseWork):
         arrays = part.arrays
         observed = self._observed
         if observed is None:
-            along = unit_vector(case.particle_dampers[0].direction)
+            first = case.particle_dampers[0]
+            along = unit_vector(first.direction)
             return Window(
                 part,
                 run,
                 start,
                 arrays.cavity_displacement[:, 0] @ along,
                 arrays.cavity_velocity[:, 0] @ along,
-                arrays.base_velocity @ along,
+                arrays.base_acceleration @ along,
+                case.modes.space_shape(first.point, first.direction) @ along,
                 frequency,
             )
-        base = base_at_points(case, arrays.base_velocity)
+        base = base_at_points(case, arrays.base_acceleration)
         modes = arrays.modal_displacement, arrays.modal_velocity
         displacement, velocity = (
             observed.column(arrays.points, own, mode)
             for own, mode in zip((arrays.displacement, arrays.velocity), modes, strict=True)
         )
         own_base = observed.column(arrays.points, base, np.zeros_like(modes[0]))
-        return Window(part, run, start, displacement, velocity, own_base, frequency)
+        lines = np.array(list(case.modes.lines().values()))
+        shape = observed.column(arrays.points, lines.T, np.eye(lines.shape[1]))
+        return Window(part, run, start, displacement, velocity, own_base, shape, frequency)
 
 
 def cut_before(run: Run, start: float) -> Run:
