@@ -13,8 +13,15 @@ sys.path.insert(0, str(Path(__file__).parent))  # for the modules of the gallery
 
 import gallery_of_examples
 import typer
+from sphinx.ext.autodoc.mock import _MockModule
 
 import rattlebox
+
+try:
+    import rattlebox.core._core
+except rattlebox.MissingDependency:  # `make docs-light`: the pages show signatures and docstrings, and run nothing
+    sys.modules["rattlebox.core._core"] = _MockModule("rattlebox.core._core")
+
 from rattlebox.cli import commands
 from rattlebox.engines.status import ADVICE, MESSAGES
 from rattlebox.prepare.time_step import WARNINGS
@@ -127,7 +134,8 @@ class Statuses(Lines):
         rows = []
         for status, message in MESSAGES.items():
             words = re.sub(r"\{(\w+)[^}]*\}", "...", message)
-            rows.append(f"| `{status.name}` | {words} | {ADVICE.get(status, {}).get('', '')} |")
+            name = str(status).rpartition(".")[2]
+            rows.append(f"| `{name}` | {words} | {ADVICE.get(status, {}).get('', '')} |")
         return ["| status | message | what to try |", "|---|---|---|", *rows]
 
 
