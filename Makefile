@@ -115,6 +115,7 @@ lint: setup $(COMPILED)
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo --no-cache
 	$(BIN)/clang-format --dry-run --Werror $(shell git ls-files 'core/*.hpp' 'core/*.cpp' 'tests/*.cpp')
+	$(BIN)/python tools/size.py
 
 format: setup
 	$(BIN)/ruff check --fix .
