@@ -22,7 +22,7 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'rattlebox' has no attribute {name!r}")
     if _MODULES[name] == "rattlebox":
         return import_module(f"rattlebox.{name}")
-    import_module("rattlebox.model.case")  # messages list kinds in the order of import
+    import_module("rattlebox.model.case")  # a message about one part names the fields of others
     value = getattr(import_module(_MODULES[name]), name)
     globals()[name] = value
     return value

@@ -1,13 +1,16 @@
-"""Kinds that other packages add: the prism of docs/developing/extending.md as an installed package."""
+"""What other packages add: the modules of docs/developing/extending.md as an installed package, used in every way."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
+import struct
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 PAGE = Path(__file__).parents[2] / "docs" / "developing" / "extending.md"
@@ -21,32 +24,113 @@ cavity = { kind = "prism", side = "50 mm", length = "35 mm" }
 contact = { kind = "tsuji", restitution = 0.7 }
 softening = 100
 """
+SWINGING = """
+duration = "1.5 s"
+structure = { kind = "pendulum", mass = "2 kg", length = "300 mm", displacement = "1 mm" }
+damper = { kind = "impact", ball = { diameter = "20 mm", material = "porcelain" }, wall = "porcelain", gap = "2 mm", \
+contact = { kind = "tsuji", restitution = 0.6 } }
+load = { kind = "harmonic", amplitude = "3 N", frequency = "1.1 Hz" }
+"""
+SHAKEN = """
+duration = "40 ms"
+structure = { kind = "sdof", mass = "1 kg", frequency = "20 Hz" }
+base = { kind = "record", file = "scope.osc" }
+damper = { kind = "impact", ball = { diameter = "20 mm", material = "porcelain" }, wall = "steel", gap = "2 mm", \
+contact = { kind = "tsuji", restitution = 0.6 } }
+"""
+STUDY = """
+kind = "load_levels"
+case.file = "swinging.toml"
+amplitudes = ["2 N", "3 N", "5 N"]
+measure = ["rms", "time_of_peak"]
+"""
+
+
+def modules() -> dict[str, str]:
+    """Return the modules of the page by their path."""
+    blocks = re.findall(r"^\*\*`(my_package/\w+\.py)`\*\*\n\n```python\n(.*?)```", PAGE.read_text("utf-8"), re.M | re.S)
+    return dict(blocks)
+
+
+def install(folder: Path, package: str, files: dict[str, str], points: str) -> None:
+    """Install a package: its modules, and the metadata with its entry points."""
+    for name, content in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(content, encoding="utf-8")
+    (folder / package / "__init__.py").touch()
+    info = folder / f"{package}-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[rattlebox.plugins]\n{points}")
 
 
 @pytest.fixture(scope="module")
 def plugin(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder in which the module of the page is installed with its entry point."""
+    """Return a folder in which the modules of the page are installed with their entry points."""
     folder = tmp_path_factory.mktemp("plugin")
-    text = PAGE.read_text(encoding="utf-8")
-    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    (entry,) = re.findall(r"```toml\n\[project\.entry-points\.\"(\S+)\"\]\n(.*?)```", text, re.DOTALL)
-    package = folder / "my_package"
-    package.mkdir()
-    (package / "__init__.py").touch()
-    (package / "prism.py").write_text(code, encoding="utf-8")
-    info = folder / "my_package-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: my_package\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(f"[{entry[0]}]\n{entry[1].replace(chr(34), '')}")
-    (folder / "case.toml").write_text(CASE)
+    (entry,) = re.findall(
+        r"```toml\n\[project\.entry-points\.\"rattlebox\.plugins\"\]\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL
+    )
+    install(folder, "my_package", modules(), entry.replace('"', ""))
+    for name, text in (("case", CASE), ("swinging", SWINGING), ("shaken", SHAKEN), ("study", STUDY)):
+        (folder / f"{name}.toml").write_text(text)
+    values = (300 * np.sin(np.arange(60) * 0.2)).astype("<f4")
+    content = b"OSC1" + struct.pack("<d", 1e-3) + b"gal     " + values.tobytes()
+    (folder / "scope.osc").write_bytes(content)
+    (folder / "scope.dat").write_bytes(content)
     return folder
 
 
-def program(folder: Path, code: str) -> subprocess.CompletedProcess[str]:
-    """Run a program in which the plug-in is installed."""
-    environment = os.environ | {"PYTHONPATH": str(folder)}
-    command = [sys.executable, "-W", "error", "-c", code]
+def program(folder: Path, code: str, *options: str) -> subprocess.CompletedProcess[str]:
+    """Run a program in which the plug-ins of a folder are installed."""
+    return _run(folder, sys.executable, *(options or ("-W", "error")), "-c", code)
+
+
+def rattlebox(folder: Path, *commands: str) -> list[tuple[int, str, str]]:
+    """Run commands one after the other in one process with the plug-ins of a folder; return exit codes and outputs."""
+    done = _run(folder, sys.executable, "-c", _COMMANDS, *commands)
+    assert done.returncode == 0, done.stderr
+    return [(code, out, error) for code, out, error in json.loads(done.stdout)]
+
+
+_COMMANDS = """
+import contextlib, io, json, sys
+from rattlebox.cli.commands import run_command
+results = []
+for command in sys.argv[1:]:
+    sys.argv = ["rattlebox", *command.split()]
+    out, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+        try: run_command()
+        except SystemExit as end: code = end.code or 0
+    results.append((code, out.getvalue(), error.getvalue()))
+print(json.dumps(results))
+"""
+
+
+def _run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"PYTHONPATH": str(folder), "COLUMNS": "120"}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+def test_each_thing_takes_as_many_files_as_the_page_says() -> None:
+    """The page's table of files counts the modules that the page shows; a cavity once took nine files, not four."""
+    table = dict(re.findall(r"^\| (an? [^|]+?) \| (\d) \|", PAGE.read_text("utf-8"), re.M))
+    stems = {
+        "a cavity between planes": ["prism"],
+        "a structure": ["pendulum"],
+        "a reader of records or modes": ["oscilloscope"],
+        "a material": ["porcelain"],
+        "a measure": ["measures"],
+        "a kind of study with its figure": ["load_levels", "load_levels_figure"],
+        "a figure of runs": ["speed"],
+        "a command": ["frequencies"],
+    }
+    assert {name: int(count) for name, count in table.items() if name in stems} == {
+        name: len(files) for name, files in stems.items()
+    }
+    assert sorted(modules()) == sorted(f"my_package/{stem}.py" for files in stems.values() for stem in files)
+    assert table["a normal contact law in C++"] == "2"  # test_new_law.py
 
 
 def test_a_cavity_of_another_package_runs_and_is_shown(plugin: Path) -> None:
@@ -82,15 +166,124 @@ assert case.replaced({"damper.cavity.side": "52 mm"}).particle_dampers[0].cavity
     assert result.returncode == 0, result.stderr
 
 
-def test_messages_list_kinds_of_other_packages(plugin: Path) -> None:
-    """An unknown kind is refused with the kinds of plug-ins among the allowed ones."""
+def test_structure_reader_material_and_figure_work_in_python(plugin: Path) -> None:
+    """A run with parts of another package has their modes, numbers, units and words; none had been used outside tests."""
     result = program(
         plugin,
-        "import rattlebox as rb; text = open('case.toml').read().replace('\"prism\"', '\"prizm\"')\n"
-        "try: rb.Case.from_toml(text)\n"
-        "except rb.CaseError as error: print(error)",
+        """
+import numpy as np, rattlebox as rb
+case = rb.Case.from_file("swinging.toml")
+assert abs(case.structure.natural_frequencies[0] - np.sqrt(9.80665 / 0.3) / (2 * np.pi)) < 1e-12
+assert case.impact_dampers[0].balls[0].material is rb.materials()["porcelain"]
+run = rb.simulate(case, progress=False)
+assert run.ok and abs(run.motion.displacement.values[0, 0] - 1e-3) < 1e-15
+assert "speed" in dir(run.plot)
+run.plot.speed().savefig("speed.png")
+rb.write_report(run, "swinging.html")
+assert "pendulum of 0.3 m" in open("swinging.html").read()
+rb.plot_case(case).savefig("case.png")
+assert rb.Case.from_toml(case.to_toml()) == case
+for file in ("scope.osc", "scope.dat"):  # by its ending, by its first bytes
+    record = rb.Record(file=file, columns=["channel 1"])
+    assert record.unit == "m/s^2" and len(record.times) == 60 and record.times[1] == 1e-3
+    assert abs(record.peak - 3.0 * np.abs(np.sin(np.arange(60) * 0.2)).max()) < 1e-6, record.peak
+shaken = rb.simulate(rb.Case.from_file("shaken.toml"), progress=False)
+assert shaken.ok and abs(shaken.motion.base_acceleration).max() > 2.9
+try: rb.Record(file="scope.osc", columns=[2])
+except rb.DataError as error: assert "no time history 2, but channel 1" in str(error)
+else: raise AssertionError
+from my_package.load_levels import load_levels
+study = load_levels(case, ["2 N", "4 N"], ["rms", "time_of_peak"], progress=False)
+assert study.attrs["study"] == "load_levels" and study.time_of_peak.attrs["units"] == "s"
+assert study.time_of_peak.attrs["long_name"] == "time of the largest displacement"
+swept = rb.sweep(case, {"damper.gap": ["1 mm", "2 mm"]}, "time_of_peak", progress=False)
+assert np.isfinite(swept.time_of_peak).all()
+""",
     )
-    assert "did you mean 'prism'?" in result.stdout, (result.stdout, result.stderr)
+    assert result.returncode == 0, result.stderr
+
+
+def test_study_figure_measure_and_command_work_in_the_command_line(plugin: Path) -> None:
+    """A study file of a kind of another package runs, resumes, is shown, drawn and reported, and its command is in the help.
+
+    Kinds of figures were found by the spelling of their names, so that a kind without such a name ended in a traceback.
+    """
+    results = rattlebox(
+        plugin,
+        "sweep study.toml -o levels.zarr",
+        "sweep study.toml -o levels.zarr",
+        "show levels.zarr",
+        "plot levels.zarr -o levels.png",
+        "plot levels.zarr -o levels2.png --kind levels",
+        "report levels.zarr -o levels.html",
+        "run swinging.toml -o swinging --no-figures",
+        "plot swinging --kind speed -o speed2.png",
+        "plot swinging --kind speeed -o speed3.png",
+        "--help",
+        "frequencies swinging.toml",
+        "materials",
+        "doctor",
+    )
+    assert [code for code, _, _ in results] == [0, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 0], results
+    _, again, shown, _, other, _, _, _, refused, listed, frequencies, materials, doctor = results
+    assert "3 variants: 3 finished" in again[1]
+    assert "load levels, 3 variants" in shown[1] and "time of the largest displacement" in shown[1]
+    assert (plugin / "levels.png").stat().st_size > 10_000 and "load_levels" in other[2]
+    text = (plugin / "levels.html").read_text("utf-8")
+    assert "pendulum" in text and "time of the largest displacement" in text
+    assert (plugin / "speed2.png").stat().st_size > 10_000 and "did you mean 'speed'?" in refused[2]
+    assert "Print the natural frequencies of the structure" in listed[1]
+    assert frequencies[1] == "mode 1: 0.909955 Hz\n"
+    assert "porcelain" in materials[1] and "plug-in load_levels" in doctor[1]
+
+
+def test_messages_list_what_other_packages_add(plugin: Path) -> None:
+    """An unknown kind, material, measure or kind of study is refused with those of plug-ins among the allowed ones."""
+    (plugin / "scope.xyz").write_text("1")
+    result = program(
+        plugin,
+        """
+import rattlebox as rb
+from pathlib import Path
+from rattlebox.studies.study_file import study_from_toml
+def refuse(read, text, name, wrong):
+    assert name in text
+    try: read(text.replace(name, wrong))
+    except rb.RattleboxError as error: return str(error)
+    raise AssertionError(wrong)
+case, swinging, study = (Path(f"{name}.toml").read_text() for name in ("case", "swinging", "study"))
+assert "did you mean 'prism'?" in refuse(rb.Case.from_toml, case, '"prism"', '"prizm"')
+assert "pendulum" in refuse(rb.Case.from_toml, swinging, '"pendulum"', '"swing"')
+assert "did you mean 'porcelain'?" in refuse(rb.Case.from_toml, swinging, '"porcelain"', '"porcelan"')
+assert "did you mean 'load_levels'?" in refuse(study_from_toml, study, '"load_levels"', '"load_level"')
+assert "did you mean 'time_of_peak'" in refuse(study_from_toml, study, '"time_of_peak"', '"time_of_peek"')
+assert "the ending '.xyz'" in refuse(lambda text: rb.Modal(file=text, damping_ratio=0.0), "scope.xyz", "xyz", "xyz")
+""",
+    )
+    assert result.returncode == 0, result.stderr
+
+
+def test_messages_do_not_depend_on_the_order_of_imports(tmp_path: Path) -> None:
+    """The kinds in a message and in the schema have one order, whichever module was imported first.
+
+    Kinds were listed in the order in which their modules were imported; every test imported the package as a whole.
+    """
+    code = """
+import importlib, sys
+for name in sys.argv[1:]: importlib.import_module(f"rattlebox.model.{name}")
+import rattlebox as rb, json, hashlib
+for table in ("structure = { mass = 1 }", "structure = {}", "load = { amplitude = 2.0 }"):
+    try: rb.Case.from_toml(table + '\\nduration = "1 s"\\n[damper]\\nkind = "impact"\\ngap = 1')
+    except rb.CaseError as error: print(error)
+print(hashlib.sha256(json.dumps(rb.Case.json_schema()).encode()).hexdigest())
+"""
+    texts = {
+        subprocess.run(
+            [sys.executable, "-c", code, *names], cwd=tmp_path, capture_output=True, text=True, check=True
+        ).stdout
+        for names in ((), ("shear_buildings", "random_vibration"), ("plates", "shocks", "matrices"))
+    }
+    assert len(texts) == 1 and "'kind' is needed: " in texts.pop()
 
 
 def test_a_class_that_lacks_a_method_is_refused_at_import() -> None:
@@ -111,7 +304,7 @@ def test_a_kind_has_one_class() -> None:
     """A second class of a kind is refused when it is defined."""
     from rattlebox.model.restitutions import Coefficients, Restitution
 
-    with pytest.raises(TypeError, match=r"the kind 'constant' of Restitution is that of"):
+    with pytest.raises(TypeError, match=r"Other: the kind of Restitution 'constant' is that of rattlebox\.model\."):
 
         class Other(Restitution):
             kind: str = "constant"
@@ -121,24 +314,77 @@ def test_a_kind_has_one_class() -> None:
                 raise AssertionError
 
 
-def test_a_plugin_that_fails_is_named(plugin: Path) -> None:
-    """A plug-in that cannot be imported stops the first case with its name and that of its package."""
-    (plugin / "my_package" / "prism.py").rename(plugin / "my_package" / "away.py")
-    try:
-        result = program(
-            plugin,
-            "import rattlebox as rb\ntry: rb.Case.from_file('case.toml')\nexcept rb.RattleboxError as error: print(error)",
-        )
-    finally:
-        (plugin / "my_package" / "away.py").rename(plugin / "my_package" / "prism.py")
-    assert "the plug-in prism of the package my_package cannot be imported" in result.stdout, result.stderr
+TWICE = {
+    "reader": (
+        "from rattlebox.exchange.read.formats import record_reader\n@record_reader('.osc')\ndef other(path): return []",
+        "ending of a file of records, '.osc'",
+    ),
+    "own_reader": (
+        "from rattlebox.exchange.read.formats import record_reader\n@record_reader('.csv')\ndef other(path): return []",
+        "ending of a file of records, '.csv'",
+    ),
+    "material": (
+        "import rattlebox as rb\nfrom rattlebox.model.materials import add_material\n"
+        "add_material(rb.materials()['steel'], __name__)",
+        "material 'steel'",
+    ),
+    "measure": (
+        "from rattlebox.studies.work.measures import measure_function\n"
+        "@measure_function('m', 'peak')\ndef peak(run): return 0.0",
+        "measure 'peak'",
+    ),
+    "figure": (
+        "from rattlebox.results.figures import run_figure\n@run_figure('motion')\ndef draw(run): ...",
+        "figure of runs 'motion'",
+    ),
+    "command": (
+        "from rattlebox.cli.registry import command\n@command('run')\ndef mine(): ...",
+        "command 'run'",
+    ),
+    "study": (
+        "from rattlebox.studies.run.study import Study, study_function\n"
+        "class Mine(Study):\n    kind = 'load_levels'\nstudy_function(Mine)",
+        "kind of study 'load_levels'",
+    ),
+}
+
+
+@pytest.mark.parametrize("concept", TWICE)
+def test_two_packages_with_one_name_are_refused(plugin: Path, tmp_path: Path, concept: str) -> None:
+    """A name that two packages give stops every command with both of them: the case would depend on their order."""
+    code, what = TWICE[concept]
+    install(tmp_path, "other_package", {"other_package/twice.py": code}, "twice = other_package.twice")
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), str(plugin)]), "COLUMNS": "200"}
+    command = [sys.executable, "-m", "rattlebox.cli", "sweep", "study.toml", "-o", str(tmp_path / "levels.zarr")]
+    result = subprocess.run(command, cwd=plugin, env=environment, capture_output=True, text=True, check=False)
+    assert result.returncode == 2, (result.stdout, result.stderr)
+    assert what in result.stderr and "other_package" in result.stderr and "try: " in result.stderr, result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_a_plugin_that_fails_is_named(tmp_path: Path) -> None:
+    """A plug-in that cannot be imported gives a warning with its name and that of its package; all else works.
+
+    It stopped every command; the test asked for the name only.
+    """
+    install(tmp_path, "broken", {"broken/part.py": "import no_such_module"}, "part = broken.part")
+    (tmp_path / "case.toml").write_text(
+        CASE.replace('"prism", side = "50 mm", length = "35 mm"', '"sphere", radius = 0.03')
+    )
+    named = "the plug-in part of the package broken cannot be imported: ModuleNotFoundError: No module named 'no_such_"
+    result = program(
+        tmp_path, "import rattlebox as rb; print(rb.Case.from_file('case.toml').duration)", "-W", "default"
+    )
+    assert result.stdout == "0.05\n" and named in result.stderr
+    (code, _, error), (_, doctor, _) = rattlebox(tmp_path, "materials", "doctor")
+    assert code == 0 and f"warning: {named}" in error and "pip uninstall broken" in error
+    assert "cannot be imported" in doctor
 
 
 def test_a_kind_may_be_defined_after_the_first_case(tmp_path: Path) -> None:
     """A class that a notebook defines after it has run a case is accepted by the next case."""
-    (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     (tmp_path / "case.toml").write_text(CASE)
     first = "import rattlebox as rb\nrb.reference_case()\n"
     last = "\nassert rb.Case.from_file('case.toml').dampers[0].cavity.words() == Prism(side=0.05, length=0.035).words()"
-    result = program(tmp_path, first + code + last)
+    result = program(tmp_path, first + modules()["my_package/prism.py"] + last)
     assert result.returncode == 0, result.stderr

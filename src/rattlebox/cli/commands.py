@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
@@ -12,8 +13,10 @@ from typer.core import TyperCommand, TyperGroup
 
 from rattlebox._util.atomic_io import only_watched_files
 from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError
+from rattlebox._util.plugins import PluginWarning
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
+from rattlebox.cli.registry import commands_of_plugins
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -62,6 +65,9 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
+
+
+_REGISTERED = app.registered_commands
 
 
 def _command(name: str | None = None, *, example: str | None = None) -> Callable[[Command], Command]:
@@ -224,9 +230,9 @@ def plot(
     kind: Annotated[
         str | None,
         typer.Option(
-            help="Run: motion, energy, impacts, particles, responses, or case. Study: map, lines, or the kind in the study "
-            "file. Default: motion, or the figure of the study's kind; for a sweep, a map if both axes have more than "
-            "six values, otherwise lines."
+            help="Run: motion, energy, phase_portrait, impacts, particles, responses, or case. Study: map, lines, or "
+            "the kind in the study file. Default: motion, or the figure of the study's kind; for a sweep, a map if both "
+            "axes have more than six values, otherwise lines."
         ),
     ] = None,
     of: Annotated[str | None, typer.Option(help="Measure to draw; default the first. Studies only.")] = None,
@@ -347,6 +353,25 @@ def doctor() -> None:
     print_environment()
 
 
+def _add_commands_of_plugins() -> None:
+    """Add the commands of other packages, and print which packages cannot be used."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", PluginWarning)
+        present = {_name_of(each): each.callback for each in _REGISTERED}
+        own = [name for name, function in present.items() if getattr(function, "__module__", "") == __name__]
+        for name, function in commands_of_plugins(own).items():
+            if present.get(name) is not function:
+                app.command(name, cls=_Command)(function)
+    for each in caught:
+        if issubclass(each.category, PluginWarning):
+            typer.echo(printable(f"warning: {each.message}"), err=True)
+
+
+def _name_of(info: Any) -> str:
+    """Return the name of an own command as it is typed."""
+    return str(info.name or info.callback.__name__.replace("_", "-"))
+
+
 def run_command() -> None:
     """Run the command that the arguments of this process name.
 
@@ -355,6 +380,7 @@ def run_command() -> None:
     without a traceback, with exit code 2.
     """
     try:
+        _add_commands_of_plugins()
         with only_watched_files():
             code = app(standalone_mode=False)
         if code == STOPPED:

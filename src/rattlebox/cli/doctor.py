@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rattlebox import __version__
+from rattlebox._util.plugins import plugins
 from rattlebox.cli.terminal import terminal
 from rattlebox.core.choose import built, choice, core, supported
 
@@ -37,6 +38,9 @@ def print_environment() -> None:
         except PackageNotFoundError:
             state, package = ("not installed", f"'rattlebox[{extra}]'") if extra else ("missing", name)
             table.add_row(name, Text.assemble((state, "" if extra else "bold"), f": python -m pip install {package}"))
+    for plugin in plugins():
+        state = f"cannot be imported: {plugin.problem}" if plugin.problem else f"plug-in {plugin.name}"
+        table.add_row(plugin.package, f"{plugin.version} ({state})")
     terminal().print(table)
 
 

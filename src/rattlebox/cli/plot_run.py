@@ -132,12 +132,13 @@ def _write_film(run: Run | Snapshots, out: Path, options: dict[str, Any]) -> Non
 
 
 def _draw(run: Run | Snapshots, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
-    kinds: tuple[str, ...] = ("particles",) if isinstance(run, Snapshots) else (*run.groups, "responses", "case")
-    if (kind or kinds[0]) not in kinds:
+    kinds = ["particles"] if isinstance(run, Snapshots) else dir(run.plot)
+    wanted = kind or ("particles" if isinstance(run, Snapshots) else "motion")
+    if wanted not in kinds:
         raise CaseError(f"--kind {kind}: this run has no such figure\n  {nearest(str(kind), kinds)}")
     if isinstance(run, Snapshots):
         return plot_particles(run, number=number, **options)
-    if (kind or kinds[0]) != "particles":
+    if wanted != "particles":
         refuse_particle_options(colour=options.get("colour"), view=options.get("view"))
-    figure: Figure = getattr(run.plot, kind or kinds[0])(**options)
+    figure: Figure = getattr(run.plot, wanted)(**options)
     return figure

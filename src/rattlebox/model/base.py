@@ -27,7 +27,7 @@ from rattlebox._util.text import has_controls
 
 from .also_accepts import AlsoAccepts
 from .errors import Hint, nearest, translate
-from .kinds import register
+from .kinds import in_order, register
 from .signatures import PlainText, type_text
 
 if TYPE_CHECKING:
@@ -244,7 +244,7 @@ def vocabulary() -> dict[str, dict[str, dict[str, str]]]:
         part = stack.pop()
         if part is FilePart:  # its classes follow below their other base class, in the order of kinds
             continue
-        stack.extend(reversed(part.__subclasses__()))
+        stack.extend(reversed(in_order(part, part.__subclasses__())))
         kind = part.model_fields.get("kind")
         if kind is not None and kind.is_required():
             continue  # a base class of several kinds

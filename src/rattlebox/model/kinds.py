@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticUndefined, core_schema
 
-from rattlebox._util.plugins import load_plugins
+from rattlebox._util.plugins import load_plugins, owner_of, taken
 
 _compiled = False  # whether a validator lists kinds already
+
+Class = TypeVar("Class", bound=type[Any])
 
 
 def register(cls: type[BaseModel]) -> None:
@@ -20,18 +23,22 @@ def register(cls: type[BaseModel]) -> None:
         return
     missing = sorted(getattr(cls, "__abstractmethods__", ()))
     if missing:
-        raise TypeError(
-            f"{cls.__module__}.{cls.__name__} must define {', '.join(missing)}, as each {base.__name__} does"
-        )
+        raise TypeError(f"{owner_of(cls)} must define {', '.join(missing)}, as each {base.__name__} does")
     known = base.kinds.setdefault(field.default, cls)
-    if known.__qualname__ != cls.__qualname__:
-        raise TypeError(
-            f"{cls.__module__}.{cls.__name__}: the kind {field.default!r} of {base.__name__} is that of "
-            f"{known.__module__}.{known.__name__}; choose another name"
-        )
+    if owner_of(known) != owner_of(cls):
+        raise taken(f"kind of {base.__name__}", field.default, owner_of(known), owner_of(cls))
     base.kinds[field.default] = cls
     if _compiled:
         _compile_again(cls)
+
+
+def in_order(base: type[Any], classes: Iterable[Class]) -> list[Class]:
+    """Return classes in an order that does not depend on which module was imported first.
+
+    Those of the module of the base class come first, as they stand there: the first one is the usual choice.
+    """
+    here = base.__module__
+    return sorted(classes, key=lambda cls: ("", "") if cls.__module__ == here else (cls.__module__, cls.__qualname__))
 
 
 class AnyKind:
@@ -41,7 +48,8 @@ class AnyKind:
         global _compiled
         load_plugins()
         _compiled = True
-        choices = {kind: handler.generate_schema(cls) for kind, cls in source.kinds.items()}
+        kinds = {cls: kind for kind, cls in source.kinds.items()}
+        choices = {kinds[cls]: handler.generate_schema(cls) for cls in in_order(source, kinds)}
         return core_schema.tagged_union_schema(choices, discriminator="kind")
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from rattlebox._util.html import Catalogue
+from rattlebox._util.plugins import Registry, load_plugins
 
 from .also_accepts import AlsoAccepts
 from .base import Part
@@ -80,21 +81,36 @@ def materials() -> Materials:
     Returns
     -------
     dict of str to Material
-        In the order of the file; each material names its source. Notebooks display a table.
+        In the order of the file; each material names its source. Notebooks display a table. Materials of other packages
+        (`add_material`) follow.
     """
+    load_plugins()
     return Materials(_library())
 
 
 @cache
-def _library() -> dict[str, Material]:
+def _library() -> Registry[Material]:
     text = resources.files("rattlebox.model").joinpath("materials.toml").read_text(encoding="utf-8")
-    return {name: Material(name=name, **values) for name, values in tomllib.loads(text).items()}
+    library: Registry[Material] = Registry("material")
+    for name, values in tomllib.loads(text).items():
+        library.add(name, Material(name=name, **values), "rattlebox")
+    return library
+
+
+def add_material(material: Material, owner: str) -> Material:
+    """Add a material to the library, for a package outside; `owner` is its module, `__name__`."""
+    for field in ("name", "source"):
+        if not getattr(material, field):
+            raise Hint(f"a material of the library needs a {field}", f'{field} = "..."', [field])
+    _library().add(material.name, material, owner)
+    return material
 
 
 def find_material(value: Any, info: ValidationInfo) -> Any:
     """Return the material of a name in the library or in the case file; return any other value unchanged."""
     if isinstance(value, str):
-        library = _library() | (info.context or {})
+        load_plugins()
+        library = {**_library(), **(info.context or {})}
         if value not in library:
             raise Hint("there is no material of this name", nearest(value, library))
         return library[value]

@@ -11,11 +11,10 @@ import numpy as np
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.text import has_controls
-from rattlebox.exchange.read.ansys import read_full, read_result
+from rattlebox.exchange.read import ansys, modal_table, universal  # noqa: F401  (they register their readers)
+from rattlebox.exchange.read.formats import ModesRequest, modes_reader
 from rattlebox.exchange.read.guarded import errors_of
-from rattlebox.exchange.read.modal_table import read_modal_table
 from rattlebox.exchange.read.modes_in_file import ModesInFile, listed
-from rattlebox.exchange.read.universal import read_universal_modes
 
 from .elementwise import Vector
 from .errors import Hint, at, nearest
@@ -23,11 +22,7 @@ from .files import check_finite, existing, read_toml
 from .space import AXES
 from .units import numbers, parse, whole_number
 
-_TABLES = (".csv", ".txt", ".tsv")
-_UNIVERSAL = (".uff", ".unv", ".uf")
-_SUPPORTED = ".csv, .toml, .uff, .unv, .rst or .full"
 _TOML_FIELDS = ("frequencies", "damping_ratios", "modal_masses", "shapes", "participation")
-_DEFAULT_MODES = 10  # number of modes computed from a .full file
 _MOST_POINTS = 8  # largest number of points that are all read if none is named
 _SHOWN = 200  # characters of a name or a value in a message
 _SAME_UNIT = 1e-2  # relative difference of units that are the same
@@ -35,26 +30,21 @@ _SMALLEST_SHAPE = 1e-12  # kg^-1/2
 
 
 def read_modes(path: str, count: int | None, *, has_mass_unit: bool = False) -> ModesInFile | dict[str, Any]:
-    """Read modes from a file of any supported kind; from a TOML file as fields of Modal.
-
-    Units of a universal file that contradict each other are no error if the user states the unit of mass.
-    """
+    """Read modes from a file of any supported kind; from a TOML file as fields of Modal."""
     file = existing(path)
-    ending = file.suffix.lower()
-    if ending == ".toml":
-        return _from_toml(file)
-    if ending in _TABLES:
-        return read_modal_table(file)
-    if ending in _UNIVERSAL:
-        return read_universal_modes(file, needs_units=not has_mass_unit)
-    if ending == ".rst":
-        return read_result(file)
-    if ending == ".full":
-        return read_full(file, count or _DEFAULT_MODES)
-    raise DataError(f"{path}: modes cannot be read from files with the ending {ending!r}", _SUPPORTED)
+    form = modes_reader.of(file)
+    if form is None:
+        raise DataError(
+            f"{path}: modes cannot be read from files with the ending {file.suffix.lower()!r}",
+            ", ".join(sorted(modes_reader.endings)),
+        )
+    with errors_of(path, "modes"):
+        modes = form.read(file, ModesRequest(count, has_mass_unit))
+    return modes if isinstance(modes, ModesInFile) else dict(modes)
 
 
-def _from_toml(file: Path) -> dict[str, Any]:
+@modes_reader(".toml")
+def _from_toml(file: Path, _: ModesRequest) -> dict[str, Any]:
     try:
         content = file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:

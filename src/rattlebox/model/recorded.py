@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, cast
 
@@ -21,8 +21,8 @@ from pydantic import (
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.frozen import complete
-from rattlebox.exchange.read.ground_motion import read_ground_motion
-from rattlebox.exchange.read.universal import read_functions
+from rattlebox.exchange.read import ground_motion, universal  # noqa: F401  (they register their readers)
+from rattlebox.exchange.read.formats import Format, read_no_signals, record_reader, signals_in
 
 from .base import FilePart
 from .elementwise import Vector
@@ -33,7 +33,6 @@ from .signals import UNIT_NAMES, UNITS, Sampled, Unit
 from .units import SI, STANDARD_GRAVITY, Number, PositiveTime, factor_of, numbers, parse
 from .units_in_text import unit_above, units_in_lines
 
-_UNIVERSAL = (".uff", ".unv", ".uf")
 _SHOWN = 60  # characters of a line in a message
 _NO_UNIT = "unit left out; scale is a factor of the record apart from its unit"
 _UNIT_ADVICE = 'unit = "m/s^2", and scale = ..., the factor from the numbers to that unit'
@@ -103,31 +102,28 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
     return None, []
 
 
-def _time_history(path: Path, columns: Any) -> Columns:
-    """Read a time history of a universal file, by its name or number in `columns`; None stands for the only one."""
-    functions = [each for each in read_functions(path) if each.kind in (0, 1) and not np.iscomplexobj(each.values)]
-    names = [each.name for each in functions]
-    if not functions:
-        raise DataError(f"{path} contains no time history", "a function of type 1 in a set 58")
-    if columns is None and len(functions) > 1:
-        raise DataError(f"{path} contains {len(functions)} time histories ({', '.join(names)})", "columns = [1]")
+def _signal_format(path: str) -> Format[Callable[..., Any]] | None:
+    """Return the format of a file of time histories; None for tables of numbers."""
+    form = record_reader.of(path)
+    return None if form is None or form.read is read_no_signals else form
+
+
+def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: Any) -> Columns:
+    """Read a time history, by its name or number in `columns`; None stands for the only one."""
+    signals = signals_in(path, form)
+    names = [signal.name or f"number {number}" for number, signal in enumerate(signals, start=1)]
+    if columns is None and len(signals) > 1:
+        raise DataError(f"{path} contains {len(signals)} time histories ({', '.join(names)})", "columns = [1]")
     wanted = columns[0] if columns else 1
     index = names.index(wanted) if wanted in names else wanted - 1 if isinstance(wanted, int) else -1
-    if not 0 <= index < len(functions):
+    if not 0 <= index < len(signals):
         raise DataError(f"{path} contains no time history {wanted!r}, but {', '.join(names)}", "columns = [1]")
-    history = functions[index]
-    headings = [f"a ({history.unit})"] if history.unit else []
-    return Columns(history.abscissa, np.asarray(history.values, dtype=float), ([], headings))
-
-
-def _ground_motion(path: Path, unit: Any) -> Columns:
-    """Read an AT2 file."""
-    motion = read_ground_motion(path)
-    times = np.arange(motion.values.size, dtype=float) * motion.step
-    columns = Columns(times, motion.values, ([], [f"a ({motion.unit})"] if motion.unit else []), motion.lines)
-    if unit is None and not motion.unit and not any(units_in_lines(motion.lines, UNITS)):
+    signal = signals[index]
+    if form.needs_unit and unit is None and not signal.unit and not any(units_in_lines(signal.lines, UNITS)):
         raise DataError(f"{path} states no unit", 'unit = "g"')
-    return columns
+    headings = [f"a ({signal.unit})"] if signal.unit else []
+    times, values = np.asarray(signal.times, dtype=float), np.asarray(signal.values, dtype=float)
+    return Columns(times, values, ([], headings), signal.lines)
 
 
 def _words_on_text(columns: Columns) -> str:
@@ -281,22 +277,17 @@ class Record(FilePart, Sampled):
                 "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
             )
         step, wanted = values.get("dt"), values.get("unit")
-        is_universal = str(values["file"]).lower().endswith(_UNIVERSAL)
-        with at("columns"):
-            columns = as_columns(values.get("columns"), 1 if step is not None or is_universal else 2)
         with at("file"):
             path = absolute(values["file"])
-            is_ground_motion = path.lower().endswith(".at2")
-            if is_universal and columns == "rows":
-                raise Hint("a universal file has no rows", "columns = [1]", ["columns"])
-            if is_ground_motion and (step is not None or columns is not None):
-                raise Hint(f"{path} states its time step and has one record", "leave dt and columns out")
-            if is_ground_motion:
-                record = _ground_motion(existing(path), wanted)
-            elif is_universal:
-                record = _time_history(existing(path), columns)
-            else:
-                record = read_columns(path, columns, step)
+            form = _signal_format(path)
+        with at("columns"):
+            columns = as_columns(values.get("columns"), 1 if step is not None or form else 2)
+        with at("file"):
+            if form and columns == "rows":
+                raise Hint("a file of time histories has no rows", "columns = [1]", ["columns"])
+            if form and step is not None:
+                raise Hint(f"{path} states its time step", "leave dt out")
+            record = _signal(existing(path), form, columns, wanted) if form else read_columns(path, columns, step)
         name = " ".join(Path(path).name.split())
         stated, notes = _stated_unit(record, wanted if isinstance(wanted, str) else None, name)
         own = factor_of(wanted, UNITS) if isinstance(wanted, str) else None
@@ -352,7 +343,8 @@ class Record(FilePart, Sampled):
         """Time of the record that is 0 s in the run [s]."""
         if self.time_zero is not None and self.time_zero != "first":
             return self.time_zero
-        is_first = self.time_zero == "first" or (self.file or "").lower().endswith(_UNIVERSAL)
+        form = _signal_format(self.file) if self.file and self.time_zero is None else None
+        is_first = self.time_zero == "first" or (form is not None and form.starts_at_first)
         return float(self.times[0]) if is_first else 0.0
 
     def notes(self) -> Iterator[str]:

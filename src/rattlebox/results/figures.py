@@ -6,6 +6,8 @@ import inspect
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
+from rattlebox._util.plugins import Registry, load_plugins, owner_of
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -22,27 +24,27 @@ class _Entry(NamedTuple):
     needs: str
 
 
-_REGISTRY: dict[str, _Entry] = {}
+_REGISTRY: Registry[_Entry] = Registry("figure of runs")
 
 
 def run_figure(name: str, needs: str = "motion") -> Callable[[Draw], Draw]:
     """Register a function of a run as one of its figures."""
 
     def register(draw: Draw) -> Draw:
-        _REGISTRY[name] = _Entry(draw, needs)
+        _REGISTRY.add(name, _Entry(draw, needs), owner_of(draw))
         return draw
 
     return register
 
 
-_STUDIES: dict[str, Callable[..., Figure]] = {}
+_STUDIES: Registry[Callable[..., Figure]] = Registry("figure of the study")
 
 
 def study_figure(kind: str) -> Callable[[Draw], Draw]:
     """Register a function of a dataset as the figure of a kind of study."""
 
     def register(draw: Draw) -> Draw:
-        _STUDIES[kind] = draw
+        _STUDIES.add(kind, draw, owner_of(draw))
         return draw
 
     return register
@@ -50,6 +52,7 @@ def study_figure(kind: str) -> Callable[[Draw], Draw]:
 
 def figures_of_studies() -> dict[str, Callable[..., Figure]]:
     """Return the figure of each kind of study that has one of its own."""
+    load_plugins()
     return dict(_STUDIES)
 
 
@@ -94,6 +97,7 @@ class Plots:
             """Draw responses over time, one panel for each; see `rattlebox.plots.plot_responses`."""
 
     def __init__(self, run: Record) -> None:
+        load_plugins()
         self._run = run
 
     def __dir__(self) -> list[str]:

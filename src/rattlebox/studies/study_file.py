@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import inspect
+import dataclasses
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -195,7 +195,8 @@ def _with_materials(table: Any, own: Mapping[str, Material]) -> Any:
 
 def _with_samples(cls: type[Study], given: dict[str, Any], source: str) -> dict[str, Any]:
     """Return the fields with the tables `design` and `replicas` added to the axes of the study."""
-    name = next((name for name in ("axes", "starts") if name in inspect.signature(cls).parameters), None)
+    names = [field.name for field in dataclasses.fields(cls)]
+    name = next((name for name in ("axes", "starts") if name in names), None)
     if cls.kind in ("design", "sensitivity") or name is None:
         return given
     tables = {table: given.pop(table) for table in ("design", "replicas") if table in given}

@@ -12,12 +12,14 @@ import numpy as np
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 
+from .formats import ModesRequest, modes_reader
 from .guarded import arrays_from_child, errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
 _MASS_UNITS = {
     "SI": 1.0, "MKS": 1.0, "uMKS": 1.0, "CGS": 1e-3, "MPA": 1e3, "BFT": 14.593902937206, "BIN": 175.12683524648,
 }  # fmt: skip
+_DEFAULT_MODES = 10  # number of modes computed from a .full file
 _MOST_DENSE = 400  # degrees of freedom up to which a dense solver is used
 
 
@@ -44,7 +46,8 @@ def _read_once(path: Path, kind: str, modified: int, size: int) -> dict[str, Any
     return arrays_from_child(path, kind)
 
 
-def read_result(path: Path) -> ModesInFile:
+@modes_reader(".rst")
+def read_result(path: Path, _: ModesRequest) -> ModesInFile:
     """Read the modes of an Ansys result file."""
     with errors_of(path, "a result of Ansys"):
         result = _read_arrays(path, "rst")
@@ -78,7 +81,8 @@ def read_result(path: Path) -> ModesInFile:
         )
 
 
-def read_full(path: Path, count: int) -> ModesInFile:
+@modes_reader(".full")
+def read_full(path: Path, request: ModesRequest) -> ModesInFile:
     """Read the matrices of an Ansys .full file and compute their lowest modes.
 
     Notes
@@ -102,7 +106,7 @@ def read_full(path: Path, count: int) -> ModesInFile:
         K, M = (csr_array(matrix + triu(matrix, 1).T) for matrix in upper)
         fixed = {(int(node), int(axis)) for node, axis in arrays["fixed"][:, :2]}
         free = np.array([(int(node), int(axis)) not in fixed for node, axis in numbers])
-        values, free_vectors = lowest_modes(K[free][:, free], M[free][:, free], count)
+        values, free_vectors = lowest_modes(K[free][:, free], M[free][:, free], request.count or _DEFAULT_MODES)
         axes = numbers[:, 1]
         vectors = np.zeros((len(numbers), values.size))
         vectors[free] = free_vectors

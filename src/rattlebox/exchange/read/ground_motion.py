@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import DataError
 
+from .formats import SignalInFile, record_reader
 from .guarded import errors_of
 
 _COUNT = re.compile(r"NPTS\s*=\s*(\d+)", re.I)
@@ -107,6 +108,14 @@ def read_ground_motion(path: Path) -> GroundMotion:
         return GroundMotion(
             float(step), samples, unit[1].strip(".,()") if unit else "", tuple(enumerate(lines[:above], start=1))
         )
+
+
+@record_reader(".at2", needs_unit=True)
+def ground_motion_signals(path: Path) -> list[SignalInFile]:
+    """Return the record of an AT2 file."""
+    motion = read_ground_motion(path)
+    times = np.arange(motion.values.size, dtype=float) * motion.step
+    return [SignalInFile(times, motion.values, unit=motion.unit, lines=motion.lines)]
 
 
 def _is_positive(text: str) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.text import has_controls
 
+from .formats import ModesRequest, modes_reader
 from .guarded import errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
@@ -27,7 +28,8 @@ _PARTICIPATION = {"": None, "kg^0.5": 1.0, "kg^1/2": 1.0, "t^0.5": 1e3, "t^1/2":
 _MASS = {"": None, "kg": 1.0, "g": 1e-3, "t": 1e3}
 
 
-def read_modal_table(path: Path) -> ModesInFile:
+@modes_reader(".csv", ".txt", ".tsv")
+def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
     """Read a table of modes from a CSV file."""
     with errors_of(path, "a table of modes"):
         read_start(path, 64)

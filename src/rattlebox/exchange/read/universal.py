@@ -12,6 +12,7 @@ import numpy as np
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 
+from .formats import ModesRequest, SignalInFile, modes_reader, record_reader
 from .guarded import errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
@@ -311,6 +312,23 @@ def read_functions(path: Path) -> list[Function]:
                 )
             )
         return functions
+
+
+@record_reader(".uff", ".unv", ".uf", starts_at_first=True)
+def time_histories(path: Path) -> list[SignalInFile]:
+    """Return the time histories among the functions of a universal file."""
+    functions = [each for each in read_functions(path) if each.kind in (0, 1) and not np.iscomplexobj(each.values)]
+    if not functions:
+        raise DataError(f"{path} contains no time history", "a function of type 1 in a set 58")
+    return [
+        SignalInFile(each.abscissa, np.asarray(each.values, dtype=float), each.name, each.unit) for each in functions
+    ]
+
+
+@modes_reader(".uff", ".unv", ".uf")
+def modes_of_universal(path: Path, request: ModesRequest) -> ModesInFile:
+    """Read the modes of a universal file; units that contradict each other are no error if the user states them."""
+    return read_universal_modes(path, needs_units=not request.has_mass_unit)
 
 
 def _label(block: dict[str, Any], axis: str) -> str:

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox._util.plugins import Registry, load_plugins
 from rattlebox.report.kinds.unfinished import UnfinishedRun
 from rattlebox.report.parts import Kind
 from rattlebox.results.run import Run
@@ -30,15 +31,20 @@ KINDS: Mapping[str, tuple[str, str]] = {
 }
 """Module in this folder, and its `Kind`, by the attribute `study` of a dataset; or "run" and "comparison"."""
 
-REGISTERED: dict[str, Kind[Any]] = {}
-"""Kinds of reports about studies of other packages, by the attribute `study`."""
+_REGISTERED: Registry[Kind[Any]] = Registry("report about the study")
+
+
+def add_report(study: str, kind: Kind[Any], owner: str) -> None:
+    """Add the content of the report about a kind of study of another package; `owner` is its module, `__name__`."""
+    _REGISTERED.add(study, kind, owner)
 
 
 def kind_of(result: object) -> Kind[Any]:
     """Return the kind of a result; datasets without one of their own are reported as sweeps."""
+    load_plugins()
     found = _name(result)
-    if found in REGISTERED:
-        return REGISTERED[found]
+    if found in _REGISTERED:
+        return _REGISTERED[found]
     module, name = KINDS[found]
     kind: Kind[Any] = getattr(import_module(f"{__name__}.{module}"), name)
     return kind
@@ -55,7 +61,7 @@ def _name(result: object) -> str:
 
     if isinstance(result, xr.Dataset):
         name = str(result.attrs.get("study", "sweep"))
-        return name if name in KINDS or name in REGISTERED else "sweep"
+        return name if name in KINDS or name in _REGISTERED else "sweep"
     if isinstance(result, Mapping) and result and all(_name(each) == "damping_curve" for each in result.values()):
         return "damping_curve"
     raise CaseError(

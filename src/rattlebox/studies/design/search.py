@@ -34,7 +34,7 @@ from rattlebox.studies.run.study import known_measures
 from rattlebox.studies.work.case_digest import describe_case
 from rattlebox.studies.work.fingerprint import fingerprint
 from rattlebox.studies.work.impact_work import ImpactWork
-from rattlebox.studies.work.measures import INTERVAL, MEASURES, check_names
+from rattlebox.studies.work.measures import INTERVAL, about, check_names
 from rattlebox.studies.work.particle_work import ParticleWork
 from rattlebox.studies.work.work_of_case import first_refused, work_of_case
 
@@ -512,7 +512,5 @@ def _with_goal(objective: Objective) -> dict[str, str]:
 
 
 def _attributes(objective: Objective) -> dict[str, str]:
-    if objective.name in MEASURES:
-        return {"units": MEASURES[objective.name].units, "long_name": MEASURES[objective.name].long_name}
-    units = "1" if objective.name == DAMPING_RATIO else ""
-    return {"units": units, "long_name": objective.name.replace("_", " ")}
+    declared = about(objective.measure)
+    return {"units": "1" if objective.name == DAMPING_RATIO else declared.units, "long_name": declared.long_name}

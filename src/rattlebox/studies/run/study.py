@@ -31,13 +31,14 @@ from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.interrupts import remember_ctrl_c
+from rattlebox._util.plugins import Registry, owner_of
 from rattlebox.analysis import equivalent_damping
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, PositiveTime, Whole
 from rattlebox.studies.grid.sampling import RandomDesign, Replicas, Spaced
 from rattlebox.studies.run.runner import run_work
-from rattlebox.studies.work.measures import MEASURES, check_names
+from rattlebox.studies.work.measures import MEASURES, check_names, measure_function, named_functions
 from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
@@ -45,8 +46,9 @@ if TYPE_CHECKING:
 
     from rattlebox.results.run import Run
 
-CONFIG = ConfigDict(extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True)
-"""Configuration of the dataclasses of all kinds."""
+CONFIG = ConfigDict(extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True, defer_build=True)
+"""Configuration of the dataclasses of all kinds. Their validators contain that of a case, which plug-ins add kinds to when
+it is built: after all modules of this package that the plug-ins import."""
 
 Parameters = ParamSpec("Parameters")
 
@@ -73,7 +75,7 @@ class Study:
     """
 
     kind: ClassVar[str]
-    kinds: ClassVar[dict[str, type[Study]]] = {}
+    kinds: ClassVar[Registry[type[Study]]] = Registry("kind of study")
     """Classes by kind; `study_function` adds them."""
 
     case: InstanceOf[Case]
@@ -136,17 +138,20 @@ class Study:
 def study_function(kind: Callable[Parameters, Study]) -> Callable[Parameters, xr.Dataset]:
     """Return the function that runs a study of a kind; its arguments are the fields of the kind."""
     cls = cast("type[Study]", kind)
-    if Study.kinds.setdefault(cls.kind, cls) is not cls:
-        raise TypeError(f"{cls.__module__}.{cls.__name__}: there is a kind of study {cls.kind!r}; choose another name")
+    Study.kinds.add(cls.kind, cls, owner_of(cls))
     shared = [field.name for field in dataclasses.fields(Study) if field.kw_only]
-    arguments = inspect.signature(cls).parameters.values()
-    signature = inspect.Signature(
-        [
-            argument.replace(annotation=_readable(str(argument.annotation)))
-            for argument in sorted(arguments, key=lambda argument: argument.name in shared)
-        ],
-        return_annotation="xarray.Dataset",
-    )
+    # pydantic sets the signature of the class when its validator is built, which is later.
+    arguments = [
+        inspect.Parameter(
+            field.name,
+            inspect.Parameter.KEYWORD_ONLY if field.kw_only else inspect.Parameter.POSITIONAL_OR_KEYWORD,
+            default=inspect.Parameter.empty if field.default is dataclasses.MISSING else field.default,
+            annotation=_readable(str(field.type)),
+        )
+        for field in dataclasses.fields(cls)
+    ]
+    arguments.sort(key=lambda argument: (argument.kind, argument.name in shared))
+    signature = inspect.Signature(arguments, return_annotation="xarray.Dataset")
 
     def function(*args: Parameters.args, **kwargs: Parameters.kwargs) -> xr.Dataset:
         return make_study(cls, signature.bind(*args, **kwargs).arguments).run()
@@ -252,8 +257,7 @@ def _if_table(value: Any, handler: Callable[[Any], Any]) -> Any:
     return handler(value) if not isinstance(value, Mapping) else value
 
 
-_FUNCTIONS: dict[str, Callable[..., Any]] = {"equivalent_damping": equivalent_damping}
-"""Functions of a Run that study files can name."""
+measure_function("1", "equivalent damping ratio")(equivalent_damping)
 
 
 def _as_measures(value: Any) -> Any:
@@ -261,14 +265,15 @@ def _as_measures(value: Any) -> Any:
         value = [value]
     if not isinstance(value, Iterable):
         raise Hint(f"{value!r} is not the name of a measure or a function of a Run", '"impact_share"')
-    return [_FUNCTIONS.get(each, each) if isinstance(each, str) else each for each in value]
+    functions = named_functions()
+    return [functions.get(each, each) if isinstance(each, str) else each for each in value]
 
 
 def known_measures(measures: Any) -> list[Any]:
     """Return measures as a list; raise if one is unknown or two have the same name."""
     for index, name in enumerate(measures):
         if isinstance(name, str) and name not in MEASURES:
-            raise Hint("it is not the name of a measure", nearest(name, MEASURES), [index])
+            raise Hint("it is not the name of a measure", nearest(name, [*MEASURES, *named_functions()]), [index])
         if not isinstance(name, str) and not callable(name):
             raise Hint(f"{name!r} is not the name of a measure or a function of a Run", '"impact_share"', [index])
     check_names(measures)

@@ -16,7 +16,7 @@ from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.random_vibration import Random
 from rattlebox.studies.work.case_digest import describe_case
 from rattlebox.studies.work.fingerprint import fingerprint
-from rattlebox.studies.work.measures import INTERVAL, MEASURES, name_of
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, about, name_of
 from rattlebox.studies.work.observed import Observed
 
 if TYPE_CHECKING:
@@ -89,8 +89,9 @@ class CaseWork:
                 "long_name": f"half of the 95 % interval, {MEASURES[name].long_name}",
             }
             outputs[name + INTERVAL] = ((), "float64", attributes)
-        for name in self.functions:
-            outputs[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
+        for name, function in self.functions.items():
+            declared = about(function)
+            outputs[name] = ((), "float64", {"units": declared.units, "long_name": declared.long_name})
         return outputs
 
     @property

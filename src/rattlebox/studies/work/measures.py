@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rattlebox._util.batch_means import ENOUGH_DECAY, FEWEST_VALUES, half_widths
 from rattlebox._util.html import Catalogue
+from rattlebox._util.plugins import Registry, load_plugins, owner_of
 from rattlebox.model.errors import Hint
 from rattlebox.results.schema import OUTCOMES
 
@@ -127,6 +128,39 @@ _MEASURES: dict[str, Measure] = {
     "loss_factor": Measure("1", "loss factor", samples=True, cyclic=True, average="mean"),
 }
 MEASURES = Measures(_MEASURES)
+
+
+_FUNCTIONS: Registry[tuple[Callable[..., Any], Measure]] = Registry("measure")
+for _name in _MEASURES:
+    _FUNCTIONS.reserve(_name, "rattlebox")
+
+Function = TypeVar("Function", bound="Callable[..., Any]")
+
+
+def measure_function(units: str, long_name: str) -> Callable[[Function], Function]:
+    """Register a function of a Run as a measure that study files name by the name of the function."""
+
+    def register(function: Function) -> Function:
+        check_names([function])
+        _FUNCTIONS.add(function.__name__, (function, Measure(units, long_name)), owner_of(function))
+        return function
+
+    return register
+
+
+def named_functions() -> dict[str, Callable[..., Any]]:
+    """Return the functions of a Run that study files can name, also those of other packages."""
+    load_plugins()
+    return {name: function for name, (function, _) in _FUNCTIONS.items()}
+
+
+def about(measure: Any) -> Measure:
+    """Return the declaration of a measure; that of a function which is not registered has no unit."""
+    name = name_of(measure)
+    if name in MEASURES:
+        return MEASURES[name]
+    function, declared = _FUNCTIONS.get(name, (None, None))
+    return declared if declared and function is measure else Measure("", name.replace("_", " "))
 
 
 MOST_BATCHES = 64

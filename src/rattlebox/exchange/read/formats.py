@@ -1,0 +1,143 @@
+"""Registries of the formats of files: each reader registers the endings, or the first bytes, of its files.
+
+A file of modes is read to `ModesInFile`, a file of time histories to a list of `SignalInFile`: arrays with their names and
+units. The model converts units and selects points and signals, the same for all formats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox._util.exceptions import DataError
+from rattlebox._util.plugins import Registry, load_plugins, owner_of
+
+from .guarded import errors_of
+from .modes_in_file import ModesInFile
+
+Read = TypeVar("Read", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True, eq=False)
+class SignalInFile:
+    """A time history in a file.
+
+    Attributes
+    ----------
+    times, values : (n,) float
+        Times [s], and values in `unit`.
+    name
+        Name by which `columns` of a record selects it.
+    unit
+        Unit as the file writes it, such as "g" or "m/s^2"; "" if the file states none.
+    lines
+        Numbers and texts of the lines above the values, in which a unit may be.
+    """
+
+    times: NDArray[np.float64]
+    values: NDArray[np.float64]
+    name: str = ""
+    unit: str = ""
+    lines: tuple[tuple[int, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class ModesRequest:
+    """What a case asks of a file of modes."""
+
+    count: int | None = None
+    """Number of modes; None for those that the file has."""
+    has_mass_unit: bool = False
+    """Whether the user states the unit of mass, so that contradicting units of the file are no error."""
+
+
+class Format(NamedTuple, Generic[Read]):
+    """A reader, and what is known about its files."""
+
+    read: Read
+    starts_at_first: bool = False
+    """Whether the first point of a record is 0 s of a run, unless `time_zero` sets another."""
+    needs_unit: bool = False
+    """Whether a record without a unit is refused, because its values are rarely in SI units."""
+
+
+class Formats(Generic[Read]):
+    """Readers by the ending of a file, or by its first bytes for files without a known ending."""
+
+    def __init__(self, content: str) -> None:
+        self._endings: Registry[Format[Read]] = Registry(f"ending of a file of {content},")
+        self._starts: Registry[Format[Read]] = Registry(f"start of a file of {content},")
+
+    def __call__(
+        self,
+        *endings: str,
+        starts: Sequence[bytes] = (),
+        starts_at_first: bool = False,
+        needs_unit: bool = False,
+    ) -> Callable[[Read], Read]:
+        """Register a function as the reader of files with an ending, such as ".uff", or with some first bytes."""
+
+        def register(read: Read) -> Read:
+            form = Format(read, starts_at_first, needs_unit)
+            for ending in endings:
+                self._endings.add(ending.lower(), form, owner_of(read))
+            for start in starts:
+                self._starts.add(start.hex(), form, owner_of(read))
+            return read
+
+        return register
+
+    def of(self, path: str | Path) -> Format[Read] | None:
+        """Return the format of a file; None if neither its ending nor its start is known."""
+        load_plugins()
+        path = Path(path)
+        if path.suffix.lower() in self._endings:
+            return self._endings[path.suffix.lower()]
+        if not self._starts:
+            return None
+        try:
+            with path.open("rb") as file:
+                start = file.read(max(len(key) // 2 for key in self._starts)).hex()
+        except OSError:  # the reader of tables of numbers has the message
+            return None
+        return next((form for key, form in self._starts.items() if start.startswith(key)), None)
+
+    @property
+    def endings(self) -> Sequence[str]:
+        """Endings of all readers, also of other packages."""
+        load_plugins()
+        return tuple(self._endings)
+
+
+modes_reader: Formats[Callable[[Path, ModesRequest], ModesInFile | Mapping[str, Any]]] = Formats("modes")
+"""Decorator of functions of a path and a `ModesRequest` that return the modes in a file."""
+
+record_reader: Formats[Callable[[Path], Iterable[SignalInFile]]] = Formats("records")
+"""Decorator of functions of a path that return the time histories in a file."""
+
+
+@record_reader(".csv", ".txt", ".tsv", ".npy", ".npz", ".mat")
+def read_no_signals(path: Path) -> list[SignalInFile]:
+    """Return nothing: tables of numbers have columns, which the model reads (`rattlebox.model.records`)."""
+    return []
+
+
+def signals_in(path: Path, form: Format[Callable[[Path], Iterable[SignalInFile]]]) -> list[SignalInFile]:
+    """Return the time histories in a file; raise if there is none, or one is no series of numbers."""
+    with errors_of(path, "a record"):
+        signals = list(form.read(path))
+        for number, signal in enumerate(signals, start=1):
+            times, values = np.shape(signal.times), np.shape(signal.values)
+            if times != values or len(times) != 1:
+                raise DataError(
+                    f"{path}: the time history {number} has times of the shape {times} and values of the shape {values}",
+                    "a reader that returns as many times as values",
+                )
+    if not signals:
+        raise DataError(f"{path} contains no time history", "a file with a time history")
+    return signals
