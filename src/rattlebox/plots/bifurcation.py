@@ -85,9 +85,8 @@ def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, 
     with figure_style(size):
         figure = StyledFigure(size, 0.95 if size == "column" else 0.6)
         directions = maps["direction"].values.tolist()
-        upper, lower = figure.subplots(
-            2, 1, sharex=True, height_ratios=(8 - len(directions) * 0.5, len(directions) * 0.6)
-        )
+        heights = (8 - len(directions) * 0.5, len(directions) * 0.6)
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=heights)
         _draw_points(upper, parameter.numbers, values, directions)
         _draw_periods(lower, parameter.numbers, maps)
         parameter.label(lower, "x")
@@ -99,17 +98,9 @@ def _draw_points(axes: Axes, x: Vector, values: xr.DataArray, directions: list[s
     divisor, prefixed = (1.0, unit) if unit in ("rad", "") else scaled(values.values, unit)
     for number, direction in reversed(list(enumerate(directions))):  # the first one is drawn on top
         y = values.isel(direction=number).values / divisor
-        axes.plot(
-            np.repeat(x, y[0].size),
-            y.ravel(),
-            linestyle="none",
-            marker="o",
-            markersize=pen(0.9 + 0.7 * number),
-            markeredgewidth=0,
-            color=SERIES_COLOURS[number],
-            label=direction,
-            rasterized=True,
-        )
+        dots: Style = {"linestyle": "none", "marker": "o", "markersize": pen(0.9 + 0.7 * number), "markeredgewidth": 0}
+        colour = SERIES_COLOURS[number]
+        axes.plot(np.repeat(x, y[0].size), y.ravel(), color=colour, label=direction, rasterized=True, **dots)
     label(axes, "y", TEXTS.get(str(values.name)) or capitalised(name_of(values)), prefixed)
     axes.margins(y=0.04)
     if unit == "rad":
@@ -143,12 +134,5 @@ def _draw_periods(axes: Axes, x: Vector, maps: xr.Dataset) -> None:
     frame: Style = {"edgecolor": FAINT, "linewidth": pen(0.5)}
     handles = [Patch(facecolor=colour, label=text, **frame) for text, colour in colours.items()]
     figure = present(axes.get_figure(root=True))
-    figure.legend(
-        handles=handles,
-        title="Period in cycles",
-        loc="outside lower center",
-        ncols=len(handles),
-        handlelength=1.0,
-        columnspacing=1.0,
-        title_fontsize="small",
-    )
+    spacing: Style = {"handlelength": 1.0, "columnspacing": 1.0, "title_fontsize": "small"}
+    figure.legend(handles=handles, title="Period in cycles", loc="outside lower center", ncols=len(handles), **spacing)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .labels import capitalised
-from .style import FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, StyledFigure, figure_style, label, pen, scaled
+from .style import ABOVE, FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, StyledFigure, figure_style, label, pen, scaled
 from .types import Size, Style
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def _draw_impacts(axes: Axes, result: xr.Dataset) -> None:
     axes.margins(0.08)
     label(axes, "x", "Approach speed", unit)
     label(axes, "y", "Restitution", "")
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
+    axes.legend(**ABOVE, ncols=3)
 
 
 def _places(result: xr.Dataset) -> list[str]:
@@ -111,7 +111,7 @@ def _draw_data(axes: Axes, result: xr.Dataset) -> None:
         label(axes, "x", "Number of the datum", "")
     axes.margins(x=0.08)
     label(axes, "y", "Value over measured value", "")
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
+    axes.legend(**ABOVE, ncols=2)
 
 
 def _axis(one: xr.Dataset, values: xr.DataArray) -> tuple[float, str, str]:
@@ -137,7 +137,7 @@ def _draw_region(axes: Axes, result: xr.Dataset) -> None:
     axes.errorbar(value[0], value[1], xerr=bars[:, :1], yerr=bars[:, 1:], label="value and 95 % intervals", **style)
     label(axes, "x", scales[0][2], scales[0][1])
     label(axes, "y", scales[1][2], scales[1][1])
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1))
+    axes.legend(**ABOVE)
 
 
 def _draw_profile(axes: Axes, one: xr.Dataset, threshold: float) -> None:
@@ -151,4 +151,4 @@ def _draw_profile(axes: Axes, one: xr.Dataset, threshold: float) -> None:
     axes.set_ylim(0, min(4 * threshold, max(float(one.profile.max()), 1.5 * threshold)))
     label(axes, "x", text, unit)
     label(axes, "y", "Chi² above its minimum", "")
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
+    axes.legend(**ABOVE, ncols=2)

@@ -20,7 +20,7 @@ from ..model.packing import Bed
 from ..model.particle_damper import ParticleDamper
 from ..prepare.settle import settle
 from .spheres import draw_spheres
-from .style import FAINT, INK, SERIES_COLOURS, pen
+from .style import FAINT, INK, SERIES_COLOURS, pen, series_colour
 from .technical import SOLID, arrow, dimension, text
 from .types import Style
 
@@ -60,7 +60,7 @@ def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
     materials = [ball.material.name or "own material" for ball in damper.balls]
     names = list(dict.fromkeys(materials))
     for centre, radius, material in zip(centres, radii, materials, strict=True):
-        colour = SERIES_COLOURS[names.index(material) % len(SERIES_COLOURS)]
+        colour = series_colour(names.index(material))
         axes.add_patch(Circle((centre, 0.0), radius, facecolor=colour, alpha=0.35, edgecolor=INK, lw=pen(0.8)))
     unit = 0.16 * max(high, 0.5 * length)
     dimension(axes, (-length / 2, bottom), (length / 2, bottom), amount(length, "m"), -1.2 * unit)
@@ -159,7 +159,7 @@ def positions_at_start(damper: ParticleDamper) -> Array:
 
 def _draw_particles(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
     species = damper.contents.species
-    colours = np.array([_rgb(SERIES_COLOURS[k % len(SERIES_COLOURS)]) for k in species])
+    colours = np.array([_rgb(series_colour(k)) for k in species])
     extent = (-half_x, half_x, -half_z, half_z)
     width = max(16, round(_PIXELS * min(1.0, half_x / half_z)))
     places = positions_at_start(damper) @ _FRONT.T

@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from .style import FAINT, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, StyledFigure, figure_style, label, pen, scaled
+from .style import (
+    ABOVE,
+    FAINT,
+    SERIES_MARKERS,
+    SERIES_STYLES,
+    StyledFigure,
+    figure_style,
+    label,
+    pen,
+    scaled,
+    series_colour,
+)
 from .types import Size
 
 if TYPE_CHECKING:
@@ -48,14 +59,8 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
             _draw(axes, curve, name, number, divisor)
         first = next(iter(named.values()))
         for curve in named.values():
-            axes.plot(
-                curve.amplitude / divisor,
-                100 * curve.bare,
-                color=FAINT,
-                lw=pen(0.8),
-                zorder=0,
-                label="structure alone" if curve is first else None,
-            )
+            text = "structure alone" if curve is first else None
+            axes.plot(curve.amplitude / divisor, 100 * curve.bare, color=FAINT, lw=pen(0.8), zorder=0, label=text)
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter("{x:g}")
@@ -63,12 +68,12 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
         axes.set_ylim(bottom=0)
         label(axes, "x", "Amplitude", unit)
         label(axes, "y", "Damping ratio", "%")
-        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
+        axes.legend(**ABOVE, ncols=3)
     return figure
 
 
 def _draw(axes: Axes, curve: xarray.Dataset, name: str, number: int, divisor: float) -> None:
-    colour = SERIES_COLOURS[number % len(SERIES_COLOURS)]
+    colour = series_colour(number)
     x = curve.amplitude / divisor
     axes.fill_between(x, 100 * curve.lower, 100 * curve.upper, color=colour, alpha=0.25, lw=0)
     axes.plot(

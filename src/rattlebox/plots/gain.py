@@ -52,6 +52,7 @@ def _draw_moments(axes: Axes, run: Run) -> None:
     axes.set_ylim(-0.62, 0.5)
     axes.set_aspect("equal", anchor="W")
     thin: Style = {"edgecolor": CHANNEL_COLOURS["viscous"], "linewidth": pen(0.8)}
+    ball_style: Style = {"facecolor": CHANNEL_COLOURS["normal"], "edgecolor": INK, "linewidth": pen(0.6)}
     for k, moment in enumerate(np.linspace(0.01, 1.0, MOMENTS) * period):
         x, b = (float(np.interp(moment, time, values)) for values in (displacement, ball))
         rest = k * _DISTANCE
@@ -61,11 +62,7 @@ def _draw_moments(axes: Axes, run: Run) -> None:
         axes.add_patch(Rectangle((middle - outer, -_HEIGHT), 2 * outer, 2 * _HEIGHT, facecolor="#e3ecf3", **thin))
         inner = _HEIGHT - _WALL
         axes.add_patch(Rectangle((middle - room, -inner), 2 * room, 2 * inner, facecolor="white", **thin))
-        axes.add_patch(
-            Circle(
-                (middle + scale * b, 0), _BALL, facecolor=CHANNEL_COLOURS["normal"], edgecolor=INK, linewidth=pen(0.6)
-            )
-        )
+        axes.add_patch(Circle((middle + scale * b, 0), _BALL, **ball_style))
         axes.text(rest, -0.6, f"{1e3 * moment:.0f} ms", color=_GREY, fontsize="small", ha="center", va="center")
 
 

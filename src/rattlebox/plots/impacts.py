@@ -15,13 +15,13 @@ from ..results.figures import run_figure
 from .style import (
     FAINT,
     INK,
-    SERIES_COLOURS,
     StyledFigure,
     figure_style,
     label,
     letters,
     pen,
     scaled,
+    series_colour,
     shorten,
     time_axis,
 )
@@ -69,9 +69,8 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
     panels = [quantity for quantity in quantities if np.any(np.isfinite(quantity[2]))] or [quantities[0]]
     time = scaled(run.arrays.time, "s")
     with figure_style(size):
-        figure = StyledFigure(
-            size, (0.2 if size == "column" else 0.1) + (0.34 if size == "column" else 0.18) * len(panels)
-        )
+        margin, panel_height = (0.2, 0.34) if size == "column" else (0.1, 0.18)
+        figure = StyledFigure(size, margin + panel_height * len(panels))
         axes = list(np.ravel(figure.subplots(len(panels), 1, sharex=True)))
         for panel, (name, unit, values) in zip(axes, panels, strict=True):
             scale, prefixed = scaled(values, unit) if unit else (1.0, "")
@@ -111,7 +110,7 @@ def _scatter(axes: Axes, arrays: RunArrays, x: Vector, y: Vector) -> None:
     for d in range(len(arrays.dampers)):
         for side, marks in _SIDES.items():
             here = (log.damper == d) & (_sides(arrays) == side)
-            axes.scatter(x[here], y[here], s=area, **_marker_style(marks, SERIES_COLOURS[d % len(SERIES_COLOURS)]))
+            axes.scatter(x[here], y[here], s=area, **_marker_style(marks, series_colour(d)))
     axes.margins(x=0.02, y=0.08)
 
 
@@ -141,7 +140,7 @@ def _add_legend(figure: Figure, arrays: RunArrays) -> None:
     room = letters(figure.axes[0]) // 3
     dampers = [
         Line2D([], [], linestyle="", markersize=1.6 * size, marker="s", label=shorten(name, room),
-               color=SERIES_COLOURS[d % len(SERIES_COLOURS)])
+               color=series_colour(d))
         for d, name in enumerate(arrays.dampers)
     ]  # fmt: skip
     if not sides:

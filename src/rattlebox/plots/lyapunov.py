@@ -14,7 +14,7 @@ from rattlebox._util.exceptions import CaseError
 
 from ..results.figures import study_figure
 from .labels import StudyAxis, unit_of
-from .style import FAINT, INK, SERIES_COLOURS, StyledFigure, colour_bar, figure_style, label, pen
+from .style import ABOVE, FAINT, INK, SERIES_COLOURS, StyledFigure, colour_bar, figure_style, label, pen
 from .types import Size, Style
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ def _map(figure: Figure, study: xarray.Dataset, values: xarray.DataArray) -> Non
         grey = np.where(neutral, 0.0, np.nan)
         axes.pcolormesh(x.edges, y.edges, grey, cmap=ListedColormap([FAINT]), rasterized=True)
         patch = Patch(color=FAINT, label="indistinguishable from zero")
-        axes.legend(handles=[patch], loc="lower left", bbox_to_anchor=(0.0, 1.0))
+        axes.legend(handles=[patch], **ABOVE)
     x.label(axes, "x")
     y.label(axes, "y")
     unit = unit_of(values)

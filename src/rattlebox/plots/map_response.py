@@ -11,7 +11,18 @@ from matplotlib.lines import Line2D
 from .labels import log_ticks
 from .response import level_handles
 from .selection import select
-from .style import FAINT, INK, SERIES_COLOURS, SERIES_STYLES, StyledFigure, figure_style, label, pen, scaled
+from .style import (
+    ABOVE,
+    FAINT,
+    INK,
+    SERIES_STYLES,
+    StyledFigure,
+    figure_style,
+    label,
+    pen,
+    scaled,
+    series_colour,
+)
 from .types import Size, Style, Vector
 
 if TYPE_CHECKING:
@@ -63,7 +74,7 @@ def plot_response_from_map(
         left, right = figure.subplots(2, 1) if size == "column" else figure.subplots(1, 2, width_ratios=[3, 2])
         _draw_response(left, one, per_level)
         _draw_damping(right, one)
-        left.legend(handles=level_handles(response), loc="lower left", bbox_to_anchor=(0, 1), ncols=4)
+        left.legend(handles=level_handles(response), **ABOVE, ncols=4)
         figure.legend(handles=_handles(one), loc="outside lower left", ncols=2 if size == "column" else 4)
     return figure
 
@@ -78,7 +89,7 @@ def _draw_response(axes: Axes, response: xarray.Dataset, per_level: bool) -> Non
     bare = (response.bare_amplitude / level)[:1] if per_level else response.bare_amplitude
     axes.plot(frequency, bare.T / divisor, color=FAINT, lw=pen(0.8), zorder=0)
     for k, values in enumerate((amplitude / divisor).values):
-        colour = SERIES_COLOURS[k % len(SERIES_COLOURS)]
+        colour = series_colour(k)
         one = response.isel(level=k)
         unstable = one.is_unstable.values
         for stable in (True, False):
@@ -121,7 +132,7 @@ def _draw_damping(axes: Axes, response: xarray.Dataset) -> None:
     label(axes, "x", "Amplitude of the damper", unit)
     label(axes, "y", "Damping ratio", "%")
     if axes.lines:
-        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
+        axes.legend(**ABOVE, ncols=2)
 
 
 def _handles(response: xarray.Dataset) -> list[Line2D]:

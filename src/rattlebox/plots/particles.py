@@ -35,7 +35,17 @@ from ..results import Run
 from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots
 from .spheres import Renderer, draw_spheres
-from .style import INK, SERIES_COLOURS, WIDTHS, StyledFigure, colour_bar, figure_style, map_colours, pen, scaled
+from .style import (
+    INK,
+    WIDTHS,
+    StyledFigure,
+    colour_bar,
+    figure_style,
+    map_colours,
+    pen,
+    scaled,
+    series_colour,
+)
 from .types import Size
 
 Array = NDArray[np.float64]
@@ -318,7 +328,7 @@ class _Scene:
         """Return the colour map, and the values at its ends; a few outliers in a film do not set them."""
         if self._colour in ("species", "none"):
             count = int(values.max(initial=0)) + 1
-            colours = [SERIES_COLOURS[k % len(SERIES_COLOURS)] for k in range(count)]
+            colours = [series_colour(k) for k in range(count)]
             return ListedColormap(colours), Normalize(-0.5, count - 0.5)
         low = float(values.min()) if self._colour == "radius" else 0.0
         top = float(np.quantile(values, 0.99)) if several and self._colour != "radius" else float(values.max())

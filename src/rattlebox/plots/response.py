@@ -16,7 +16,7 @@ from ..model.errors import nearest
 from ..results.figures import study_figure
 from ..studies.work.orbits import Motion
 from .labels import capitalised, log_ticks, name_of
-from .style import FAINT, INK, SERIES_COLOURS, StyledFigure, figure_style, label, pen, scaled
+from .style import ABOVE, FAINT, INK, StyledFigure, figure_style, label, pen, scaled, series_colour
 from .types import Size, Style
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def plot_frequency_response(
         divisor, unit = scaled(response.frequency, "Hz")
         label(panels[-1], "x", "Frequency", unit)
         panels[-1].set_xlim(float(response.frequency[0]) / divisor, float(response.frequency[-1]) / divisor)
-        panels[0].legend(handles=level_handles(response), loc="lower left", bbox_to_anchor=(0, 1), ncols=4)
+        panels[0].legend(handles=level_handles(response), **ABOVE, ncols=4)
         figure.legend(handles=_line_handles(response), loc="outside upper left", ncols=3 if size == "column" else 5)
     return figure
 
@@ -93,7 +93,7 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
         axes.set_yscale("log")
         log_ticks(axes.yaxis)
     for k, level in enumerate(response.level.values):
-        colour = SERIES_COLOURS[k % len(SERIES_COLOURS)]
+        colour = series_colour(k)
         lines = values.sel(level=level) / divisor
         if {"up", "down"} <= set(response.direction.values):
             low, high = lines.min("direction"), lines.max("direction")
@@ -118,7 +118,7 @@ def level_handles(response: xarray.Dataset) -> list[Line2D]:
     """Return the entries of a legend for the levels of a response, in the colours of their order."""
     divisor, unit = scaled(response.level, str(response.level.attrs["units"]))
     return [
-        Line2D([], [], color=SERIES_COLOURS[k % len(SERIES_COLOURS)], label=f"{level:.4g} {unit}")
+        Line2D([], [], color=series_colour(k), label=f"{level:.4g} {unit}")
         for k, level in enumerate(response.level.values / divisor)
     ]
 

@@ -56,6 +56,13 @@ CHANNEL_COLOURS: dict[str, str] = {
 SERIES_COLOURS: tuple[str, ...] = ("#0b3d6b", "#d1742c", "#5f9ea0", "#a33b5c", "#8c8c2e", "#7a6fb0")
 SERIES_STYLES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1)), (0, (8, 2)))
 SERIES_MARKERS: tuple[str, ...] = ("o", "^", "s", "D", "v", "P")
+ABOVE: Style = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0)}
+"""Place of a legend above its axes."""
+
+
+def series_colour(number: int) -> str:
+    """Return the colour of a series; the colours repeat."""
+    return SERIES_COLOURS[number % len(SERIES_COLOURS)]
 
 
 def _settings(size: Size) -> Style:
@@ -298,7 +305,7 @@ def legend_above(axes: Axes, **options: Any) -> None:
         rows = math.ceil(len(names) / _fitting_columns(names, room))
         columns = math.ceil(len(names) / rows)  # fill the last row as well as possible
         texts = [shorten(name, room - _HANDLE_LETTERS) for name in names]
-        axes.legend(handles, texts, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
+        axes.legend(handles, texts, ncols=columns, **(ABOVE | options))
 
 
 def shorten(text: str, room: int) -> str:
