@@ -37,13 +37,7 @@ def _named(dampers: Sequence[Damper]) -> Iterator[tuple[str, Damper]]:
 
 
 def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tuple[str, ...]:
-    """Return the warnings about a finished 1-D run.
-
-    Parameters
-    ----------
-    offsets
-        Distances of all balls from their places in the packed, centred row, (T, balls) [m].
-    """
+    """Return the warnings about a finished 1-D run; `offsets` are those of balls from the packed row, (T, balls) [m]."""
     notes: list[str] = []
     first = 0
     for index, (name, damper) in enumerate(_named(case.impact_dampers)):
@@ -62,10 +56,7 @@ def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tu
 def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[np.float64]) -> Iterator[str]:
     """Yield the warnings about the contacts of impact dampers that are advanced step by step.
 
-    Parameters
-    ----------
-    overlaps, speeds
-        Largest overlap [m] and approach speed [m/s] of each contact, those of one damper after the other; 0 without contact.
+    Overlaps [m] and approach speeds [m/s] are the largest of each contact, damper after damper; 0 without contact.
     """
     first = 0
     for name, damper in _named(case.impact_dampers):
@@ -215,13 +206,7 @@ def _fast_impact(contact: Contact, where: str, speed: float) -> Iterator[str]:
 
 
 def table_notes(case: Case, speeds: Sequence[float]) -> Iterator[str]:
-    """Yield warnings if the largest approach speed in a particle damper exceeds a restitution table.
-
-    Parameters
-    ----------
-    speeds
-        Largest approach speed in each damper [m/s].
-    """
+    """Yield warnings if the largest approach speed in a particle damper [m/s] exceeds a restitution table."""
     for (name, damper), speed in zip(_named(case.particle_dampers), speeds, strict=True):
         yield from dict.fromkeys(
             note for entry in damper.contact_table.entries for note in _fast_impact(entry.contact, name, speed)

@@ -59,9 +59,7 @@ def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
     ValueError
         If the size is unknown.
     """
-    goals = [str(name) for name, values in study.data_vars.items() if "goal" in values.attrs]
-    paths = [str(name) for name, values in study.coords.items() if values.dims == ("trial",) and name != "trial"]
-    paths = paths[:_MAX_PARAMETERS]
+    goals, paths = goals_of(study), parameters_of(study)[:_MAX_PARAMETERS]
     count = 1 + len(paths)
     with figure_style(size):
         narrow = size == "column"
@@ -72,6 +70,16 @@ def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
             (_draw_objective if len(goals) == 1 else _draw_parameter)(panel, study, path, goals[0])
         legend_above(panels[0])
     return figure
+
+
+def goals_of(study: xr.Dataset) -> list[str]:
+    """Return the objectives of a design."""
+    return [str(name) for name, values in study.data_vars.items() if "goal" in values.attrs]
+
+
+def parameters_of(study: xr.Dataset) -> list[str]:
+    """Return the paths of the parameters of a design."""
+    return [str(name) for name, values in study.coords.items() if values.dims == ("trial",) and name != "trial"]
 
 
 def _half_width(study: xr.Dataset, name: str, values: LabelledValues) -> Vector | None:

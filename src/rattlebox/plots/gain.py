@@ -21,13 +21,7 @@ _MOTION, _DISTANCE = 0.16, 1.3
 
 
 def plot_gain(bare: Run, damped: Run, title: str, subtitle: str, *, until: float) -> Figure:
-    """Draw a struck structure with one degree of freedom, without a damper and with a ball in a cavity.
-
-    Parameters
-    ----------
-    until
-        Last time that is drawn [s].
-    """
+    """Draw a struck structure with one degree of freedom, without a damper and with a ball, until a time [s]."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.64)
         strip, motion, energy = figure.subplots(3, height_ratios=(1, 2.6, 1.7))

@@ -65,13 +65,7 @@ class LabelledValues(NamedTuple):
 
 
 class StudyAxis(NamedTuple):
-    """Axis of a study, with the edges of the cells of a map.
-
-    Attributes
-    ----------
-    values
-        Values of the axis, (n,).
-    """
+    """Axis of a study: values, (n,), and edges of the cells of a map, (n + 1,)."""
 
     values: LabelledValues
     edges: Vector

@@ -100,13 +100,7 @@ def label_panel(axes: Axes, name: str) -> None:
 
 
 def ball_displacements(arrays: RunArrays, damper: int) -> Vector:
-    """Return the displacements of the balls of one damper from the packed, centred row, and half the clearance.
-
-    Returns
-    -------
-    ndarray
-        Displacements and half the clearance [m], in one flat array.
-    """
+    """Return displacements of the balls of a damper from the packed, centred row, and half the clearance, together [m]."""
     in_damper = arrays.ball_damper == damper
     return np.append((arrays.relative_position - arrays.ball_centre)[:, in_damper], arrays.clearance[damper] / 2)
 
@@ -119,10 +113,7 @@ def draw_structure(axes: Axes, arrays: RunArrays, window: slice, time: Scale, le
 
 
 def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, window: slice, time: Scale, length: Scale) -> None:
-    """Draw the displacements of the balls of one damper from the packed, centred row.
-
-    Walls far away from the balls are not drawn.
-    """
+    """Draw the displacements of the balls of one damper from the packed, centred row, and walls that are not far away."""
     balls = np.flatnonzero(arrays.ball_damper == damper)
     half = arrays.clearance[damper] / 2
     x = (arrays.relative_position - arrays.ball_centre)[window][:, balls]

@@ -24,13 +24,7 @@ def time_panels(size: Size, count: int) -> tuple[StyledFigure, list[Axes]]:
 
 
 def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
-    """Return the output times between two times; all if `between` is None.
-
-    Parameters
-    ----------
-    between
-        First and last time [s].
-    """
+    """Return the output times between a first and a last time [s]; all if `between` is None."""
     if between is None:
         return slice(0, arrays.time.size)
     first, last = np.searchsorted(arrays.time, between[0]), np.searchsorted(arrays.time, between[1], "right")
@@ -43,13 +37,7 @@ def time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice
 
 
 def draw_line(axes: Axes, x: Vector, y: Vector, series: int, name: str | None, *, colour: int | None = None) -> None:
-    """Draw one of several lines in the colour and dashes of its number.
-
-    Parameters
-    ----------
-    x, y
-        Points in the units of the axes, (n,).
-    """
+    """Draw one of several lines, (n,) in the units of the axes, in the colour and dashes of its number."""
     axes.plot(
         x,
         y,
@@ -61,13 +49,7 @@ def draw_line(axes: Axes, x: Vector, y: Vector, series: int, name: str | None, *
 
 
 def draw_largest(axes: Axes, x: Vector, y: Vector, names: Sequence[str]) -> None:
-    """Draw lines about zero, of many lines those with the largest values, with a legend if there are several.
-
-    Parameters
-    ----------
-    x, y
-        Points in the units of the axes, (n,) and (n, lines).
-    """
+    """Draw lines about zero, y (n, lines) over x (n,): of many those with the largest values, with a legend of several."""
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
     for k, line in enumerate(largest_points(np.abs(y).max(axis=0), MAX_SERIES)):
         draw_line(axes, x, y[:, line], k, names[line] if len(names) > 1 else None)

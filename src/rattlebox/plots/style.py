@@ -275,13 +275,7 @@ def pen(width: float = 0.6) -> float:
 
 
 def time_axis(axes: Axes, time: Vector, scale: Scale, ticks: int = 6) -> None:
-    """Label the time axis of the lowest panel and limit it to the drawn times.
-
-    Parameters
-    ----------
-    time
-        Drawn times [s], (n,).
-    """
+    """Label the time axis of the lowest panel and limit it to the drawn times, (n,) [s]."""
     label(axes, "x", "Time", scale.unit)
     axes.xaxis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 5, 10]))
     if len(time) > 1:

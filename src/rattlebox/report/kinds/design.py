@@ -12,7 +12,7 @@ import numpy as np
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount
 from rattlebox.model.case import Case
-from rattlebox.plots.design import plot_design
+from rattlebox.plots.design import goals_of, parameters_of, plot_design
 from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
@@ -29,14 +29,6 @@ _MAX_ROWS = 12
 _EXTREME = {"max": "largest", "min": "smallest"}
 
 
-def _goals(study: xr.Dataset) -> list[str]:
-    return [str(name) for name, values in study.data_vars.items() if "goal" in values.attrs]
-
-
-def _parameters(study: xr.Dataset) -> list[str]:
-    return [str(name) for name, values in study.coords.items() if values.dims == ("trial",) and name != "trial"]
-
-
 def _cases(study: xr.Dataset) -> Mapping[str, Case]:
     """Return the best cases: that of the only objective, or the ends of the Pareto front; the base case if there is none."""
     fronts = study.case.values.tolist() if "case" in study else []
@@ -48,14 +40,14 @@ def _cases(study: xr.Dataset) -> Mapping[str, Case]:
 
 
 def _question(study: xr.Dataset) -> str:
-    goals = [f"{_EXTREME[study[name].attrs['goal']]} {name_of(study[name])}" for name in _goals(study)]
-    parameters = [name_of(study[path]) for path in _parameters(study)]
+    goals = [f"{_EXTREME[study[name].attrs['goal']]} {name_of(study[name])}" for name in goals_of(study)]
+    parameters = [name_of(study[path]) for path in parameters_of(study)]
     give = "gives" if len(parameters) == 1 else "give"
     return f"Which {joined(parameters)} {give} the {joined(goals)} of {words.system_words(study)}?"
 
 
 def _answer(study: xr.Dataset) -> Iterator[str]:
-    goals = _goals(study)
+    goals = goals_of(study)
     usable = int(study.feasible.sum())
     if "stopped" in study.attrs:
         yield f"The search {study.attrs['stopped']}."
@@ -89,7 +81,7 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
 
 def _choice(study: xr.Dataset, trial: xr.Dataset) -> str:
     """Return the parameters of a trial as text."""
-    values = ((study[path], trial[path].values[()]) for path in _parameters(study))
+    values = ((study[path], trial[path].values[()]) for path in parameters_of(study))
     return joined([f"{name_of(parameter)} {words.axis_value(parameter, value)}" for parameter, value in values])
 
 
@@ -104,7 +96,7 @@ def _unit(study: xr.Dataset, name: str) -> str:
 
 
 def _pictures(study: xr.Dataset) -> Iterator[Picture]:
-    if len(_goals(study)) > 1:
+    if len(goals_of(study)) > 1:
         caption = "Trials over the first two objectives with the Pareto front, and the parameters along the front."
     else:
         caption = "Objective of each trial with the best value so far, and the objective over each parameter."
@@ -112,7 +104,7 @@ def _pictures(study: xr.Dataset) -> Iterator[Picture]:
 
 
 def _tables(study: xr.Dataset) -> Iterator[Table]:
-    paths, goals = _parameters(study), _goals(study)
+    paths, goals = parameters_of(study), goals_of(study)
     rows = []
     for trial in study.front.values[:_MAX_ROWS]:
         one = study.sel(trial=int(trial))
