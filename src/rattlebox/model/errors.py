@@ -278,16 +278,19 @@ def _complaint_and_suggestion(
     finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str
 ) -> tuple[str, str]:
     """Return what is wrong with a value, and what to try."""
+    # An error of our own validators has its words already.
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
     if isinstance(raised, RattleboxError):
         return (raised.without_suggestion if raised.head else raised.complaint), raised.suggestion
     if isinstance(raised, ValueError):
         return str(raised), ""
+    # An unknown field: one that never exists, or a misspelt one.
     location = finding["loc"]
     if what == "extra_forbidden":
         known = _fields(location[:-1], source, vocabulary)
         absent = _absent(location[-1], known, vocabulary)
         return absent or ("there is no such field here", nearest(str(location[-1]), known))
+    # A part of a wrong class, or a table without a known kind.
     kinds = [kind for kind in _kinds(location, source, vocabulary) if kind]
     if what in (*_TAGS, *_TABLES) and _is_table(value) and not isinstance(value, Mapping):
         return f"{type(value).__name__} does not belong here", f"one of kind {' or '.join(kinds)}" if kinds else ""
@@ -307,10 +310,12 @@ def _complaint_and_suggestion(
         if isinstance(value, (list, tuple)):
             return "one table is needed, not a list", f"[{name}] in single brackets"
         return "a table is needed", _table_of(name, vocabulary, kind) or f"{name} = {{ ... }}"
+    # A missing value gets an example.
     if what == "missing":
         if isinstance(location[-1], int):
             return "one more is needed", ""
         return _PLAIN[what], _table_of(location[-1], vocabulary) or _example_of(location, source, vocabulary)
+    # What is left are texts, lists and numbers out of range.
     if what == "literal_error" and isinstance(value, str):
         close = difflib.get_close_matches(value, _choices(finding), n=1)
         return _PLAIN[what].format(**context), f'"{close[0]}"' if close else ""

@@ -115,6 +115,7 @@ class Matrices(FilePart, DampedModes):
                     f"{name} = ({name} + {name}^T) / 2, if the difference is rounding",
                     self._where(name),
                 )
+        # A degree of freedom without mass has an infinite frequency.
         if np.linalg.eigvalsh(mass).min() <= 0:
             raise Hint(
                 "M is not positive definite: some motion has no mass",
@@ -205,6 +206,8 @@ class Matrices(FilePart, DampedModes):
         """
         from scipy.linalg import eigh
 
+        # Eigenvalues below zero are an unstable structure; those near zero are rigid-body modes, exactly zero but for
+        # rounding.
         mass, damping, stiffness = self.matrices()
         values, vectors = eigh(stiffness, mass)
         largest = np.abs(values).max()
@@ -215,6 +218,7 @@ class Matrices(FilePart, DampedModes):
                 self._where("K"),
             )
         values = np.where(np.abs(values) < 1e-12 * largest, 0.0, values)
+        # Modes of equal frequency may be turned into each other: those are chosen between which there is no damping.
         vectors = _align(vectors, values, damping, 1e-9 * largest)
         modal = vectors.T @ damping @ vectors
         diagonal = np.diag(modal)
@@ -228,6 +232,7 @@ class Matrices(FilePart, DampedModes):
         coupling = modal - np.diag(diagonal)
         size = np.sqrt(np.abs(np.outer(diagonal, diagonal)))
         proportional = bool((np.abs(coupling) <= 1e-8 * np.where(size > 0, size, np.abs(modal).max(initial=0.0))).all())
+        # M phi projects displacements, velocities and the motion of the base onto the modes.
         n = len(values)
         weights = {name: np.eye(n)[p] if isinstance(p, int) else np.array(p) for name, p in self.points.items()}
         projection = vectors.T @ mass

@@ -76,6 +76,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
     with at("file"):
         modes = read_modes(path, count, has_mass_unit=given.get("mass_unit") is not None)
     name = Path(path).name
+    # Modal masses of the user replace those of the file.
     masses = None
     if given.get("modal_masses") is not None:
         with at("modal_masses"):
@@ -92,6 +93,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         modes = replace(modes, modal_masses=masses, mass_unit=1.0)
     with at("file"):
         _check_numbers(modes, path)
+    # The first modes only, mass-normalised and in SI units.
     first = slice(None, count)
     total = modes.frequencies.size
     if count is not None and count > total:
@@ -105,6 +107,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         "frequencies": modes.frequencies[first].tolist(),
         "shapes": {point: (shape[first].T * scale[first]).T.tolist() for point, shape in points.items()},
     }
+    # What the user states has priority over the file; only damping must come from one of them.
     if all(given.get(name) is None for name in ("damping_ratios", "damping_ratio", "damping_matrix")):
         if modes.damping_ratios is None:
             raise Hint(f"{name} states no damping", "damping_ratio = 0.01, or 0", ["damping_ratio"])
@@ -115,6 +118,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
             fields["participation"] = participation[first].tolist()
             if given.get("total_mass") is None and modes.total_mass is not None:
                 fields["total_mass"] = _total_mass(modes, given, participation.ndim == 2)
+    # An unknown unit of mass shows in the size of the shapes: the notes state it.
     largest, point = max((float(np.abs(row).max()), point) for point, row in fields["shapes"].items())
     if not largest > _SMALLEST_SHAPE:
         raise DataError(

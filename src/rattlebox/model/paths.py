@@ -33,6 +33,7 @@ def place_of(case: Part, path: str) -> Place:
     steps = _steps(path)
     for number, step in enumerate(steps):
         so_far = "".join(_words(steps[:number]))
+        # "dampers.gap" means the only damper.
         if isinstance(step, str) and _is_row_of_parts(node):
             node = node[_only(node, path, so_far)]
             place.append(0)
@@ -47,6 +48,7 @@ def place_of(case: Part, path: str) -> Place:
             place.append(step)
             node = node[step]
         elif isinstance(node, Part):
+            # "damper" at the end of a path is the only item of "dampers".
             alias = type(node).aliases.get(step)
             if (alias or step) not in type(node).model_fields:
                 known = {*type(node).model_fields, *type(node).aliases} - {"kind"}

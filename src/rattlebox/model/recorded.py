@@ -51,6 +51,7 @@ def _time_factor(columns: Columns) -> float:
 
 def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple[float, str] | None, list[str]]:
     """Return the factor to SI and the SI unit of the values as the file states it, and notes; None if it states none."""
+    # Directly above the column: the surest place, which the user must not contradict.
     own = None if wanted is None else factor_of(wanted, UNITS)
     try:
         stated = unit_above(columns.headings[1], UNITS)
@@ -68,6 +69,7 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
         raise Hint(f"the file states another unit above the column: {heading!r}", _NO_UNIT, ["unit"])
     if stated is not None:
         return stated, []
+    # In the lines above: free text, in which a unit may also belong to something else.
     try:
         found, mentioned = units_in_lines(columns.lines, UNITS)
     except Hint as hint:
@@ -81,6 +83,7 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
             f"{name}: unit = {wanted!r} is used, but line {each.number} states another one: {each.line[:_SHOWN]!r}"
             for each in others[:1]
         ]
+    # Only one clear unit is used without the user; readings of a converter and several units need one.
     scale = next((line for _, line in columns.lines if (match := _SCALE_FACTOR.search(line)) and match[2]), "")
     if scale:
         raise DataError(
@@ -276,6 +279,7 @@ class Record(FilePart, Sampled):
             raise Hint(
                 "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
             )
+        # Each kind of file names its columns in its own way; the result is the same.
         step, wanted = values.get("dt"), values.get("unit")
         with at("file"):
             path = absolute(values["file"])
@@ -289,6 +293,8 @@ class Record(FilePart, Sampled):
                 raise Hint(f"{path} states its time step", "leave dt out")
             record = _signal(existing(path), form, columns, wanted) if form else read_columns(path, columns, step)
         name = " ".join(Path(path).name.split())
+        # The unit of the file has priority: that of the user must agree with it. A table without any unit has the unit
+        # that the case needs, and the run notes it.
         stated, notes = _stated_unit(record, wanted if isinstance(wanted, str) else None, name)
         own = factor_of(wanted, UNITS) if isinstance(wanted, str) else None
         factor, unit = stated or own or (1.0, wanted)

@@ -245,6 +245,7 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
             f"{text.file} states a time step of {text.step:g} s above its samples, not {step:g} s",
             f'dt = "{text.step:g} s"',
         )
+    # All numbers in the order of the text, or one column.
     if by_rows:
         values = _parse_by_rows(text.file, text.rows)
         if text.width > 1:
@@ -267,6 +268,7 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
             notes.append(
                 f"column {index + 1} of {text.width} columns without names is read, one sample a row, {values.size} in all"
             )
+    # A step from the header is an assumption that the run must show; that of the first line is noted already.
     if step is None and text.step is not None and not text.notes:
         notes.append(f"the time step of {text.step:g} s is taken from the text above the samples")
     times = _even_times(text.file, values.size, step or text.step)

@@ -206,6 +206,8 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
             matrix[k, k] = value
         return matrix
 
+    # The coordinates are the modes of the structure and the displacement of each tuned mass times the root of its mass, so
+    # that the mass matrix is the identity. A spring stretches by the shape at its point minus the displacement of its mass.
     nothing = (0.0,) * len(tuned)
     names: list[str] = []
     springs, roots, inertia = [], [], []
@@ -224,6 +226,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
         springs.append(joined(shape, [-1 / root if k == index else 0.0 for k in range(len(tuned))]))
         inertia.append(root if part.direction is None else np.multiply.outer(unit_vector(part.direction), root))
 
+    # Each spring and each damper adds a matrix of rank one to those of the structure.
     stiffness = diagonal(joined(modes.stiffness, nothing))
     damping = diagonal(joined(2 * modes.decay, nothing))
     if modes.coupling is not None:
@@ -233,6 +236,8 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
         outer = spring[:, None] * spring[None, :]
         stiffness = stiffness + part.mass * rate * rate * outer
         damping = damping + 2 * part.damping_ratio * part.mass * rate * outer
+    # The eigenvectors of a symmetric matrix are orthonormal: the new modes are mass-normalised as well. A rigid-body mode
+    # has an eigenvalue of rounding, whose root would be a frequency.
     values, vectors = np.linalg.eigh(_last(stiffness))
     largest = np.abs(values).max(axis=-1, keepdims=True)
     values = np.moveaxis(np.where(np.abs(values) < 1e-12 * largest, 0.0, values), -1, 0)
@@ -243,6 +248,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
         vector = joined(first, more, 2 if spatial else 1)
         return np.asarray(np.einsum("cm...,cd...->md..." if spatial else "cm...,c...->m...", turned, vector))
 
+    # Points, participation, displacements and velocities go into the new modes by the same rotation.
     shapes = {
         name: into_modes(shape, [np.zeros(3)] * len(tuned) if name in modes.spatial else nothing, name in modes.spatial)
         for name, shape in modes.shapes.items()
@@ -255,6 +261,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
         for part, root in zip(tuned, roots, strict=True)
     ]
     speeds = [root * part.velocity for part, root in zip(tuned, roots, strict=True)]
+    # The dampers couple the modes unless the damping happens to be proportional; rounding is no coupling.
     main = np.stack([in_modes[k, k] for k in range(total)])
     coupling = in_modes - diagonal(main)
     coupled = bool(np.any(np.abs(coupling) > _NO_COUPLING * np.abs(main).max(initial=0.0)))

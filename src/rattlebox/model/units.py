@@ -186,6 +186,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     value
         A number in SI, text such as "0.4 mm", a pair (number, unit) or a pint Quantity.
     """
+    # A plain number is in SI units; true would be 1.
     if isinstance(value, (bool, np.bool_, bytes)):
         raise Hint(_wanted(units), _example(units))
     if isinstance(value, (int, float)):
@@ -196,6 +197,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
         value = f"{value[0]} {value[1]}"
     if isinstance(value, str):
+        # Text: the table of common units first, which says that g is gravity where an acceleration is needed.
         match = _NUMBER.match(value) if len(value) <= _LONGEST_QUANTITY else None
         if match is None:
             raise Hint(_wanted(units), _example(units))
@@ -209,6 +211,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
                 up, down = _COMMON[unit][text]
                 return _finite(number * up / down), unit
         value = _with_pint(number, text, units)
+    # A quantity of pint; it takes a frequency for an angular velocity, which differ by 2 pi.
     if hasattr(value, "is_compatible_with") and hasattr(value, "to"):
         for unit in units:
             if value.is_compatible_with(_pint_unit(unit)) and (_is_angle(value) or not value.dimensionless):

@@ -377,6 +377,7 @@ class _SettlingBed:
             particle_pair=np.zeros((1, 1), np.int64),
             wall_pair=np.zeros((1, 1), np.int64),
         )
+        # The cavity stands still: a structure without modes.
         problem = _core.DemProblem(
             dt=self._contact_time / STEPS,
             steps=blocks * every,

@@ -360,6 +360,7 @@ def step_diagnostics(
         Largest approach speed at a first touch, in each damper [m/s].
     """
     dampers = case.particle_dampers
+    # The shortest contact at the speeds that have occurred, instead of those expected before the run.
     shortest = min(
         (
             limit
@@ -378,6 +379,7 @@ def step_diagnostics(
         "steps_per_contact": steps,
         "largest_overlap": max(overlaps),
     }
+    # Softening is judged for each damper; a run has one number for all of them, the worst.
     if effects:
         diagnostics |= {
             "softening": max(effect.softening for effect in effects),
