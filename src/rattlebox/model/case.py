@@ -26,7 +26,7 @@ from .base import Part, vocabulary
 from .dampers import ImpactDamper
 from .elementwise import Vector
 from .errors import Hint, at, translate
-from .files import existing, read_toml
+from .files import read_text, read_toml
 from .harmonics import Harmonic, SineSweep
 from .materials import Material, materials
 from .matrices import Matrices
@@ -432,14 +432,9 @@ class Case(Part):
         """
         file = Path(path)
         try:
-            existing(file)
-            content = file.read_text(encoding="utf-8-sig")
+            content = read_text(file)
         except DataError as error:
             raise error.restated(CaseError) from None
-        except OSError as error:
-            raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
-        except UnicodeDecodeError:
-            raise CaseError(f"{file}: not text in UTF-8", "a TOML file, saved as UTF-8") from None
         return cls.from_toml(content, source=str(file), folder=file.parent)
 
     @classmethod

@@ -52,6 +52,17 @@ def existing(path: str | os.PathLike[str]) -> Path:
     raise DataError(f"there is no file {file}", " or ".join(str(folder / name) for name in like))
 
 
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Return the text of a file in TOML."""
+    file = existing(path)
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise DataError(f"{file}: not text in UTF-8", "a TOML file, saved as UTF-8") from None
+    except OSError as error:
+        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
+
+
 def read_toml(content: str, source: str) -> dict[str, Any]:
     """Parse the text of a case file."""
     if _has_long_key(content):  # for which tomllib needs a time that grows with the square of its length

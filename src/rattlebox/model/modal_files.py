@@ -18,7 +18,7 @@ from rattlebox.exchange.read.modes_in_file import ModesInFile, listed
 
 from .elementwise import Vector
 from .errors import Hint, at, nearest
-from .files import check_finite, existing, read_toml
+from .files import check_finite, existing, read_text, read_toml
 from .space import AXES
 from .units import numbers, parse, whole_number
 
@@ -46,13 +46,7 @@ def read_modes(path: str, count: int | None, *, has_mass_unit: bool = False) -> 
 @modes_reader(".toml")
 def _from_toml(file: Path, _: ModesRequest) -> dict[str, Any]:
     try:
-        content = file.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise DataError(f"{file} is not text", "a TOML file in UTF-8") from None
-    except OSError as error:
-        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
-    try:
-        table = read_toml(content, str(file))
+        table = read_toml(read_text(file), str(file))
     except CaseError as error:
         advice = error.suggestion or 'frequencies = ["10 Hz"] and [shapes] tip = [0.7]'
         raise error.restated(DataError, suggestion=advice) from None

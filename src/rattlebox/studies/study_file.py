@@ -15,7 +15,7 @@ from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.model.base import examples
 from rattlebox.model.case import Case, case_and_materials
 from rattlebox.model.errors import Hint, nearest, translate
-from rattlebox.model.files import existing, read_toml
+from rattlebox.model.files import existing, read_text, read_toml
 from rattlebox.model.materials import Material
 from rattlebox.model.units import Whole
 from rattlebox.studies.grid import sampling
@@ -171,13 +171,9 @@ def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Materi
 
 def _text(file: Path) -> str:
     try:
-        return existing(file).read_text(encoding="utf-8-sig")
+        return read_text(file)
     except DataError as error:
         raise error.restated(CaseError) from None
-    except OSError as error:
-        raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise CaseError(f"{file}: not text in UTF-8", "a TOML file, saved as UTF-8") from None
 
 
 def _with_materials(table: Any, own: Mapping[str, Material]) -> Any:
