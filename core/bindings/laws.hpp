@@ -64,6 +64,47 @@ template <class Law> auto define_law(nb::module_& module, const char* name, cons
     }(std::make_index_sequence<std::size(Law::fields)>{}, std::make_index_sequence<table_count<Law>>{});
 }
 
+// Adds a law of another package, given the address of its table, and returns its number.
+inline int add_external_law(std::uintptr_t address) {
+    const auto* table = reinterpret_cast<const RattleboxNormalLaw*>(address);
+    auto& laws = external_laws();
+    for (std::size_t i = 0; i < laws.size(); ++i)
+        if (laws[i] == table) return static_cast<int>(i);
+    if (table->version != RATTLEBOX_NORMAL_LAW_VERSION)
+        throw std::invalid_argument("the law was compiled with the headers of another version");
+    laws.push_back(table);
+    return static_cast<int>(laws.size()) - 1;
+}
+
+// Returns a law of another package for one pair, with its coefficients by their names.
+inline LawOf<NormalLaw> external_law(int number, const nb::dict& coefficients) {
+    const RattleboxNormalLaw& table = *external_laws().at(static_cast<std::size_t>(number));
+    LawNumbers<ExternalLaw> law;
+    const auto set = [&](real ExternalLaw::* member, Number value) {
+        for (std::size_t k = 0; k < law.numbers.size(); ++k)
+            if (ExternalLaw::fields[k].member == member) law.numbers[k] = std::move(value);
+    };
+    for (Number& each : law.numbers) each = Number(0.0);
+    for (int i = 0; i < table.count; ++i) {
+        if (!coefficients.contains(table.names[i]))
+            throw nb::type_error((std::string(table.name) + " needs " + table.names[i]).c_str());
+        law.numbers[static_cast<std::size_t>(i)] = nb::cast<Number>(coefficients[table.names[i]]);
+    }
+    if (nb::len(coefficients) != static_cast<std::size_t>(table.count))
+        throw nb::type_error((std::string(table.name) + " has no such coefficient").c_str());
+    set(&ExternalLaw::number, Number(static_cast<real>(number)));
+    set(&ExternalLaw::zero_overlap, Number(table.zero_overlap));
+    set(&ExternalLaw::tangential_share, Number(table.tangential_share));
+    return {law};
+}
+
+inline std::optional<LawOf<NormalLaw>> external_law(const std::string& name, const nb::dict& coefficients) {
+    const auto& laws = external_laws();
+    for (std::size_t i = 0; i < laws.size(); ++i)
+        if (name == laws[i]->name) return external_law(static_cast<int>(i), coefficients);
+    return {};
+}
+
 template <class Laws> void define_laws(nb::module_& module, const char* family, const char* lookup) {
     Laws::each([&]<class Law>(int) {
         const std::string doc =
@@ -79,6 +120,8 @@ template <class Laws> void define_laws(nb::module_& module, const char* family, 
                 if (law == Law::name)
                     made = Any{nb::cast<LawNumbers<Law>>(nb::type<LawNumbers<Law>>()(**coefficients))};
             });
+            if constexpr (std::is_same_v<Laws, NormalLaw>)
+                if (!made) made = external_law(law, coefficients);
             if (!made) throw std::invalid_argument("the core has no law named '" + law + "'");
             return *made;
         },
@@ -139,6 +182,20 @@ inline void add_laws(nb::module_& module) {
             [](const N& own) { return own.choice().visit([](const auto& law) { return law.mass; }); },
             "Effective mass of the pair [kg].");
     define_laws<NormalLaw>(module, "Force", "normal_law");
+    module.def("add_external_law", &add_external_law, nb::arg("address"),
+               "Add a normal law of another package, given the address of its table; return its number.");
+    module.def(
+        "external_law_name",
+        [](int number) { return external_laws().at(static_cast<std::size_t>(number))->name; },
+        nb::arg("number"), "Return the name of a law of another package.");
+    module.def(
+        "normal_law_names",
+        [] {
+            std::vector<std::string> names;
+            NormalLaw::each([&]<class Law>(int) { names.emplace_back(Law::name); });
+            return names;
+        },
+        "Return the names of the normal laws of the core.");
 
     nb::class_<TangentialForce, Node>(module, "TangentialForce", "A tangential contact law for one pair.")
         .def(

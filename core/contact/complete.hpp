@@ -33,7 +33,7 @@ concept DashpotLaw = ElasticAndDashpotForce<Law, real> && ElasticAndDashpotForce
                          { law.damping(e) } -> std::same_as<real>;
                          { law.damping_ratio(damping, speed) } -> std::same_as<real>;
                          { law.dashpot_exponent() } -> std::convertible_to<real>;
-                         { Law::tangential_share } -> std::convertible_to<real>;
+                         { law.tangential_share } -> std::convertible_to<real>;
                      };
 
 // The curves of a law with hysteresis, for a number type T.

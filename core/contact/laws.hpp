@@ -3,6 +3,7 @@
 #pragma once
 
 #include "contact/complete.hpp"
+#include "contact/normal/external.hpp"
 #include "contact/normal/hertz_tsuji.hpp"
 #include "contact/normal/linear_dashpot.hpp"
 #include "contact/normal/power_law.hpp"
@@ -25,7 +26,8 @@ using NormalLaw = NormalLaws<
     LinearDashpot,
     Thornton,
     PowerLaw,
-    TabulatedNormal
+    TabulatedNormal,
+    ExternalLaw
 >;
 
 using RestitutionLaw = RestitutionLaws<

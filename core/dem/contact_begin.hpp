@@ -164,7 +164,7 @@ inline ContactStart begin(const NewContact& t, real dt) {
                 b.lost = (lost * (t.speed - slowed) - dashpot * slowed) * dt;
             }
             const real share = e.tangential.visit([](const auto& own) { return own.damping; });
-            const real tangential_dashpot = 2 * share * Law::tangential_share *
+            const real tangential_dashpot = 2 * share * law.tangential_share *
                                             law.damping_ratio(damping, std::fmax(t.speed, 0.0)) *
                                             std::sqrt(t.mass * tangential);
             b.state.law = row(k.stiffness, k.second, tangential, tangential_dashpot);

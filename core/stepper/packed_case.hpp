@@ -99,6 +99,9 @@ template <class Pack> void pack(Pack& p, std::vector<real>& values) {
 }
 
 template <class Pack, class Law> void pack_law(Pack& p, Law& law) {
+    if constexpr (!Pack::reads && std::is_same_v<Law, ExternalLaw>)
+        throw std::invalid_argument(
+            "a contact law of another package cannot be in a packed case, an FMU or a stepper");
     for (const auto& field : Law::fields) p.number(law.*field.member);
     if constexpr (requires { Law::tables; })
         for (const auto& field : Law::tables) p.table(law.*field.member);

@@ -11,6 +11,7 @@ from rattlebox._util.exceptions import StepError as StepError
 from rattlebox._util.exceptions import StoreError as StoreError
 from rattlebox.core.component import component_library as component_library
 from rattlebox.core.component import include_dir as include_dir
+from rattlebox.core.external_law import load_law as load_law
 from rattlebox.engines.fmu import to_fmu as to_fmu
 from rattlebox.engines.simulate import simulate as simulate
 from rattlebox.engines.simulate import simulate_many as simulate_many

@@ -337,6 +337,19 @@ def schema(out: Annotated[Path | None, _out("File to write; default: print on th
             name.write_text(text, encoding="utf-8")
 
 
+@app.command(cls=_Command, epilog="Example: rattlebox new-law my_law")
+def new_law(
+    name: Annotated[str, typer.Argument(help="Name of the law, such as my_law.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder to write; default named after the law.")
+    ] = None,
+) -> None:
+    """Write a package with a contact law in C++, to be changed, compiled and installed."""
+    from rattlebox.cli import new_law as command
+
+    command.new_law(name, out)
+
+
 @app.command(cls=_Command)
 def materials() -> None:
     """List the materials of the library with their sources."""

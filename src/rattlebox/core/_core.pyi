@@ -195,8 +195,60 @@ class TabulatedForce(NormalForce):
     @staticmethod
     def fields() -> dict[str, Varies]: ...
 
+class ExternalForce(NormalForce):
+    """The law 'external' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, stiffness: float | numpy.typing.NDArray[numpy.float64], mass: float | numpy.typing.NDArray[numpy.float64], c2: float | numpy.typing.NDArray[numpy.float64], c3: float | numpy.typing.NDArray[numpy.float64], c4: float | numpy.typing.NDArray[numpy.float64], c5: float | numpy.typing.NDArray[numpy.float64], c6: float | numpy.typing.NDArray[numpy.float64], c7: float | numpy.typing.NDArray[numpy.float64], number: float | numpy.typing.NDArray[numpy.float64], zero_overlap: float | numpy.typing.NDArray[numpy.float64], tangential_share: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def c2(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def c3(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def c4(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def c5(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def c6(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def c7(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def number(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def zero_overlap(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def tangential_share(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
 def normal_law(law: str, coefficients: dict[str, object]) -> NormalForce:
     """Return a law by its name, with its coefficients by their names."""
+
+def add_external_law(address: int) -> int:
+    """
+    Add a normal law of another package, given the address of its table; return its number.
+    """
+
+def external_law_name(number: int) -> str:
+    """Return the name of a law of another package."""
+
+def normal_law_names() -> list[str]:
+    """Return the names of the normal laws of the core."""
 
 class TangentialForce(Node):
     """A tangential contact law for one pair."""

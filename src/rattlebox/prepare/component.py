@@ -120,7 +120,7 @@ def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
         )
     points = () if alone else tuple(name for name in case.modes.shapes if name not in case.modes.spatial)
     rows = [list(map(float, case.modes.shape(name))) for name in points]
-    data = _core.pack_case(_idle(problem), alone, (float(velocity), 0.0, 0.0), rows)
+    data = _packed(_idle(problem), alone, (float(velocity), 0.0, 0.0), rows)
     return PackedComponent(
         data,
         alone,
@@ -154,7 +154,7 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
     points = () if alone else tuple(case.modes.shapes)
     line = case.particle_dampers[0].direction  # of points that move along a line
     rows = [list(map(float, row)) for name in points for row in case.modes.space_shape(name, line).T]
-    data = _core.pack_case(_idle(problem), alone, tuple(start), rows)
+    data = _packed(_idle(problem), alone, tuple(start), rows)
     return PackedComponent(
         data,
         alone,
@@ -165,6 +165,14 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
         (*prepared.notes, *(_exchange_notes(case) if alone else ())),
         prepared,
     )
+
+
+def _packed(problem: Any, *arguments: Any) -> bytes:
+    """Return the bytes of a problem; raise if it has a law whose code is in another library."""
+    try:
+        return _core.pack_case(problem, *arguments)
+    except ValueError as error:
+        raise Hint(str(error), "a law of Rattlebox, such as rb.PowerLaw or rb.TabulatedNormal") from None
 
 
 def _exchange_notes(case: Case) -> tuple[str, ...]:
