@@ -12,7 +12,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import NamedTuple, TypeVar
 
-from .exceptions import ResourceError
+from .exceptions import ResourceError, message
 
 GROUP = "rattlebox.plugins"
 """Group of entry points; each names a module that registers its classes and functions when it is imported."""
@@ -101,10 +101,9 @@ def _loaded(point: EntryPoint) -> Plugin:
         raise
     except Exception as error:  # whatever code of others raises
         problem = f"{type(error).__name__}: {error}"
-        warnings.warn(
-            f"the plug-in {point.name} of the package {package} cannot be imported: {problem}\n"
-            f"  try: pip uninstall {package}, or a version of it for this version of Rattlebox",
-            PluginWarning,
-            stacklevel=2,
+        text = message(
+            f"the plug-in {point.name} of the package {package} cannot be imported: {problem}",
+            f"pip uninstall {package}, or a version of it for this version of Rattlebox",
         )
+        warnings.warn(text, PluginWarning, stacklevel=2)
     return Plugin(point.name, package, version, problem)
