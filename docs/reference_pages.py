@@ -7,6 +7,7 @@ same holds for them, and quotes inside them stay straight.
 import inspect
 import re
 
+import gallery_of_examples
 from docutils import nodes
 from docutils.parsers.rst import Directive
 from docutils.statemachine import StringList
@@ -22,6 +23,8 @@ PLACES = ("rattlebox.", "rattlebox.analysis.", "rattlebox.plots.")
 PUBLIC = [getattr(rb, name) for name in rb.__all__]
 FIELDS = {name for part in PUBLIC if isinstance(part, type) and issubclass(part, Part) for name in part.model_fields}
 """Fields of cases, some of which have the name of a function."""
+MANY = 6
+"""Largest number of scripts that an entry names."""
 MEMBERS = {"none": "", "all": "   :members:\n", "inherited": "   :members:\n   :inherited-members:\n"}
 
 
@@ -43,10 +46,25 @@ class Api(Directive):
             lines.append(f".. {kind}:: {name.strip()}")
             if members.strip():
                 lines += MEMBERS.get(members.strip(), f"   :members: {members.strip()}\n").splitlines()
-            lines.append("")
+            lines += ["", examples_of(name.strip()), ""]
         container = nodes.container()
         self.state.nested_parse(StringList([*lines, "```"]), self.content_offset, container)
         return container.children
+
+
+def examples_of(name):
+    """Return a line with links to the scripts of the gallery that use a name; empty if there are none or too many."""
+    used = re.compile(rf"\b(?:rb|analysis|plots)\.{name.rpartition('.')[2]}\b")
+    scripts = gallery_of_examples.scripts()
+    found = [script for script in scripts.values() if used.search(script.read_text(encoding="utf-8"))]
+    if not 0 < len(found) <= MANY:
+        return ""
+    links = [
+        f":doc:`{gallery_of_examples.words(script)[0]} "
+        f"</gallery/{script.relative_to(gallery_of_examples.SCRIPTS).with_suffix('').as_posix()}>`"
+        for script in found
+    ]
+    return f"Used in the examples: {', '.join(links)}."
 
 
 def public(name):

@@ -139,3 +139,29 @@ def test_tutorials_show_no_assertion(site: Path) -> None:
         page = re.sub(r"<[^>]+>", "", (site / f"tutorials/{name}.html").read_text(encoding="utf-8"))
         assert "assert " not in page and "sphinx_gallery" not in page and "# %%" not in page
         assert "import rattlebox as rb" in page
+
+
+@pytest.mark.browser
+def test_pages_fit_a_phone_and_paper(site: Path, pages: dict[str, Page]) -> None:
+    """No page scrolls sideways at 390 px, and print cuts no line of code; only eyes had looked before."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    chromium = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if chromium is None:
+        pytest.skip("no Chromium")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        phone = browser.new_page(viewport={"width": 390, "height": 800})
+        wide, cut = [], {}
+        for name in sorted(pages):
+            phone.goto((site / name).as_uri())
+            if phone.evaluate("document.documentElement.scrollWidth") > 390:
+                wide.append(name)
+            if name.startswith(("theory/", "tutorials/")):
+                phone.emulate_media(media="print")
+                cut[name] = phone.evaluate(
+                    "[...document.querySelectorAll('pre')].filter(e => e.scrollWidth > e.clientWidth + 1).length"
+                )
+                phone.emulate_media(media="screen")
+        browser.close()
+    assert wide == []
+    assert len(cut) > 15 and not any(cut.values())
