@@ -56,6 +56,7 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
     bindings::add_structure(module);
     bindings::add_problem(module);
     bindings::add_results(module);
+    bindings::add_measures(module);
     bindings::add_sweep(module);
     bindings::add_dem(module);
     module.attr("worst_energy_residual") = worst_energy_residual;

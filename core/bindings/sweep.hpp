@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <iterator>
 #include <memory>
 
 #include "bindings/impact.hpp"
 #include "bindings/jobs.hpp"
+#include "bindings/measures.hpp"
 #include "bindings/results.hpp"
 #include "impact/run.hpp"
 #include "impact/sweep_output.hpp"
@@ -43,8 +46,9 @@ struct Worker {
         fill.number(window.base, given.base);
         fill.number(window.residual_mass, given.residual_mass);
         window.samples = given.samples;
-        problem.settings.peaks = std::any_of(request.measures.begin(), request.measures.end(),
-                                             [](int m) { return measures[m].peaks; });
+        problem.settings.peaks = std::any_of(request.measures.begin(), request.measures.end(), [](int m) {
+            return measures<Observer>[m].need(peaks_of_impacts);
+        });
     }
     Worker(const Worker&) = delete; // columns point into it
 };
@@ -57,33 +61,56 @@ struct Block : Node {
     std::optional<Doubles<2>> batch_length, displacement, velocity, state, last_time, last_approach_speed,
         last_contact;
     std::optional<Doubles<3>> relative_position, relative_velocity;
+    std::vector<RunResult> runs;
 };
 
-inline std::vector<int> measure_indices(const std::vector<std::string>& names) {
-    std::vector<int> indices;
-    for (const std::string& name : names) {
-        int number = -1;
-        for (int m = 0; m < static_cast<int>(std::size(measures)); ++m)
-            if (name == measures[m].name) number = m;
-        if (number < 0) throw std::invalid_argument("the core has no measure named '" + name + "'");
-        indices.push_back(number);
-    }
-    return indices;
+// A run with samples at times of its own, beside those of a window.
+struct KeptRun {
+    Result result;
+    double seconds = 0;
+};
+
+// Runs a problem once, with the samples of its window and further ones at `times`, which do not affect it;
+// returns the result with those of the window, and keeps the others and those at contacts.
+inline Result run_and_keep(Problem& problem, const std::vector<real>& times, const std::atomic<bool>& stopped,
+                           KeptRun& kept) {
+    const auto from = std::chrono::steady_clock::now();
+    const std::vector<real> own = problem.sample_times;
+    problem.sample_times.clear();
+    std::set_union(own.begin(), own.end(), times.begin(), times.end(),
+                   std::back_inserter(problem.sample_times));
+    kept.result = run(problem, &stopped);
+    const auto has = [](const std::vector<real>& set, real t) {
+        return std::binary_search(set.begin(), set.end(), t);
+    };
+    const Samples all = std::move(kept.result.samples);
+    kept.result.samples =
+        all.selected([&](std::size_t i) { return !all.given[i] || has(times, all.time[i]); });
+    Result result = kept.result;
+    result.samples = all.selected([&](std::size_t i) { return all.given[i] && has(own, all.time[i]); });
+    if (result.status == Status::finished && result.samples.time.size() != own.size())
+        throw std::runtime_error("samples of the window are missing");
+    kept.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
+    return result;
 }
 
-// Runs the variants start to stop of a batch; returns nothing if `progress` returned False.
+// Runs the variants start to stop of a batch; returns nothing if `progress` returned False. With `times` the
+// runs themselves are returned, too, with samples at these times.
 inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vector<std::size_t>& grid,
                                   std::size_t start, std::size_t stop, const WindowNumbers& window,
                                   const std::vector<std::string>& names,
                                   const std::vector<std::string>& batched, bool motion, bool state,
-                                  std::size_t last, int threads, const Progress& progress) {
+                                  std::size_t last, int threads, const Progress& progress,
+                                  const std::optional<std::vector<real>>& times) {
     const OutputRequest outputs{measure_indices(names), measure_indices(batched), motion, state, last};
     // Each thread has a problem of its own, whose varying numbers are overwritten for each variant.
     std::vector<std::unique_ptr<Worker>> workers;
     for (int t = 0; t < threads; ++t)
         workers.push_back(std::make_unique<Worker>(packed, grid, window, outputs));
+    for (const auto& worker : workers) worker->problem.settings.peaks |= times.has_value();
     SweepOutput output;
     const std::size_t n = output.variants = stop - start;
+    std::vector<KeptRun> kept(times ? n : 0);
     std::vector<real> numbers(output.set_layout(workers.at(0)->problem, workers[0]->window, outputs),
                               not_a_number);
     // A variant that was not reached keeps this status and NaN.
@@ -97,7 +124,9 @@ inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vecto
             Worker& worker = *workers[static_cast<std::size_t>(thread)];
             worker.batch.apply(start + i);
             worker.window.place(worker.problem);
-            output.store(i, worker.problem, worker.window, outputs, run(worker.problem, &stopped));
+            output.store(i, worker.problem, worker.window, outputs,
+                         times ? run_and_keep(worker.problem, *times, stopped, kept[i])
+                               : run(worker.problem, &stopped));
         },
         [&](std::size_t done) { return !progress || !(*progress)(done).is(nb::bool_(false)); });
     if (!finished) return {};
@@ -129,6 +158,8 @@ inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vecto
         block.last_approach_speed = part({n, last}, output.last_speed);
         block.last_contact = part({n, last}, output.last_contact);
     }
+    for (KeptRun& one : kept)
+        block.runs.emplace_back(workers[0]->problem, std::move(one.result), one.seconds);
     return block;
 }
 
@@ -150,22 +181,14 @@ inline void add_sweep(nb::module_& module) {
               field("velocity", &B::velocity), field("relative_position", &B::relative_position),
               field("relative_velocity", &B::relative_velocity), field("state", &B::state),
               field("last_time", &B::last_time), field("last_approach_speed", &B::last_approach_speed),
-              field("last_contact", &B::last_contact));
+              field("last_contact", &B::last_contact), field("runs", &B::runs));
     module.def(
         "sweep", &sweep, nb::arg("problem"), nb::arg("grid"), nb::arg("start"), nb::arg("stop"),
         nb::arg("window"), nb::arg("measures"), nb::arg("batched") = std::vector<std::string>(),
         nb::arg("motion") = false, nb::arg("state") = false, nb::arg("last") = 0, nb::arg("threads") = 1,
-        nb::arg("progress") = nb::none(),
+        nb::arg("progress") = nb::none(), nb::arg("times") = nb::none(),
         "Run the variants start to stop of a batch over a grid and return their output; None if `progress` "
-        "returned False.");
-    module.def(
-        "measures",
-        [] {
-            nb::typed<nb::dict, nb::str, bool> names;
-            for (const Measure& m : measures) names[m.name] = m.samples;
-            return names;
-        },
-        "Return the names of the measures, and whether each needs samples of the motion.");
+        "returned False. With `times` the output holds the runs, too, with samples at these times.");
 }
 
 } // namespace rattlebox::bindings

@@ -40,9 +40,6 @@ inline constexpr real speed_at_rest = 1e-9;
 // Rounding errors of the energies at one time, as part of the largest energy of a run.
 inline constexpr real energy_rounding = 64 * epsilon;
 
-// Part of the largest energy of a run up to which the energy supplied and the residual count as none.
-inline constexpr real energy_at_rest = 1e-10;
-
 enum class Method : int { event_driven = 0, newton = 1, two_step = 2 };
 
 struct Settings {

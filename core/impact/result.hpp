@@ -32,6 +32,23 @@ struct Samples {
     std::vector<real> load_work, base_work, viscous;
     std::vector<real> normal, plastic, stored, force; // by damper
     std::vector<std::int8_t> given; // whether the time was requested, or is that of a contact
+
+    // Returns the samples i for which keep(i) is true.
+    template <class Keep> Samples selected(Keep&& keep) const {
+        Samples some;
+        const auto copy = [&]<class T>(const std::vector<T>& from, std::vector<T>& to) {
+            const std::size_t width = time.empty() ? 0 : from.size() / time.size();
+            for (std::size_t i = 0; i < time.size(); ++i)
+                if (keep(i)) to.insert(to.end(), from.begin() + i * width, from.begin() + (i + 1) * width);
+        };
+        copy(state, some.state);
+        for (const auto column : {&Samples::load_work, &Samples::base_work, &Samples::viscous,
+                                  &Samples::normal, &Samples::plastic, &Samples::stored, &Samples::force})
+            copy(this->*column, some.*column);
+        copy(given, some.given);
+        copy(time, some.time);
+        return some;
+    }
 };
 
 struct Result {

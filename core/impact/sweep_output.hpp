@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "impact/measures.hpp"
+#include "impact/observer.hpp"
 
 namespace rattlebox {
 
@@ -57,8 +57,8 @@ struct SweepOutput {
         const Status end = observer.end(problem.settings.energy_residual_limit());
         status[i] = static_cast<std::int8_t>(end);
         for (std::size_t m = 0; m < request.measures.size(); ++m) {
-            const Measure& measure = rattlebox::measures[request.measures[m]];
-            if (end == Status::finished || measure.of_energy_residual)
+            const Measure<Observer>& measure = rattlebox::measures<Observer>[request.measures[m]];
+            if (end == Status::finished || measure.despite_residual)
                 numbers[measures + m * variants + i] = measure.value(observer);
         }
         if (end == Status::finished && !request.batched.empty()) store_batches(i, observer, request);
@@ -95,7 +95,7 @@ struct SweepOutput {
             numbers[batch_length + i * most_batches + k] = batch->length();
             for (std::size_t m = 0; m < request.batched.size(); ++m)
                 numbers[batches + (m * variants + i) * most_batches + k] =
-                    rattlebox::measures[request.batched[m]].value(*batch);
+                    rattlebox::measures<Observer>[request.batched[m]].value(*batch);
         }
     }
 };

@@ -109,19 +109,19 @@ from rattlebox.studies.grid.sampling import random_design as random_design
 from rattlebox.studies.grid.sampling import replicas as replicas
 from rattlebox.studies.kinds.basins import basins as basins
 from rattlebox.studies.kinds.bifurcation import bifurcation as bifurcation
-from rattlebox.studies.kinds.check_softening import check_softening as check_softening
-from rattlebox.studies.kinds.check_step import check_step as check_step
-from rattlebox.studies.kinds.compare import compare as compare
 from rattlebox.studies.kinds.design import design as design
 from rattlebox.studies.kinds.frequency_response import frequency_response as frequency_response
 from rattlebox.studies.kinds.loss_map import loss_map as loss_map
 from rattlebox.studies.kinds.lyapunov import lyapunov as lyapunov
 from rattlebox.studies.kinds.sensitivity import sensitivity as sensitivity
+from rattlebox.studies.kinds.sweep import check_softening as check_softening
+from rattlebox.studies.kinds.sweep import check_step as check_step
+from rattlebox.studies.kinds.sweep import compare as compare
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.maps.response_from_map import response_from_map as response_from_map
-from rattlebox.studies.run.export import to_mat as to_mat
-from rattlebox.studies.run.outcomes import study_remarks as study_remarks
 from rattlebox.studies.run.stored import open_study as open_study
+from rattlebox.studies.run.stored import study_remarks as study_remarks
+from rattlebox.studies.run.stored import to_mat as to_mat
 from rattlebox.studies.work.measures import MEASURES as MEASURES
 
 __version__: str

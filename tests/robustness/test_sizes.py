@@ -15,7 +15,7 @@ import pytest
 from support.command import rattlebox
 
 import rattlebox as rb
-from rattlebox.studies.run.plan import MemoryResult, Plan
+from rattlebox.studies.run.store import MemoryResult, Plan
 
 RANDOM = """
 duration = "%(time)s"
@@ -72,9 +72,9 @@ def test_study_file_of_too_many_variants(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_results_in_memory_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     """Arrays of results that exceed the memory of the machine are refused with the advice to use a store."""
-    from rattlebox.studies.run import plan
+    from rattlebox.studies.run import store
 
-    monkeypatch.setattr(plan, "memory", lambda: 1e6)
+    monkeypatch.setattr(store, "memory", lambda: 1e6)
     large = Plan(dims=("a",), shape=(10**6,), outputs={"x": ((), "f8", {})})
     with pytest.raises(rb.ResourceError, match=re.escape("1e+06 variants take 0.008 GB")):
         MemoryResult(large, [])  # type: ignore[arg-type]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.owned_folder import read_marker
 from rattlebox.studies.run.stored import progress_of
+from rattlebox.studies.work.work import Work
 
 
 @dataclass
@@ -37,7 +38,7 @@ class Grid:
 
 
 @dataclass
-class Logistic:
+class LogisticEngine:
     """Iterations of the logistic map, whose bits depend on the order of all operations."""
 
     grid: Grid = field(default_factory=Grid)
@@ -45,11 +46,6 @@ class Logistic:
     case: str = "[damper]\ngap = 0.1\n[load]\namplitude = 5.0\n"
     fail: bool = False
     crash: bool = False
-
-    @property
-    def size(self) -> int:
-        """Number of variants."""
-        return math.prod(self.grid.shape)
 
     @property
     def block(self) -> int:
@@ -75,24 +71,32 @@ class Logistic:
         return {"case": self.case, "measure": ["value"]}
 
     def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
+        self, numbers: range, *, threads: int = 1, cancelled: Callable[[], bool] | None = None, reduction: None = None
     ) -> dict[str, NDArray[Any]] | None:
         """Compute a block after a pause for each of its variants."""
-        until = time.perf_counter() + self.pause * (stop - start)
+        until = time.perf_counter() + self.pause * len(numbers)
         while time.perf_counter() < until:
             if cancelled and cancelled():
                 return None
             time.sleep(0.002)
         if self.fail:
             raise ZeroDivisionError("an error of the task")
-        if self.crash and stop - start == self.size:
+        if self.crash and len(numbers) == math.prod(self.grid.shape):
             os._exit(1)
-        number = np.arange(start, stop)
-        x = (number + 0.5) / self.size
+        number = np.array(numbers)
+        size = math.prod(self.grid.shape)
+        x = (number + 0.5) / size
         for _ in range(1000):
-            x = (self.grid.first + 0.4 * number / self.size) * x * (1 - x)
+            x = (self.grid.first + 0.4 * number / size) * x * (1 - x)
         orbit = np.stack([x, x**2, x**3], axis=1).astype("f4")
         return {"value": x, "status": (number % 7 == 0).astype("i1"), "orbit": orbit}
+
+
+class Logistic(Work):
+    """A study of the logistic map."""
+
+    def __init__(self, grid: Grid | None = None, **options: Any) -> None:
+        super().__init__(LogisticEngine(grid or Grid(), **options))
 
 
 def variants_in(store: Path) -> int:

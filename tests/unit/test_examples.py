@@ -16,7 +16,7 @@ from scipy.interpolate import PchipInterpolator
 import rattlebox as rb
 from rattlebox.app.draft import FIRST, template
 from rattlebox.cli.demo import BARE, DAMPED, demo_cases
-from rattlebox.studies.design.trial_store import count_trials
+from rattlebox.studies.design.trials import count_trials
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPTS = sorted(path for path in EXAMPLES.rglob("*.py") if path.name != "write_data.py")

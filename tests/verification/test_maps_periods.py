@@ -8,7 +8,7 @@ from support import impact_cases
 from support.exact import masri_caughey, shaken
 
 import rattlebox as rb
-from rattlebox.studies.work.orbits import Motion
+from rattlebox.studies.work.reductions import Motion
 
 
 def spiral(frequency: str) -> rb.Case:

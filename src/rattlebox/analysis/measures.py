@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rattlebox._util.settling import settled_after
+from rattlebox.core import _core
 
 from .signals import FloatArray, finite, positive, sampled
 
@@ -51,7 +51,8 @@ def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, ref
     size = np.abs(x)
     peak = float(size.max()) if reference is None else positive("reference", reference, "")
     limit = positive("band", band, "") * peak
-    return settled_after(t, x, limit)
+    settled: float = _core.settled_after(t, x, limit)
+    return settled
 
 
 def peak_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:

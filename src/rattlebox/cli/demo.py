@@ -19,7 +19,7 @@ from rattlebox.model.structures import SDOF
 from rattlebox.plots.gain import plot_gain
 from rattlebox.results.run import Run
 from rattlebox.results.summary import Comparison
-from rattlebox.studies.kinds.compare import compare
+from rattlebox.studies.kinds.sweep import compare
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

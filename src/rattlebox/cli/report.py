@@ -14,7 +14,7 @@ from rattlebox.report.kinds.unfinished import UnfinishedRun
 from rattlebox.report.write import write_report
 from rattlebox.results import Run, load
 from rattlebox.results.snapshots import Snapshots
-from rattlebox.studies.design.trial_store import count_trials
+from rattlebox.studies.design.trials import count_trials
 from rattlebox.studies.run.stored import has_map, open_study
 
 if TYPE_CHECKING:

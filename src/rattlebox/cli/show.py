@@ -15,9 +15,17 @@ from rich.text import Text
 from rattlebox._util.quantities import MISSING, PREFIXED_UNITS, quantity
 from rattlebox.cli.terminal import terminal
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.design.trial_store import count_trials, open_trials
-from rattlebox.studies.run.outcomes import chunks, computed, status_lines
-from rattlebox.studies.run.stored import Progress, has_map, open_study, progress_of, report_damage
+from rattlebox.studies.design.trials import count_trials, open_trials
+from rattlebox.studies.run.stored import (
+    Progress,
+    chunks,
+    computed,
+    has_map,
+    open_study,
+    progress_of,
+    report_damage,
+    status_lines,
+)
 from rattlebox.studies.work.measures import INTERVAL
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.plausibility import plausibility_notes
-from rattlebox.studies.run.outcomes import status_lines
 from rattlebox.studies.run.runner import Stopped
+from rattlebox.studies.run.stored import status_lines
 from rattlebox.studies.study_file import read_study
 
 

@@ -794,6 +794,130 @@ class Result(Node):
     @staticmethod
     def fields() -> dict[str, Varies]: ...
 
+class RecordedRun(Node):
+    """
+    A window of a recorded run. Arrays that the requested measures do not need may be empty, and numbers NaN.
+    """
+
+    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], displacement: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], start_acceleration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], end_acceleration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], base_acceleration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], damper_force: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], base_force: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], motion: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], gravity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], contact_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], period: float = float('nan'), loss_per_cycle: float = float('nan'), mass: float = float('nan'), cavity_speed: float = float('nan'), effective_mass: float = float('nan'), damping_mass: float = float('nan')) -> None: ...
+
+    @property
+    def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def displacement(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def velocity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def start_acceleration(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def end_acceleration(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def base_acceleration(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def damper_force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def base_force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def motion(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def gravity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def load_work(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def base_work(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def viscous_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def contact_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def period(self) -> float: ...
+
+    @property
+    def loss_per_cycle(self) -> float: ...
+
+    @property
+    def mass(self) -> float: ...
+
+    @property
+    def cavity_speed(self) -> float: ...
+
+    @property
+    def effective_mass(self) -> float: ...
+
+    @property
+    def damping_mass(self) -> float: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Measure(Node):
+    """Name, unit, meaning and requirements of a measure."""
+
+    def __init__(self, *, name: str, unit: str, meaning: str, average: str, cyclic: bool, of_impacts: bool, of_samples: bool, of_base_force: bool, of_loss_in_cycle: bool, of_acceleration: bool, of_first_harmonic: bool) -> None: ...
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def unit(self) -> str: ...
+
+    @property
+    def meaning(self) -> str: ...
+
+    @property
+    def average(self) -> str: ...
+
+    @property
+    def cyclic(self) -> bool: ...
+
+    @property
+    def of_impacts(self) -> bool: ...
+
+    @property
+    def of_samples(self) -> bool: ...
+
+    @property
+    def of_base_force(self) -> bool: ...
+
+    @property
+    def of_loss_in_cycle(self) -> bool: ...
+
+    @property
+    def of_acceleration(self) -> bool: ...
+
+    @property
+    def of_first_harmonic(self) -> bool: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def measures() -> list[Measure]:
+    """Return the measures in the order of their table."""
+
+def measure(run: RecordedRun, names: Sequence[str]) -> list[float]:
+    """Return measures of a recorded run."""
+
+most_batches: int = 64
+
+def settled_after(time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], limit: float) -> float:
+    """
+    Return the time after which the magnitude of a signal is at most a limit; see `rattlebox.analysis.settling_time`.
+    """
+
 class Window(Node):
     """
     Equally spaced samples of each run from `start` to its end, in cycles of `period`, at a point with these mode shapes, which moves with the base if `base` is 1; the participation and the residual mass give the force on the base.
@@ -828,7 +952,7 @@ class Window(Node):
 class Block(Node):
     """Output of the variants of a batch, one row for each."""
 
-    def __init__(self, *, status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')], measures: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]], batches: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]], batch_length: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, displacement: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, relative_position: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, relative_velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_time: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_contact: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None) -> None: ...
+    def __init__(self, *, status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')], measures: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]], batches: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]], batch_length: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, displacement: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, relative_position: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, relative_velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_time: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_contact: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, runs: Sequence[Result]) -> None: ...
 
     @property
     def status(self) -> Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')]: ...
@@ -866,17 +990,15 @@ class Block(Node):
     @property
     def last_contact(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
 
+    @property
+    def runs(self) -> list[Result]: ...
+
     @staticmethod
     def fields() -> dict[str, Varies]: ...
 
-def sweep(problem: Problem, grid: Sequence[int], start: int, stop: int, window: Window, measures: Sequence[str], batched: Sequence[str] = [], motion: bool = False, state: bool = False, last: int = 0, threads: int = 1, progress: Callable[[int], object] | None = None) -> Block | None:
+def sweep(problem: Problem, grid: Sequence[int], start: int, stop: int, window: Window, measures: Sequence[str], batched: Sequence[str] = [], motion: bool = False, state: bool = False, last: int = 0, threads: int = 1, progress: Callable[[int], object] | None = None, times: Sequence[float] | None = None) -> Block | None:
     """
-    Run the variants start to stop of a batch over a grid and return their output; None if `progress` returned False.
-    """
-
-def measures() -> dict[str, bool]:
-    """
-    Return the names of the measures, and whether each needs samples of the motion.
+    Run the variants start to stop of a batch over a grid and return their output; None if `progress` returned False. With `times` the output holds the runs, too, with samples at these times.
     """
 
 class Partner(enum.IntEnum):

@@ -25,6 +25,8 @@ class BlockOutput:
     start, period
         Time from which measures are evaluated [s] and length of a cycle [s]; numbers, or arrays that broadcast over the
         grid.
+    times
+        Times of further samples [s], with which each variant is also returned as a run.
     """
 
     measures: Sequence[str] = ()
@@ -39,6 +41,7 @@ class BlockOutput:
     last: int = 0
     state: bool = False
     batched: Sequence[str] = ()
+    times: NDArray[np.float64] | None = None
 
 
 def run_block(
@@ -60,7 +63,7 @@ def run_block(
         (n, samples), `relative_position` and `relative_velocity` (n, samples, balls) of the motion; `last_time`,
         `last_approach_speed`, `last_contact` (n, last); `state` (n, 2 (modes + balls)); `batches` (measures, n, 64) and
         `batch_length` (n, 64) [s] of the parts, NaN for parts that there are not. Everything but the
-        status is NaN for runs that did not finish. None if `progress` stopped the block.
+        status is NaN for runs that did not finish. `runs`, a list, with `times`. None if `progress` stopped the block.
     """
     grid = list(shape) or [1]
     window = _core.Window(
@@ -85,13 +88,16 @@ def run_block(
         last=output.last,
         threads=max(1, min(threads, stop - start)),
         progress=progress,
+        times=None if output.times is None else output.times.tolist(),
     )
     if block is None:
         return None
-    arrays = {name: getattr(block, name) for name in block.fields() if name not in ("measures", "batches")}
+    arrays = {name: getattr(block, name) for name in block.fields() if name not in ("measures", "batches", "runs")}
     measures = dict(zip(output.measures, block.measures, strict=True))
     if output.batched:
         arrays["batches"] = np.array(block.batches)
+    if output.times is not None:
+        arrays["runs"] = block.runs
     return {name: values for name, values in arrays.items() if values is not None} | measures
 
 

@@ -158,7 +158,7 @@ def simulate_many(
         results = _core.simulate(packed, count, lambda done: report(done, len(packed))) if packed else []
         report(len(packed), len(packed))
     raise_if_pressed()  # of a study, of which these runs are a part
-    return [_result(case, _limit_samples(result)) for case, result in zip(cases, results, strict=True)]
+    return [run_from_core(case, result) for case, result in zip(cases, results, strict=True)]
 
 
 def _report_done(report: Report, done: int, total: int, *_steps: int) -> object:
@@ -185,7 +185,9 @@ def _limit_samples(raw: _core.Result) -> _core.Result:
     return raw.replace(**{name: getattr(raw, name)[chosen] for name in sampled})
 
 
-def _result(case: Case, raw: _core.Result) -> Run:
+def run_from_core(case: Case, raw: _core.Result) -> Run:
+    """Return the run of a case from the result of the core."""
+    raw = _limit_samples(raw)
     with np.errstate(over="ignore", invalid="ignore"):  # a solution that became non-finite has a status
         arrays = _arrays(case, raw)
     status, message = _status_and_message(case, arrays, raw)

@@ -383,6 +383,17 @@ class Case(Part):
             signals.append(signal.acceleration() if isinstance(signal, Harmonic) and signal.unit == "m" else signal)
         return tuple(signals)
 
+    @property
+    def harmonics(self) -> dict[str, Harmonic]:
+        """Harmonic loads and motions by their path; the first one defines the cycle of the case."""
+        signals = {"loads": self.loads, "base": self.base, "structure.motion": self.shaker_motion}
+        return {
+            f"{name}[{number}]": signal
+            for name, group in signals.items()
+            for number, signal in enumerate(group)
+            if isinstance(signal, Harmonic)
+        }
+
     def sample_times(self) -> Vector:
         """Return the times of the output that are known before the run, (T,) [s]."""
         if self.output.is_chosen:

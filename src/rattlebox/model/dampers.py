@@ -252,6 +252,18 @@ class ImpactDamper(Part):
             )
         return self
 
+    gap_fractions: ClassVar[tuple[str, ...]] = ("start",)
+    """Fields whose numbers are fractions of the gap."""
+
+    @property
+    def has_random_start(self) -> bool:
+        """Whether repeated runs can start differently: a row of balls can start anywhere."""
+        return True
+
+    def restarted(self, number: int, generator: np.random.Generator) -> ImpactDamper:
+        """Return the damper with the start of a repeated run: the row at rest in its centre, then anywhere in the gap."""
+        return self.model_copy(update={"start": float(generator.uniform(-1, 1)) if number else 0.0})
+
     def label(self, index: int) -> str:
         """Return the name of the damper; by default it has the number of the damper in the case."""
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")

@@ -66,6 +66,11 @@ class Harmonic(Signal):
             raise Hint(f"must be later than start, {self.start:g} s", place=["stop"])
         return self
 
+    @property
+    def is_lasting(self) -> bool:
+        """Whether it never stops."""
+        return self.stop is None
+
     def evaluate(self, time: Any) -> NDArray[np.float64]:
         """Return the values at the given times [s]."""
         t = np.asarray(time, dtype=float)

@@ -57,6 +57,10 @@ class Packing(Part):
         seed = int(np.random.SeedSequence([getattr(self, "seed", 0), index]).generate_state(1)[0])
         return self.model_copy(update={"seed": seed})
 
+    def reseeded(self, number: int) -> Self:
+        """Return the packing with the seed of a repeated run; the packing itself for the number 0, or without a seed."""
+        return self.model_copy(update={"seed": getattr(self, "seed", 0) + number}) if self.is_random else self
+
     def bulk_density(self, friction: float) -> float:
         """Return the volume of particles over that of their bed, far from walls; by default that of a compacted bed."""
         return COMPACTED

@@ -470,6 +470,15 @@ class ParticleDamper(Part):
         else:
             _ = self.start
 
+    @property
+    def has_random_start(self) -> bool:
+        """Whether repeated runs can start differently."""
+        return self.packing.is_random
+
+    def restarted(self, number: int, generator: np.random.Generator) -> ParticleDamper:
+        """Return the damper with the packing of a repeated run."""
+        return self.model_copy(update={"packing": self.packing.reseeded(number)})
+
     def label(self, index: int) -> str:
         """Return the name of the damper; by default it has the number of the damper in the case."""
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")

@@ -134,6 +134,11 @@ class Random(Sampled):
         corners, unit = _densities(values["psd"], values.get("unit"))
         return {**values, "psd": tuple(map(tuple, corners.tolist())), "unit": unit}
 
+    @property
+    def is_lasting(self) -> bool:
+        """Whether it continues to the end of every run: always, since it is at least as long."""
+        return True
+
     @model_validator(mode="after")
     def _in_the_band(self) -> Self:
         rate, count = self._sampling

@@ -70,6 +70,11 @@ class Signal(Part):
     point: str | None = None
     direction: Direction | None = None
 
+    @property
+    def is_lasting(self) -> bool:
+        """Whether a steady excitation continues to the end of every run."""
+        return False
+
     @field_validator("unit", mode="before")
     @classmethod
     def _without_prefix(cls, value: Any) -> Any:

@@ -14,7 +14,7 @@ from rattlebox._util.narrow import present
 
 from ..model.errors import Hint, nearest
 from ..results.figures import study_figure
-from ..studies.work.orbits import Motion
+from ..studies.work.reductions import Motion
 from .labels import LabelledValues, capitalised, name_of, unit_of
 from .style import FAINT, INK, SERIES_COLOURS, StyledFigure, figure_style, label, legend_above, pen, scaled
 from .types import Size, Style, Vector

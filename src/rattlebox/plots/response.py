@@ -14,7 +14,7 @@ from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import nearest
 from ..results.figures import study_figure
-from ..studies.work.orbits import Motion
+from ..studies.work.reductions import Motion
 from .labels import capitalised, log_ticks, name_of
 from .style import ABOVE, FAINT, INK, StyledFigure, figure_style, label, pen, scaled, series_colour
 from .types import Size, Style

@@ -57,8 +57,13 @@ MAX_EVENTS = 200_000
 def pack(case: Case) -> _core.Problem:
     """Pack a case for the core."""
     problem = _problem(case)
-    settings = problem.settings.replace(contact_samples=0 if case.output.is_chosen else MAX_EVENTS)
+    settings = problem.settings.replace(contact_samples=contact_samples(case))
     return problem.replace(settings=settings, sample_times=_array(case.sample_times()))
+
+
+def contact_samples(case: Case) -> int:
+    """Return the number of events of a run up to which contacts are sampled; 0 for none."""
+    return 0 if case.output.is_chosen else MAX_EVENTS
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 from rattlebox.results.case_words import dampers_words
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.run.outcomes import status_counts, status_lines
+from rattlebox.studies.run.stored import status_counts, status_lines
 from rattlebox.studies.work.measures import INTERVAL
 
 if TYPE_CHECKING:

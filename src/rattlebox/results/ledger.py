@@ -133,10 +133,25 @@ class Ledger:
         whose zero is arbitrary.
         """
         # At rest all terms of the balance are rounding errors of the largest energy, and their ratio has no meaning.
-        worst = float(np.max(np.abs(self.residual)))
-        if worst == 0.0 or max(worst, self._put_in) <= _core.energy_at_rest * self._largest:
-            return 0.0
-        return worst / self._put_in if self._put_in != 0.0 else float("inf")
+        arrays, nothing = self.arrays, np.zeros(0)
+        recorded = _core.RecordedRun(
+            time=arrays.time,
+            motion=self.motion,
+            gravity=self.gravity,
+            load_work=arrays.load_work,
+            base_work=arrays.base_work,
+            viscous_loss=arrays.viscous_loss,
+            contact_loss=self.contact_loss,
+            displacement=nothing,
+            velocity=nothing,
+            start_acceleration=nothing,
+            end_acceleration=nothing,
+            base_acceleration=nothing,
+            damper_force=nothing,
+            base_force=nothing,
+        )
+        (residual,) = _core.measure(recorded, ["energy_residual"])
+        return residual
 
     def is_balanced(self, limit: float, *, permitted: float = 0.0, floor: float = 0.0, rounding: float = 1e-10) -> bool:
         """Return whether the largest residual is within a limit or within rounding.

@@ -14,7 +14,7 @@ from rattlebox._util.batch_means import half_widths, shortest_window
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.html import bullets, paragraph, table
 from rattlebox._util.quantities import MISSING, digits, quantity
-from rattlebox._util.settling import settled_after
+from rattlebox.core import _core
 
 from .acceleration import accelerations_of_steps, base_at_points
 from .damper_force import mean_damper_force
@@ -309,7 +309,9 @@ def _settling_times(reference: Mapping[str, Value], arrays: RunArrays) -> dict[s
     for k, point in enumerate(arrays.points):
         peak = reference.get(f"peak_displacement[{point}]")
         if isinstance(peak, float) and peak > 0 and math.isfinite(peak):
-            times[f"settling_time[{point}]"] = settled_after(arrays.time, arrays.displacement[:, k], SETTLED * peak)
+            times[f"settling_time[{point}]"] = _core.settled_after(
+                arrays.time, arrays.displacement[:, k], SETTLED * peak
+            )
     return times
 
 

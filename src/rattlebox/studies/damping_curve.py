@@ -15,18 +15,16 @@ from numpy.typing import NDArray
 from rattlebox._util.quantities import quantity
 from rattlebox.analysis.cycle_loss import UNSTEADY, cycle_loss
 from rattlebox.analysis.damping_curve import band_edges, damping_over_amplitude, mean_over_period, smooth_decay
-from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
-from rattlebox.model.packing import Bed, Lattice
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 from rattlebox.prepare.time_step import exceeded_limits
-from rattlebox.studies.grid.robust import no_random_packing
+from rattlebox.studies.grid.axes import no_random_packing
 from rattlebox.studies.grid.sampling import Spaced
-from rattlebox.studies.run.evaluate_cases import evaluate_cases
-from rattlebox.studies.work.steady import EXTENSIONS, steady_run
+from rattlebox.studies.run.runner import evaluate_cases
+from rattlebox.studies.work.particles import EXTENSIONS, steady_run
 
 if TYPE_CHECKING:
     import xarray
@@ -308,24 +306,13 @@ def mode_of(case: Case, number: int, point: str | None) -> CurveMode:
 def random_starts(case: Case, count: int) -> list[Case]:
     """Return copies of the case without loads, with different random initial states."""
     rng = np.random.default_rng(case.seed)
-    cases, random = [], not case.dampers
-    for number in range(count):
-        dampers: list[Any] = []
-        for damper in case.particle_dampers or case.impact_dampers:
-            if isinstance(damper, ImpactDamper):
-                random = True
-                # `start` displaces the row as a whole, by a fraction of the gap.
-                start = float(rng.uniform(-1, 1)) if number else 0.0
-                dampers.append(damper.model_copy(update={"start": start}))
-            elif isinstance(damper.packing, (Bed, Lattice)) and damper.packing.is_random:
-                random = True
-                packing = damper.packing.model_copy(update={"seed": damper.packing.seed + number})
-                dampers.append(damper.model_copy(update={"packing": packing}))
-            else:
-                dampers.append(damper)
-        cases.append(case.model_copy(update={"dampers": tuple(dampers), "loads": (), "base": ()}))
-    if count > 1 and not random:
+    moving = case.particle_dampers or case.impact_dampers
+    if count > 1 and case.dampers and not any(damper.has_random_start for damper in moving):
         raise no_random_packing()
+    cases = []
+    for number in range(count):
+        dampers = tuple(damper.restarted(number, rng) for damper in moving)
+        cases.append(case.model_copy(update={"dampers": dampers, "loads": (), "base": ()}))
     return cases
 
 

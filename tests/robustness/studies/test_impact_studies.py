@@ -18,7 +18,9 @@ from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.run.runner import Stopped, run_work
 from rattlebox.studies.run.stored import open_study, progress_of
 from rattlebox.studies.study_file import read_study
-from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.impact import ImpactEngine
+from rattlebox.studies.work.variants import Variants
+from rattlebox.studies.work.work import Work
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 STUDY = f"""\
@@ -77,7 +79,7 @@ def one_block(store: Path) -> None:
     """Run a study of one block that takes minutes."""
     case = rb.Case.from_file(EXAMPLE)
     design = read_axes(case, {"damper.start": rb.linspace(-0.5, 0.5, 100_000)})
-    run_work(ImpactWork(case, design, ["impacts"]), store=store, block=100_000, progress=False)
+    run_work(Work(ImpactEngine(Variants(case, design, ["impacts"]))), store=store, block=100_000, progress=False)
 
 
 STARTS = {"damper.start": rb.linspace(-0.5, 0.5, 100_000)}

@@ -20,7 +20,7 @@ from support.logistic_study import Logistic, variants_in
 from support.waiting import wait_for
 
 import rattlebox as rb
-from rattlebox.studies.design.trial_store import count_trials
+from rattlebox.studies.design.trials import count_trials
 from rattlebox.studies.run.runner import Stopped, run_work
 from rattlebox.studies.run.stored import open_study, progress_of
 

@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 from support import logistic_study
 from support.datasets import bits
-from support.logistic_study import Grid, Logistic
+from support.logistic_study import Grid, Logistic, LogisticEngine
 from support.mounts import needs_mounts, with_own_mounts
 
 import rattlebox as rb
@@ -22,6 +22,7 @@ from rattlebox._util.owned_folder import MARKER, read_marker, write_marker
 from rattlebox.cli.show import show_study
 from rattlebox.studies.run.runner import run_work
 from rattlebox.studies.run.stored import open_study, progress_of
+from rattlebox.studies.work.work import Work
 
 SCRIPT = Path(logistic_study.__file__)
 
@@ -260,13 +261,13 @@ def test_damaged_block_is_computed_again(how: str, tmp_path: Path, capsys: pytes
 def test_block_of_nan_is_computed_once(tmp_path: Path) -> None:
     """A block whose values are all NaN is computed once."""
 
-    class Nothing(Logistic):
-        def run(self, start: int, stop: int, **options: Any) -> Any:
-            return {name: values * np.nan for name, values in super().run(start, stop, **options).items()} | {
-                "status": np.full(stop - start, -128, "i1")
+    class Nothing(LogisticEngine):
+        def run(self, numbers: range, **options: Any) -> Any:
+            return {name: values * np.nan for name, values in super().run(numbers, **options).items()} | {
+                "status": np.full(len(numbers), -128, "i1")
             }
 
-    study(tmp_path / "study.zarr", Nothing())
+    study(tmp_path / "study.zarr", Work(Nothing()))
     assert progress_of(tmp_path / "study.zarr").done == 60
 
 

@@ -16,7 +16,7 @@ from rattlebox._util.interrupts import StoppableCalls
 STUDY = """
 import time
 import rattlebox as rb
-from rattlebox.studies.run.evaluate_cases import evaluate_cases
+from rattlebox.studies.run.runner import evaluate_cases
 def slow(run):
     print("evaluating", flush=True)
     while True:

@@ -19,7 +19,7 @@ from rattlebox.prepare.softening import (
     cavity_motion,
     loss_change,
 )
-from rattlebox.studies.work.particle_work import WARNINGS
+from rattlebox.prepare.time_step import WARNINGS
 
 
 def shaken(amplitude: float, frequency: float, softening: Any, cycles: float = 10, **changes: Any) -> rb.Case:

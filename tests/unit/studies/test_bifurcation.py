@@ -9,8 +9,10 @@ import pytest
 import rattlebox as rb
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.run.runner import run_work
-from rattlebox.studies.work.continuation import ContinuationWork
-from rattlebox.studies.work.orbits import Motion
+from rattlebox.studies.work.impact import ImpactEngine
+from rattlebox.studies.work.reductions import Motion
+from rattlebox.studies.work.variants import Variants, order_along
+from rattlebox.studies.work.work import Work
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "bifurcation.py"
 AMPLITUDE = "structure.motion.amplitude"
@@ -46,9 +48,9 @@ def test_both_goes_up_and_then_back_down():
     for name in up.data_vars:
         np.testing.assert_array_equal(up[name][0], both[name][0])
     there_and_back = np.concatenate([values, values[::-1]])
-    grid = read_axes(shaken(), {AMPLITUDE: there_and_back})
-    work = ContinuationWork.along(shaken(), grid, directions=["up"], cycles=(20, 8), samples=9, motion=True)
-    chain = run_work(work, **QUIET)
+    grid, order = order_along(read_axes(shaken(), {AMPLITUDE: there_and_back}), "up")
+    variants = Variants(shaken(), grid, cycles=(20, 8), samples=9)
+    chain = run_work(Work(ImpactEngine(variants, motion=True, state=True), order), **QUIET)
     np.testing.assert_array_equal(both.relative_position[1], chain.relative_position.values[0, :4:-1, 1:])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rattlebox.studies.work.blocks import Blocks
+from rattlebox.studies.work.work import Blocks
 
 
 @settings(derandomize=True, deadline=None)

@@ -14,9 +14,8 @@ import pytest
 from scipy.stats import chi2
 
 import rattlebox as rb
-from rattlebox.studies.calibration.fit import Fit
-from rattlebox.studies.calibration.space import Space
-from rattlebox.studies.calibration.work import CalibrationWork, simulation_of
+from rattlebox.studies.calibration.fit import Fit, Space
+from rattlebox.studies.calibration.work import CalibrationEngine, simulation_of
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.run.runner import Stopped
 
@@ -131,8 +130,8 @@ def test_a_box_of_particles_is_calibrated_by_both_measurements(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each sample has a packing of its own; ring-down and shaker of one box together bound its restitution."""
-    monkeypatch.setattr("rattlebox.studies.run.budget.TIMED", 0.02)
-    monkeypatch.setattr("rattlebox.studies.calibration.by_simulation._ROUNDS", 1)
+    monkeypatch.setattr("rattlebox.studies.run.backends.TIMED", 0.02)
+    monkeypatch.setattr("rattlebox.studies.calibration.calibrate._ROUNDS", 1)
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="4 mm", count=6),
         cavity=rb.Box(size=("10 mm",) * 3),
@@ -285,10 +284,10 @@ def test_the_budget_is_predicted_and_kept(monkeypatch: pytest.MonkeyPatch, capsy
     """A prediction is printed; if it exceeds the budget nothing runs, and following the hint does."""
     data, time = shaken(0.7), 3.0
 
-    def predict(work: CalibrationWork) -> tuple[float, float]:
+    def predict(work: CalibrationEngine) -> tuple[float, float]:
         return time, 1.0
 
-    monkeypatch.setattr(CalibrationWork, "predict", predict)
+    monkeypatch.setattr(CalibrationEngine, "predict", predict)
     options: dict[str, Any] = {"workers": 1, "progress": True, "checks": 2}
     with pytest.raises(
         rb.CaseError, match=r'budget = 2 s is less than predicted for at most 54 samples.*\n  try: budget = "7'
@@ -304,10 +303,10 @@ def test_the_budget_is_predicted_and_kept(monkeypatch: pytest.MonkeyPatch, capsy
 def test_a_prediction_is_near_the_time_of_the_runs() -> None:
     """The processor time that is predicted is that of all samples within a factor of five."""
     grid = read_axes(case(), {"sample": {E: [0.7] * 12}})
-    work = CalibrationWork(case(), grid, [simulation_of(shaken(0.7), case())])
+    work = CalibrationEngine(case(), grid, [simulation_of(shaken(0.7), case())])
     predicted, _ = work.predict()
     before = process_time()
-    work.run(0, 12)
+    work.run(range(12))
     assert 0.2 < (process_time() - before) / predicted < 5
 
 
@@ -323,14 +322,14 @@ def test_the_same_call_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 
     with pytest.raises(Stopped):
         calibrated(data, store=store, progress=stop, workers=1)
-    count, run = 0, CalibrationWork.run
+    count, run = 0, CalibrationEngine.run
 
-    def counted(work: CalibrationWork, start: int, end: int, **options: Any) -> Any:
+    def counted(work: CalibrationEngine, numbers: range, **options: Any) -> Any:
         nonlocal count
-        count += end - start
-        return run(work, start, end, **options)
+        count += len(numbers)
+        return run(work, numbers, **options)
 
-    monkeypatch.setattr(CalibrationWork, "run", counted)
+    monkeypatch.setattr(CalibrationEngine, "run", counted)
     resumed = calibrated(data, store=store, workers=1)
     assert 26 + 8 < count < 60
     count = 0

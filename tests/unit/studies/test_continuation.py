@@ -11,7 +11,9 @@ import rattlebox as rb
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.kinds.sweep import sweep
 from rattlebox.studies.run.runner import run_work
-from rattlebox.studies.work.continuation import ContinuationWork, without_states
+from rattlebox.studies.work.impact import ImpactEngine
+from rattlebox.studies.work.variants import Variants, order_along, with_direction
+from rattlebox.studies.work.work import Work
 
 QUIET = {"progress": False}
 
@@ -19,9 +21,11 @@ QUIET = {"progress": False}
 def continue_along(case, path, values, *, grid=None, workers=None, progress=False, **options):
     """Run a case for each value of a parameter from the final state before, for each variant of a grid."""
     axes = read_axes(case, [*([grid] if grid else []), {path: values}])
-    work = ContinuationWork.along(case, axes, directions=["up"], intervals=True, **options)
+    axes, order = order_along(axes, "up")
+    returned = {name: options.pop(name) for name in ("motion", "last") if name in options}
+    work = Work(ImpactEngine(Variants(case, axes, intervals=True, **options), **returned, state=True), order)
     work.validate()
-    return without_states(run_work(work, workers=workers, progress=progress))
+    return with_direction(run_work(work, workers=workers, progress=progress))
 
 
 def shaken(frequency="10 Hz", *, contact=None, method=None, motion=(), **damper):

@@ -24,7 +24,7 @@ from support.struck import struck
 import rattlebox as rb
 from rattlebox._util.quantities import quantity
 from rattlebox.report.kinds.design import KIND
-from rattlebox.studies.design.trial_store import count_trials
+from rattlebox.studies.design.trials import count_trials
 from rattlebox.studies.run.runner import Stopped
 from rattlebox.studies.study_file import study_from_toml
 

@@ -16,7 +16,7 @@ from rattlebox.cli.show import show_study
 from rattlebox.cli.sweep import run_sweep
 from rattlebox.studies.design import search
 from rattlebox.studies.design.search import DesignSearch
-from rattlebox.studies.run.budget import Budget, duration
+from rattlebox.studies.run.backends import Budget, duration
 
 COUNT, SIZE, NUMBER, SEED = (
     "damper.particles.count",

@@ -11,7 +11,7 @@ import pytest
 import rattlebox as rb
 from rattlebox import analysis
 from rattlebox.studies.grid.axes import read_axes
-from rattlebox.studies.kinds.lyapunov import LyapunovWork
+from rattlebox.studies.kinds.lyapunov import PairEngine
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "lyapunov.py"
 QUICK = {"cycles": (60, 60), "pairs": 3, "progress": False}
@@ -175,7 +175,7 @@ def test_loads_without_period_are_refused():
 
 def test_cancellation():
     """A cancelled task ends soon, also during the transient cycles."""
-    task = LyapunovWork(case(), read_axes(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
+    task = PairEngine(case(), read_axes(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
     begun = time.perf_counter()
-    assert task.run(0, 64, threads=1, cancelled=lambda: time.perf_counter() - begun > 0.3) is None
+    assert task.run(range(64), threads=1, cancelled=lambda: time.perf_counter() - begun > 0.3) is None
     assert time.perf_counter() - begun < 1.5

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rattlebox.studies.work.orbits import Motion, attractors, classify, unsettled
+from rattlebox.studies.work.reductions import Motion, attractors, classify, unsettled
 
 
 def orbit(*points, turns=24, shift=0, blur=0.0, seed=0):

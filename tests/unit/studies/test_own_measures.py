@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.core import _core
 from rattlebox.studies.study_file import read_study
-from rattlebox.studies.work.fingerprint import fingerprint
+from rattlebox.studies.work.variants import fingerprint
 
 LIMIT = 1e-3
 AXES = {"damper.gap": ["0.4 mm", "0.8 mm"]}
@@ -138,3 +139,48 @@ def test_study_files_name_the_equivalent_damping(tmp_path: Path, form: str) -> N
     result = read_study(tmp_path / "study.toml").run()
     ratios = np.array([0.01, 0.02, 0.04])
     assert (np.abs(result.equivalent_damping / ratios - 1) < 1.5 * ratios).all()  # the energy falls in steps
+
+
+@pytest.mark.parametrize("output", [{}, {"output": rb.Output(rate=2000)}, {"output": rb.Output(times=[0.01, 0.1])}])
+def test_a_function_costs_no_second_simulation(monkeypatch: pytest.MonkeyPatch, output: Any) -> None:
+    """A variant with a function of its Run is simulated once, with the bits of both a sweep and `rb.simulate`.
+
+    Each variant once ran twice, in the core and by `rb.simulate`; no test counted the runs.
+    """
+    base = case().model_copy(update=output)
+    alone = rb.sweep(base, AXES, ["peak", "impact_share", "peak_overlap"], progress=False)
+    runs = [rb.simulate(base.replaced({"damper.gap": gap})) for gap in AXES["damper.gap"]]
+    seen: list[rb.Run] = []
+
+    def largest_overlap(run: rb.Run) -> float:
+        seen.append(run)
+        return float(run.impacts.peak_overlap.max())
+
+    swept, simulated = [], []
+    sweep = _core.sweep
+    monkeypatch.setattr(_core, "sweep", lambda *args, **options: (swept.append(args[2:4]), sweep(*args, **options))[1])
+    monkeypatch.setattr(_core, "simulate", lambda *args, **options: simulated.append(args))
+    both = rb.sweep(base, AXES, ["peak", "impact_share", "peak_overlap", largest_overlap], progress=False, workers=1)
+    assert swept == [(0, 1), (1, 2)] and not simulated
+    for name in alone.data_vars:
+        np.testing.assert_array_equal(both[name], alone[name])
+    np.testing.assert_array_equal(both.largest_overlap, [run.impacts.peak_overlap.max() for run in runs])
+    for run, expected in zip(seen, runs, strict=True):
+        assert run.case == expected.case and run.counts == expected.counts and run.notes == expected.notes
+        for name in ("time", "displacement", "viscous_loss", "cavity_force"):
+            np.testing.assert_array_equal(getattr(run.arrays, name), getattr(expected.arrays, name))
+
+
+def test_functions_get_the_run_of_the_cycles() -> None:
+    """With cycles a function of a 1-D run gets the run whose cycles are evaluated, as one of a particle run does.
+
+    It once got a run of the duration of the case; no test had looked at the run.
+    """
+    driven = case().model_copy(update={"loads": (rb.Harmonic(amplitude="50 N", frequency="10 Hz"),)})
+
+    def end(run: rb.Run) -> float:
+        return float(run.arrays.time[-1])
+
+    axes = {"load.frequency": ["8 Hz", "10 Hz"]}
+    result = rb.sweep(driven, axes, ["rms", end], cycles=(3, 5), progress=False)
+    np.testing.assert_allclose(result.end, [8 / 8, 8 / 10], rtol=1e-15)

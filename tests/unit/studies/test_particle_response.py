@@ -11,7 +11,7 @@ import xarray
 
 import rattlebox as rb
 from rattlebox.studies.run.runner import Stopped
-from rattlebox.studies.work.response_work import steady_motion
+from rattlebox.studies.work.reductions import steady_motion
 
 STRUCTURE = rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping="20 N s/m")
 QUICK: dict[str, Any] = {"cycles": (5, 6), "samples": 16, "progress": False}
@@ -194,7 +194,7 @@ def test_softening_auto_is_the_same_at_all_frequencies() -> None:
         structure=STRUCTURE, damper=damper, load=rb.Harmonic(amplitude="50 N", frequency="30 Hz"), duration="1 s"
     )
     study = rb.studies.kinds.frequency_response.FrequencyResponse(case, [28.0, 60.0], direction="up", **QUICK)
-    factor = study.work.case.particle_dampers[0].softening_factor
+    factor = study.work.engine.case.particle_dampers[0].softening_factor
     alone = [rb.studies.kinds.frequency_response.resolve_softening(study.grid.case_at(case, k))[0] for k in range(2)]
     values = [each.particle_dampers[0].softening_factor for each in alone]
     assert factor == min(values) < max(values)

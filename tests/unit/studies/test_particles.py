@@ -14,7 +14,9 @@ from rattlebox.prepare import settle
 from rattlebox.results import Run
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.run.runner import Stopped
-from rattlebox.studies.work import particle_work
+from rattlebox.studies.work import particles
+from rattlebox.studies.work.variants import Variants
+from rattlebox.studies.work.window import cut_before
 
 AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
 
@@ -116,7 +118,7 @@ def test_friction_is_a_number_along_an_axis() -> None:
 def test_windows_begin_between_samples() -> None:
     """A window that begins between two samples begins with the interpolated values."""
     run = rb.simulate(shaken(duration="0.02 s", output=rb.Output(rate=1000)))
-    window = particle_work.cut_before(run, 0.0104).arrays
+    window = cut_before(run, 0.0104).arrays
     assert window.time[0] == 0.0104
     assert window.time[1] == run.arrays.time[11]
     between = 0.6 * run.arrays.cavity_displacement[10] + 0.4 * run.arrays.cavity_displacement[11]
@@ -238,9 +240,9 @@ def test_a_stop_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.Monkey
     with pytest.raises(Stopped, match="2 of 4 variants are in"):
         rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=stopping)
     cases = []
-    simulate = particle_work.simulate_dem
+    simulate = particles.simulate_dem
     monkeypatch.setattr(
-        particle_work, "simulate_dem", lambda case, **options: (cases.append(case), simulate(case, **options))[1]
+        particles, "simulate_dem", lambda case, **options: (cases.append(case), simulate(case, **options))[1]
     )
     result = rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=False)
     assert len(cases) == 2
@@ -315,11 +317,11 @@ def test_continuation_is_for_impact_dampers() -> None:
 def test_cancellation(monkeypatch: pytest.MonkeyPatch) -> None:
     """A cancelled task ends within a run and within the settling before it."""
     case = shaken(duration="1000 s", dampers=[box(packing=rb.Settled(seed=9))])
-    task = particle_work.ParticleWork(case, read_axes(case, {AMPLITUDE: [60.0]}), ["work"])
-    assert task.run(0, 1, cancelled=lambda: True) is None
+    task = particles.ParticleEngine(Variants(case, read_axes(case, {AMPLITUDE: [60.0]}), ["work"]))
+    assert task.run(range(1), cancelled=lambda: True) is None
     calls: list[bool] = []
-    monkeypatch.setattr(particle_work, "settle_all", lambda case, proceed: True)
-    assert task.run(0, 1, cancelled=lambda: (calls.append(True), len(calls) > 3)[1]) is None
+    monkeypatch.setattr(particles, "settle_all", lambda case, proceed: True)
+    assert task.run(range(1), cancelled=lambda: (calls.append(True), len(calls) > 3)[1]) is None
 
 
 def test_beds_are_settled_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,8 +12,10 @@ from rattlebox.core import _core
 from rattlebox.model.paths import replaced
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.run.runner import run_work
-from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.impact import ImpactEngine
 from rattlebox.studies.work.measures import MEASURES
+from rattlebox.studies.work.variants import Variants
+from rattlebox.studies.work.work import Work
 
 PLASTIC_RIGID = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid"), ending="zero_overlap")
 AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "8 kN"]}
@@ -82,8 +84,18 @@ def test_settling_is_that_of_the_analysis_however_short_the_window() -> None:
 
 
 def test_all_measures_of_the_core_are_listed() -> None:
-    """The table of measures and the core's list agree, also on which measures need samples."""
-    assert {name: measure.samples for name, measure in MEASURES.items()} == _core.measures()
+    """The table of measures is that of the core, in its order, with the requirements of each measure."""
+    assert [row.name for row in _core.measures()] == list(MEASURES)
+    assert {name for name, measure in MEASURES.items() if measure.of_impacts} == {
+        "impacts",
+        "impacts_per_cycle",
+        "peak_contact_force",
+        "peak_overlap",
+        "largest_approach_speed",
+        "mean_approach_speed",
+        "longest_contact",
+    }
+    assert all(measure.samples for measure in MEASURES.values() if measure.of_base_force or measure.of_first_harmonic)
 
 
 def shaken(duration: float = 1.0) -> rb.Case:
@@ -248,7 +260,11 @@ def test_parameters_outside_the_batch_can_vary(tmp_path: Path) -> None:
             np.testing.assert_allclose(maps.displacement.values[index], run.arrays.displacement[:, 0], rtol=1e-9)
     assert 0 < np.mean(maps.status == 0) < 1
     assert np.unique(maps.impacts.values[np.isfinite(maps.impacts.values)]).size > 6
-    blocks = run_work(ImpactWork(case, design, ["impacts"], samples=3, motion=True), store=tmp_path / "s.zarr", block=3)
+    blocks = run_work(
+        Work(ImpactEngine(Variants(case, design, ["impacts"], samples=3), motion=True)),
+        store=tmp_path / "s.zarr",
+        block=3,
+    )
     for name in maps.data_vars:
         np.testing.assert_array_equal(maps[name], blocks[name])
     laws = rb.sweep(case, {"damper.contact": [rb.Tsuji(restitution=0.5), rb.Linear(stiffness=1e6, restitution=0.5)]})

@@ -19,7 +19,7 @@ from rattlebox.report.limits import limit
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Limit, Picture, Table
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
-from rattlebox.studies.run.budget import duration
+from rattlebox.studies.run.backends import duration
 from rattlebox.studies.work.measures import INTERVAL, MEASURES
 
 if TYPE_CHECKING:

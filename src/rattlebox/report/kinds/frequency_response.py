@@ -12,7 +12,7 @@ from rattlebox.plots.response import plot_frequency_response
 from rattlebox.report import study_words as words
 from rattlebox.report.arguments import measures_argument, options_of
 from rattlebox.report.parts import Call, Table
-from rattlebox.studies.work.orbits import Motion
+from rattlebox.studies.work.reductions import Motion
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,7 +15,7 @@ from rattlebox.plots.lyapunov import plot_lyapunov
 from rattlebox.report import study_words as words
 from rattlebox.report.arguments import axes_argument, call_with_measures, options_of
 from rattlebox.report.parts import Call
-from rattlebox.studies.work.orbits import Motion
+from rattlebox.studies.work.reductions import Motion
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -188,6 +188,10 @@ class Drops:
         error = None if self.error is None else _uncertainty(self.error, "m")
         complete(self, height=heights, rebound=rebounds, error=error, unit=columns[0].unit and columns[1].unit)
 
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments of the class, in SI units."""
+        return {"height": (self.height, "m"), "rebound": (self.rebound, "m"), "ball": self.ball, "error": self.error}
+
 
 @dataclass(frozen=True, eq=False)
 class BounceTimes:
@@ -225,6 +229,10 @@ class BounceTimes:
         error = None if self.error is None else _uncertainty(self.error, "s")
         unit = None if any(column.unit is None for column in columns) else "s"
         complete(self, times=tuple(column.values for column in columns), error=error, unit=unit)
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments of the class, in SI units."""
+        return {"times": [(times.tolist(), "s") for times in self.times], "error": self.error}
 
 
 def _check_contacts(times: FloatArray) -> None:
@@ -307,6 +315,11 @@ class RingDown:
         error = read_error(self.error, ratio, ())
         mode = whole_number(self.mode, "mode", 1)
         complete(self, amplitude=amplitude[order], damping_ratio=ratio[order], error=error[order], mode=mode, unit=unit)
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments of the class, in SI units."""
+        names = ("damping_ratio", "error", "mode", "point")
+        return {"amplitude": (self.amplitude, self.unit or "m"), **{name: getattr(self, name) for name in names}}
 
     @classmethod
     def from_signal(
@@ -414,6 +427,16 @@ class ShakerLoss:
             unit=unit,
         )
 
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments of the class, in SI units."""
+        return {
+            "amplitude": (self.amplitude, self.unit),
+            "frequency": self.frequency,
+            self.measure: self.loss,
+            "error": self.error,
+            "cycles": self.cycles,
+        }
+
 
 Contacts = Drops | BounceTimes
 """Data that give the restitution in closed form."""
@@ -443,27 +466,7 @@ def read_data(data: Any) -> tuple[list[Contacts], list[Losses]]:
 
 def source_of(data: Contacts | Losses) -> str:
     """Return the Python source of a measurement, with numbers in SI units."""
-    if isinstance(data, Drops):
-        parts = {"height": (data.height, "m"), "rebound": (data.rebound, "m"), "ball": data.ball, "error": data.error}
-    elif isinstance(data, BounceTimes):
-        parts = {"times": [(times.tolist(), "s") for times in data.times], "error": data.error}
-    elif isinstance(data, RingDown):
-        parts = {
-            "amplitude": (data.amplitude, data.unit or "m"),
-            "damping_ratio": data.damping_ratio,
-            "error": data.error,
-            "mode": data.mode,
-            "point": data.point,
-        }
-    else:
-        parts = {
-            "amplitude": (data.amplitude, data.unit),
-            "frequency": data.frequency,
-            data.measure: data.loss,
-            "error": data.error,
-            "cycles": data.cycles,
-        }
-    words = [f"{name}={_source(value)}" for name, value in parts.items() if value is not None]
+    words = [f"{name}={_source(value)}" for name, value in data.arguments().items() if value is not None]
     return f"rb.{type(data).__name__}({', '.join(words)})"
 
 

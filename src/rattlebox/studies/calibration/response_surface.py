@@ -173,6 +173,7 @@ class Agreement:
     def explore(self) -> Region:
         """Return chi^2 on a grid over all plausible parameters."""
         width = self.surfaces.powers.shape[1]
+        # A grid over the whole range would miss a narrow valley: zoom to where chi^2 is small until that no longer helps.
         low, high = np.zeros(width), np.ones(width)
         for _ in range(_ZOOMS):
             region = Region.of(self, low, high)

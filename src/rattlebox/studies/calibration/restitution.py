@@ -12,8 +12,8 @@ from scipy.special import stdtrit
 
 from rattlebox._util.quantities import amount
 from rattlebox.model.errors import Hint
+from rattlebox.studies.calibration.fit import NORMAL
 from rattlebox.studies.calibration.measurements import Contacts, Drops
-from rattlebox.studies.calibration.space import NORMAL
 
 if TYPE_CHECKING:
     import xarray

@@ -22,11 +22,10 @@ from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.studies.calibration.measurements import Losses, RingDown, ShakerLoss
 from rattlebox.studies.damping_curve import Remarks, damping_curve_cases, mode_of, random_starts, ratios_of_decays
 from rattlebox.studies.grid.axes import read_axes
-from rattlebox.studies.run.budget import RunGroup, time_of_particle_runs
-from rattlebox.studies.work.case_digest import describe_case
-from rattlebox.studies.work.particle_work import ParticleWork
-from rattlebox.studies.work.work import Values
-from rattlebox.studies.work.work_of_case import work_of_case
+from rattlebox.studies.run.backends import RunGroup, time_of_particle_runs
+from rattlebox.studies.work.particles import FLAGS, engine_of
+from rattlebox.studies.work.variants import AMPLITUDE, FREQUENCY, Variants, describe_case
+from rattlebox.studies.work.work import Cancelled, Outputs, Values, proceed_unless
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-_AMPLITUDE, _FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
 Proceed = Callable[..., bool]
 """Function that returns False when the runs must stop."""
 
@@ -121,7 +119,7 @@ class Shaken:
             if motion is not None and getattr(motion, "direction", None) is not None:
                 direction = motion.direction
         on_shaker = _on_shaker(case, data, direction)
-        points = {"datum": {_AMPLITUDE: data.amplitude.tolist(), _FREQUENCY: data.frequency.tolist()}}
+        points = {"datum": {AMPLITUDE: data.amplitude.tolist(), FREQUENCY: data.frequency.tolist()}}
         return cls(data, read_axes(on_shaker, points, source="data"), direction)
 
     @property
@@ -130,29 +128,27 @@ class Shaken:
         values: FloatArray = self.data.loss
         return values
 
-    def _work(self, case: Case) -> Any:
+    def _engine(self, case: Case) -> Any:
         shaken = _on_shaker(case, self.data, self.direction)
-        return work_of_case(shaken, self.grid, measures=[self.data.measure], cycles=self.data.cycles)
+        return engine_of(Variants(shaken, self.grid, [self.data.measure], cycles=self.data.cycles))
 
     def check(self, case: Case) -> None:
         """Raise if the case cannot be simulated."""
-        self._work(case).validate()
+        self._engine(case).validate()
 
     def simulate(self, case: Case, threads: int, proceed: Proceed) -> tuple[FloatArray, int]:
         """Return the simulated values of a start, (M,), and exceeded limits as bits in the order of `WARNINGS`."""
-        work = self._work(case)
-        found = work.run(0, work.size, threads=threads, cancelled=lambda: not proceed())
+        size = self.grid.size
+        found = self._engine(case).run(range(size), threads=threads, cancelled=lambda: not proceed())
         if found is None:
-            return np.full(work.size, np.nan), 0
+            return np.full(size, np.nan), 0
         warnings = found.get("warnings")
         return found[self.data.measure], 0 if warnings is None else int(np.bitwise_or.reduce(warnings))
 
     def runs(self, case: Case) -> list[Case]:
         """Return the cases of the runs of a start."""
-        work = self._work(case)
-        if isinstance(work, ParticleWork):
-            return [work.variant(index) for index in range(work.size)]
-        return [work.grid.case_at(work.case, index) for index in range(work.size)]
+        engine = self._engine(case)
+        return [engine.variant(index) for index in range(self.grid.size)]
 
     def points(self) -> list[Point]:
         """Return the place of each value."""
@@ -203,18 +199,13 @@ def simulation_of(data: Losses, case: Case) -> Simulation:
 
 
 @dataclass(eq=False)
-class CalibrationWork:
+class CalibrationEngine:
     """Simulations of all measurements over samples of the parameters."""
 
     case: Case
     grid: Grid
     simulations: Sequence[Simulation]
     first: int = 0
-
-    @property
-    def size(self) -> int:
-        """Number of samples."""
-        return self.grid.size
 
     @property
     def block(self) -> int:
@@ -227,16 +218,11 @@ class CalibrationWork:
         return sum(each.measured.size for each in self.simulations)
 
     @cached_property
-    def outputs(self) -> dict[str, tuple[tuple[tuple[str, int], ...], str, dict[str, Any]]]:
+    def outputs(self) -> Outputs:
         """Further dimensions, number type and attributes of each output."""
-        flags = {
-            "long_name": "exceeded validity limits",
-            "flag_masks": [2**bit for bit in range(len(WARNINGS))],
-            "flag_meanings": " ".join(WARNINGS),
-        }
         return {
             "simulated": ((("datum", self.count),), "float64", {"long_name": "simulated value"}),
-            "warnings": ((), "int16", flags),
+            "warnings": ((), "int16", FLAGS),
         }
 
     def coords(self) -> dict[str, Any]:
@@ -250,22 +236,19 @@ class CalibrationWork:
 
     @cached_property
     def _starts(self) -> list[Case]:
-        return random_starts(self.case, self.first + self.size)[self.first :]
+        return random_starts(self.case, self.first + self.grid.size)[self.first :]
 
     def variant(self, index: int) -> Case:
         """Return the case of a sample."""
         return self.grid.case_at(self._starts[index], index)
 
     def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
+        self, numbers: range, *, threads: int = 1, cancelled: Cancelled = None, reduction: None = None
     ) -> Values | None:
-        """Return the outputs of samples start to stop; None soon after `cancelled` returns True."""
-
-        def proceed(*_: int) -> bool:
-            return not (cancelled and cancelled())
-
-        simulated, warnings = np.full((stop - start, self.count), np.nan), np.zeros(stop - start, np.int16)
-        for row, index in enumerate(range(start, stop)):
+        """Return the outputs of samples; see `Engine.run`."""
+        proceed = proceed_unless(cancelled)
+        simulated, warnings = np.full((len(numbers), self.count), np.nan), np.zeros(len(numbers), np.int16)
+        for row, index in enumerate(numbers):
             first = 0
             for each in self.simulations:
                 own = slice(first, first + each.measured.size)
@@ -294,8 +277,8 @@ class CalibrationWork:
             before = time.process_time()
             for each in self.simulations:
                 each.simulate(self.variant(0), 1, lambda *_: True)
-            return (time.process_time() - before) * self.size, 1.0
+            return (time.process_time() - before) * self.grid.size, 1.0
         cases = [run for each in self.simulations for run in each.runs(self.variant(0))]
-        groups = (RunGroup.of(each, self.size, self.size) for each in cases)
+        groups = (RunGroup.of(each, self.grid.size, self.grid.size) for each in cases)
         times, share = time_of_particle_runs([group for group in groups if group])
         return sum(times), share

@@ -26,17 +26,14 @@ from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.studies.damping_curve import OTHER_MOTION, Way, damping_curve, damping_curve_cases
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
 from rattlebox.studies.grid.axes import ParsedAxes, materials_in, read_axes
-from rattlebox.studies.grid.grid import Grid
-from rattlebox.studies.grid.parameter import Parameter
-from rattlebox.studies.run.budget import TRIAL, Budget, RunGroup, time_of_particle_runs, workers_of
+from rattlebox.studies.grid.grid import Grid, Parameter
+from rattlebox.studies.run.backends import TRIAL, Budget, RunGroup, time_of_particle_runs, workers_of
 from rattlebox.studies.run.runner import run_work
 from rattlebox.studies.run.study import known_measures
-from rattlebox.studies.work.case_digest import describe_case
-from rattlebox.studies.work.fingerprint import fingerprint
-from rattlebox.studies.work.impact_work import ImpactWork
 from rattlebox.studies.work.measures import INTERVAL, about, check_names
-from rattlebox.studies.work.particle_work import ParticleWork
-from rattlebox.studies.work.work_of_case import first_refused, work_of_case
+from rattlebox.studies.work.particles import ParticleEngine, engine_of
+from rattlebox.studies.work.variants import Variants, describe_case, fingerprint
+from rattlebox.studies.work.work import Block, Work
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -143,11 +140,10 @@ class DesignSearch:
         axes = [each for each in (self.levels, self.packings) if each is not None]
         return read_axes(case, axes or {"duration": [case.duration]}, source="levels")
 
-    def work_of(self, case: Case) -> ImpactWork | ParticleWork:
+    def work_of(self, case: Case) -> Work:
         """Return the work that measures the runs of a trial."""
-        grid = self.grid_of(case)
         measures = [each.measure for each in self.measured]
-        return work_of_case(case, grid, measures=measures, intervals=True, **self.options)
+        return Work(engine_of(Variants(case, self.grid_of(case), measures, intervals=True, **self.options)))
 
     def curve_cases(self, case: Case) -> list[Case]:
         """Return the cases of a trial whose damping curves are computed, one for each level."""
@@ -296,8 +292,8 @@ class DesignSearch:
         """Return the first and the last run of the sweep and of the curves of a trial for their halves."""
         ends = [(curves[index], len(curves) / 2) for index in ((0, -1) if curves else ())]
         if sweep:
-            work = instance(self.work_of(case), ParticleWork)
-            ends += [(work.variant(index), sweep / 2) for index in (0, sweep - 1)]
+            engine = instance(self.work_of(case).engine, ParticleEngine)
+            ends += [(engine.variant(index), sweep / 2) for index in (0, sweep - 1)]
         # Each packing of each damper settles once. A shaken damper is alone in its run.
         beds = self.count * len(case.particle_dampers) / len(ends)
         groups = (RunGroup.of(each, runs, beds / len(each.particle_dampers)) for each, runs in ends)
@@ -307,10 +303,10 @@ class DesignSearch:
         """Return the time of all runs of a trial with impact dampers, from a few of them [s]."""
         total = 0.0
         if self.measured:
-            work = instance(self.work_of(case), ImpactWork)
+            work = self.work_of(case)
             some = min(work.size, 4)
             before = time.process_time()
-            work.run(0, some)
+            work.run(Block(0, 0, some), None, threads=1, cancelled=None)
             total += (time.process_time() - before) * work.size / some
         if curves:
             before = time.process_time()
@@ -345,7 +341,7 @@ class DesignSearch:
         if self.measured:
             work = self.work_of(case)
             runs = run_work(work, **self.where)
-            reason = first_refused(work, runs)
+            reason = work.first_refused(runs["status"].values)
             failed = runs["status"].values != 0
             if "warnings" in runs:
                 warnings |= int(np.bitwise_or.reduce(runs["warnings"].values, axis=None))

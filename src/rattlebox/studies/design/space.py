@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint
 from rattlebox.studies.grid.axes import materials_in, parse_axes
-from rattlebox.studies.grid.grid import labels
-from rattlebox.studies.grid.parameter import Parameter
-from rattlebox.studies.grid.parameter import Values as Column
+from rattlebox.studies.grid.grid import Parameter, labels
+from rattlebox.studies.grid.grid import Values as Column
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case

@@ -7,7 +7,7 @@ import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,9 +19,13 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, all_paths, get, place_of, replaced
 from rattlebox.model.plausibility import plausibility_notes
-from rattlebox.studies.grid.grid import Column, Grid, labels
-from rattlebox.studies.grid.parameter import Parameter, Values, objects
+from rattlebox.model.units import whole_number
+from rattlebox.studies.grid.grid import Column, Grid, Parameter, Values, labels, objects
 from rattlebox.studies.grid.sampling import RandomDesign, Replicas, number_of_variants
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
 
 Axes = (
     Mapping[Any, Any] | RandomDesign | Replicas | Sequence["Mapping[Any, Any] | RandomDesign | Replicas | ParsedAxes"]
@@ -236,6 +240,7 @@ class _Reader:
 
 def _check_variants(case: Case, grid: Grid, source: str) -> None:
     """Raise if one of the extreme variants, or of a few others, is not valid."""
+    # Most limits are on single values or on sums of them, which are largest at corners and extreme values.
     corners = itertools.product(*({0, length - 1} for length in grid.shape))
     indices = [int(np.ravel_multi_index(corner, grid.shape)) for corner in itertools.islice(corners, 4 * _SAMPLED)]
     for values in grid.columns.values():
@@ -348,3 +353,38 @@ def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column
 
 def _words(path: str) -> str:
     return path.replace(".", " ").replace("_", " ")
+
+
+# ---- axes of repeated runs
+
+
+def robust_axes(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
+    """Return the axes of load levels and start positions; an empty list for one run."""
+    axes = list(levels) if isinstance(levels, (list, tuple)) else [] if levels is None else [levels]
+    if starts is not None:
+        if [len(damper.balls) for damper in case.impact_dampers] != [1]:
+            raise Hint("starts requires a case with exactly one ball", 'levels={"dampers[0].start": [...]}')
+        is_list = hasattr(starts, "__len__")
+        axes.append({"damper.start": starts if is_list else np.linspace(-1, 1, whole_number(starts, "starts", 2))})
+    return axes
+
+
+def packing_axis(case: Case, count: int) -> dict[str, Any]:
+    """Return an axis "packing" along which the random packings of all particle dampers vary together."""
+    seeds: dict[str, list[int]] = {}
+    for index, damper in enumerate(case.dampers):
+        packing: Any = getattr(damper, "packing", None)
+        if packing is not None and packing.is_random:
+            seeds[f"dampers[{index}].packing.seed"] = list(range(packing.seed, packing.seed + count))
+    if not seeds:
+        raise no_random_packing()
+    return {"packing": seeds}
+
+
+def no_random_packing() -> Hint:
+    """Return the error for repeated runs of a case whose initial state has no random part."""
+    return Hint(
+        "the packing has no random seed, so that all repeated runs would be equal",
+        "packing = rb.Settled(seed=1), rb.Lattice with noise, or packings = 1",
+        ["packing"],
+    )

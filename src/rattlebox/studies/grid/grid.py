@@ -1,21 +1,30 @@
-"""Grid of the variants of a case, along whose dimensions parameters vary."""
+"""Grid of the variants of a case, and the parameters that vary along its dimensions."""
 
 from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
+from functools import cache
 from hashlib import sha256
-from typing import Any
+from numbers import Real
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
-from rattlebox.model.base import Part
+from rattlebox._util.exceptions import CaseError
+from rattlebox.model.base import Part, vocabulary
 from rattlebox.model.case import Case
-from rattlebox.model.errors import Hint
-from rattlebox.model.paths import replaced, unit_of
-from rattlebox.model.restitutions import Constant
+from rattlebox.model.errors import Hint, translate
+from rattlebox.model.materials import Material
+from rattlebox.model.paths import Place, get_field, place_of, replaced, unit_of
+from rattlebox.model.restitutions import Restitution
+from rattlebox.model.signals import Signal
+from rattlebox.model.units import parse, plain
+from rattlebox.studies.grid.sampling import Spaced
 
 Column = NDArray[Any]
 """Values of a parameter: float64, or objects."""
@@ -126,7 +135,201 @@ def _label(value: Any) -> str:
     if getattr(value, "name", ""):
         return str(getattr(value, "name", ""))
     fields = {key: _label(getattr(value, key)) for key in sorted(value.model_fields_set - {"kind"})}
-    if isinstance(value, Constant) and fields.keys() == {"e"}:
+    if fields.keys() == {"e"}:
         return fields["e"]
     kind = getattr(value, "kind", type(value).__name__)
     return f"{kind}({', '.join(f'{key}={text}' for key, text in fields.items())})" if fields else str(kind)
+
+
+# ---- parameters
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """Values of a parameter along one dimension: numbers in SI units with their unit, or objects with unit None."""
+
+    parameter: Parameter
+    array: Column
+    unit: str | None
+
+
+class Parameter:
+    """A parameter of a case, addressed by its path."""
+
+    def __init__(self, case: Case, path: Any, source: str, materials: dict[str, Material]) -> None:
+        if not isinstance(path, str):
+            raise Hint(f"{path!r} is not a path", '"damper.gap"')
+        self.path, self.source, self.materials = path, source, materials
+        self.place: Place = place_of(case, path)
+        node: Any = case
+        for number, step in enumerate(self.place):
+            if isinstance(node, Part):
+                self.part, self.name, self.inner = node, str(step), self.place[number + 1 :]
+            node = get_field(node, str(step)) if isinstance(node, Part) else node[step]
+        self.now = node
+        self.is_start = self.name in getattr(self.part, "gap_fractions", ())
+        self.unit = "1" if self.is_start else unit_of(case, path)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the values are whole numbers."""
+        return not self.inner and _numbers(type(self.part).model_fields[self.name].annotation) == {int}
+
+    def check_independent(self, others: Iterable[Parameter]) -> None:
+        """Raise if other parameters are the same as this one, or exclude it."""
+        for other in others:
+            if other.place == self.place:
+                raise Hint(f"{self.path} varies twice" + (f", also as {other.path}" if other.path != self.path else ""))
+            pairs = self.part.alternatives if other.place[:-1] == self.place[:-1] else ()
+            if (other.name, self.name) in pairs or (self.name, other.name) in pairs:
+                raise Hint(f"{other.path} and {self.path} exclude each other", "one of them")
+
+    def read(self, value: Any, which: int | str | None = None) -> Any:
+        """Return a value as the case stores it."""
+        content = {self.name: _put(get_field(self.part, self.name), self.inner, value)}
+        try:
+            result = getattr(
+                _field(type(self.part), self.name).model_validate(content, context=self.materials), self.name
+            )
+        except ValidationError as error:
+            message = str(translate(error, "\0", vocabulary(), content))
+            inside = self.name + "".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in self.inner)
+            name = self.label(which)
+            raise CaseError(message.replace(f"\0: {inside}", name).replace("\0:", f"{name}:")) from None
+        for step in self.inner:
+            result = result[step]
+        return result
+
+    def number(self, value: Any, which: int | str | None = None) -> tuple[float, str] | None:
+        """Return a value in SI units with its unit; None if it is not a number."""
+        if isinstance(self.part, Signal) and self.name == "amplitude":
+            # The field itself would accept the units of other signals.
+            try:
+                value, _ = parse(value, (self.unit or "1",))
+            except Hint as hint:
+                raise self.wrong(hint.complaint, hint.suggestion, which, value) from None
+        result = self.read(value, which)
+        if isinstance(result, tuple) and len(result) == 1:  # a list of one load, ball or start position
+            (result,) = result
+        if isinstance(result, Restitution) and result.constant_value is not None and result.maximum == 1:
+            result = result.constant_value
+        number = None if isinstance(value, bool) else plain(value)
+        if isinstance(result, Part) and isinstance(number, Real):  # the case accepts a number in place of the part
+            result = number
+        if isinstance(result, str) and self.is_start:
+            return parse(result, ("m",))[0], "m"
+        if isinstance(result, bool) or not isinstance(result, Real):
+            return None
+        return float(result), self.unit or "1"
+
+    def ends(self, low: Any, high: Any, names: Sequence[str | int] = (0, 1)) -> tuple[float, float, str]:
+        """Return the ends of a range in SI units with their unit."""
+        if self.unit is None:
+            raise self.wrong("its values are not numbers", "a list of values")
+        return self.ends_of(self.number(low, names[0]), self.number(high, names[1]))
+
+    def ends_of(self, start: tuple[float, str] | None, stop: tuple[float, str] | None) -> tuple[float, float, str]:
+        """Return the ends of a range with their unit from two results of `number`."""
+        if self.unit is None or start is None or stop is None:
+            raise self.wrong("its values are not numbers", "a list of values")
+        if start[1] != stop[1]:
+            raise self.mixed()
+        return start[0], stop[0], start[1]
+
+    def values(self, given: Any) -> Values:
+        """Validate a list of values."""
+        if isinstance(given, Spaced):
+            start, stop, unit = self.ends(given.start, given.stop, given.names)
+            try:
+                return Values(self, given.values(start, stop), unit)
+            except Hint as hint:
+                raise self.wrong(hint.complaint, hint.suggestion) from None
+        if isinstance(given, (str, bytes, Mapping, Set, Part)) or not hasattr(given, "__iter__"):
+            raise self.not_a_list(given)
+        numbers = _as_numbers(given)
+        if numbers is not None and numbers.size:
+            bad = np.flatnonzero(~np.isfinite(numbers))
+            if bad.size:
+                raise self.wrong("a finite number is needed", "", int(bad[0]), float(numbers[bad[0]]))
+            found = [self.number(float(numbers[which]), int(which)) for which in (numbers.argmin(), numbers.argmax())]
+            if found[0] is not None:
+                return Values(self, numbers, found[0][1])
+        try:
+            items = given.tolist() if isinstance(given, np.ndarray) and given.ndim else list(given)
+        except TypeError:  # an array without dimensions
+            raise self.not_a_list(given) from None
+        if not items:
+            raise self.wrong("there are no values", "a list of at least one")
+        found = [self.number(item, which) for which, item in enumerate(items)]
+        quantities = [number for number in found if number is not None]
+        if len(quantities) < len(found):
+            return Values(self, objects([self.read(item) for item in items]), None)
+        if len({unit for _, unit in quantities}) > 1:
+            raise self.mixed()
+        return Values(self, np.array([number for number, _ in quantities]), quantities[0][1])
+
+    def label(self, which: int | str | None = None) -> str:
+        """Return the name of the parameter, or of one of its values, for messages."""
+        item = "" if which is None else f"[{which}]" if isinstance(which, int) else f", {which}"
+        return f"{self.source}: {self.path}{item}"
+
+    def wrong(self, complaint: str, suggestion: str = "", which: int | str | None = None, *value: Any) -> CaseError:
+        """Return an error about the parameter, or about one of its values."""
+        content = "".join(f" = {item!r:.60}" for item in value)
+        return CaseError(f"{self.label(which)}{content}\n  {Hint(complaint, suggestion)}")
+
+    def mixed(self) -> CaseError:
+        """Return an error about start positions of both kinds."""
+        return self.wrong("some values are fractions of the gap and some are lengths", "all of one kind")
+
+    def not_a_list(self, given: Any) -> CaseError:
+        """Return an error about a single value in place of a list."""
+        suggestion = f"[{given!r}]" if isinstance(given, (str, int, float)) else ""
+        return self.wrong("a list of values is needed", suggestion, None, given)
+
+
+def _numbers(annotation: Any) -> set[type]:
+    """Return the types of numbers in an annotation."""
+    if annotation in (int, float):
+        return {annotation}
+    return {number for each in get_args(annotation) for number in _numbers(each)}
+
+
+@cache
+def _field(part: type[Part], name: str) -> type[BaseModel]:
+    """Return a pydantic model with one field of a part."""
+    info = part.model_fields[name]
+    config = ConfigDict(arbitrary_types_allowed=True, allow_inf_nan=False)
+    fields: dict[str, Any] = {name: (info.annotation, info)}
+    return create_model("Value", __config__=config, **fields)
+
+
+def _put(node: Any, inner: Place, value: Any) -> Any:
+    """Return a copy of nested lists and dictionaries with another value at a place."""
+    if not inner:
+        return value
+    copy: Any = dict(node) if isinstance(node, dict) else list(node)
+    copy[inner[0]] = _put(copy[inner[0]], inner[1:], value)
+    return copy
+
+
+def _as_numbers(given: Any) -> NDArray[np.float64] | None:
+    """Return values as a vector if all are plain numbers; else None."""
+    if isinstance(given, (list, tuple, range)):
+        if not all(isinstance(item, (int, float, np.number)) and not isinstance(item, bool) for item in given):
+            return None
+    elif not hasattr(given, "__array__") or hasattr(given, "magnitude"):
+        return None
+    try:
+        array = np.asarray(given)
+    except OverflowError:
+        return None
+    return array.astype(float) if array.ndim == 1 and array.dtype.kind in "iuf" else None
+
+
+def objects(items: Sequence[Any]) -> Column:
+    """Return an array of objects, without conversion of the items."""
+    array = np.empty(len(items), dtype=object)
+    for number, item in enumerate(items):
+        array[number] = item
+    return array

@@ -22,9 +22,9 @@ from rattlebox.studies.run.study import (
     Study,
     study_function,
 )
-from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.impact import ImpactEngine
 from rattlebox.studies.work.measures import with_required
-from rattlebox.studies.work.orbits import (
+from rattlebox.studies.work.reductions import (
     Motion,
     Orbits,
     attractors,
@@ -34,6 +34,8 @@ from rattlebox.studies.work.orbits import (
     unsettled,
     without_speed,
 )
+from rattlebox.studies.work.variants import Variants
+from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
     import xarray
@@ -141,17 +143,17 @@ class Basins(Study):
     point: str | None = None
 
     @cached_property
-    def work(self) -> ImpactWork:
+    def engine(self) -> ImpactEngine:
         """Runs of all initial states, with one state per cycle."""
-        return ImpactWork(
+        variants = Variants(
             self.case,
             read_axes(self.case, self.starts, source="basins"),
             measures=with_required(("impacts", "impacts_per_cycle", "largest_approach_speed"), self.measure),
             cycles=self.cycles,
             samples=self.cycles[1] + 1,
             point=self.point,
-            motion=True,
         )
+        return ImpactEngine(variants, motion=True)
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
@@ -159,13 +161,13 @@ class Basins(Study):
             raise CaseError(
                 "the case has no damper; its motion is linear, with one attractor", "a case with an impact damper"
             )
-        self.work.require_alike()
+        self.engine.require_alike()
 
     def compute(self) -> xarray.Dataset:
         """Run all initial states and determine their attractors; see `Study.compute`."""
-        work, grid = self.work, self.work.grid
-        runs = self.run_work(work).load().isel(instant=slice(1, None)).rename(instant="strobe")
-        strobes, ranges = reduced_strobes(runs, work.packed, work.output.period)
+        engine, grid = self.engine, self.engine.grid
+        runs = self.run_work(Work(engine)).load().isel(instant=slice(1, None)).rename(instant="strobe")
+        strobes, ranges = reduced_strobes(runs, engine.packed, engine.output.period)
         orbits = classify(strobes / ranges[..., None, :], self.tolerance, self.apart)
         flat, scale = strobes.reshape(grid.size, self.cycles[1], -1), ranges.reshape(grid.size, -1)
         label, best = attractors(flat, scale, orbits.period.ravel(), orbits.residual.ravel(), self.apart)

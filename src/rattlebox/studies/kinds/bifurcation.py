@@ -25,10 +25,11 @@ from rattlebox.studies.run.study import (
     Values,
     study_function,
 )
-from rattlebox.studies.work.continuation import ContinuationWork, without_states
-from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.impact import ImpactEngine
 from rattlebox.studies.work.measures import with_required
-from rattlebox.studies.work.orbits import classify, labels, reduced_strobes, unsettled, without_speed
+from rattlebox.studies.work.reductions import classify, labels, reduced_strobes, unsettled, without_speed
+from rattlebox.studies.work.variants import Variants, order_along, with_direction
+from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
     import xarray
@@ -136,23 +137,14 @@ class Bifurcation(Study):
         return read_axes(self.case, {self.path: self.values}, source="bifurcation")
 
     @cached_property
-    def work(self) -> ImpactWork:
+    def work(self) -> Work:
         """Runs of all values."""
         count = self.cycles[1]
-        options: dict[str, Any] = {
-            "measures": with_required(("impacts", "impacts_per_cycle", "largest_approach_speed"), self.measure),
-            "cycles": self.cycles,
-            "samples": count + 1,
-            "motion": True,
-            "last": _IMPACTS * count if self.show == "impacts" else 0,
-            "point": self.point,
-        }
-        if self.direction == "fresh":
-            return ImpactWork(self.case, self.grid, **options)
-        both = self.direction == "both"
-        return ContinuationWork.along(
-            self.case, self.grid, directions=("up", "down") if both else (self.direction,), turn_back=both, **options
-        )
+        measures = with_required(("impacts", "impacts_per_cycle", "largest_approach_speed"), self.measure)
+        grid, order = order_along(self.grid, self.direction, turn_back=True)
+        variants = Variants(self.case, grid, measures, cycles=self.cycles, samples=count + 1, point=self.point)
+        last = _IMPACTS * count if self.show == "impacts" else 0
+        return Work(ImpactEngine(variants, motion=True, last=last, state=order.is_chain), order)
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
@@ -165,14 +157,14 @@ class Bifurcation(Study):
         self.work.validate()
 
     @property
-    def _values(self) -> ImpactWork:
-        """Work with the values in their order, for the evaluation."""
-        return ImpactWork(self.case, self.grid, cycles=self.cycles, point=self.point)
+    def _values(self) -> ImpactEngine:
+        """The values in their order, for the evaluation."""
+        return ImpactEngine(Variants(self.case, self.grid, cycles=self.cycles, point=self.point))
 
     def compute(self) -> xarray.Dataset:
         """Run all values and determine the periods; see `Study.compute`."""
         runs = self.run_work(self.work)
-        runs = runs.expand_dims(direction=["fresh"]) if self.direction == "fresh" else without_states(runs)
+        runs = with_direction(runs)
         about = {
             "title": "Bifurcation diagram",
             "case": self.case.to_toml(),

@@ -19,11 +19,9 @@ from rattlebox.model.errors import Hint
 from rattlebox.studies.damping_curve import Way, read_amplitudes
 from rattlebox.studies.design.search import Curve, DesignSearch, Robust
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
-from rattlebox.studies.design.trial_store import LAYOUT, load_study, quiet, trial_storage
-from rattlebox.studies.design.trials import Trials
-from rattlebox.studies.grid.axes import ParsedAxes, parse_axes
-from rattlebox.studies.grid.robust import packing_axis, robust_axes
-from rattlebox.studies.run.budget import duration
+from rattlebox.studies.design.trials import LAYOUT, Trials, load_study, quiet, trial_storage
+from rattlebox.studies.grid.axes import ParsedAxes, packing_axis, parse_axes, robust_axes
+from rattlebox.studies.run.backends import duration
 from rattlebox.studies.run.runner import Stopped
 from rattlebox.studies.run.store import save_result
 from rattlebox.studies.run.study import (

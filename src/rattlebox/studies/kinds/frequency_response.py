@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,6 @@ from pydantic.dataclasses import dataclass
 
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
-from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.particle_case import direction_of_base, inertia_along
 from rattlebox.model.space import unit_vector
 from rattlebox.model.units import Whole
@@ -31,15 +30,17 @@ from rattlebox.studies.run.study import (
     Values,
     study_function,
 )
-from rattlebox.studies.work.continuation import ContinuationWork, without_states
-from rattlebox.studies.work.impact_work import ImpactWork
+from rattlebox.studies.work.impact import ImpactEngine
 from rattlebox.studies.work.measures import interval_warning, with_required
-from rattlebox.studies.work.observed import Observed
-from rattlebox.studies.work.orbits import Orbits, unsettled
-from rattlebox.studies.work.response_work import QUANTITIES, ParticleContinuation, ParticleResponse, steady_motion
+from rattlebox.studies.work.particles import ParticleEngine
+from rattlebox.studies.work.reductions import QUANTITIES, Orbits, SteadyMotion, steady_motion, unsettled
+from rattlebox.studies.work.variants import Observed, Variants, order_along, with_direction
+from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
     import xarray
+
+    from rattlebox.model.harmonics import Harmonic
 
 _MEASURES = "peak", "rms"
 
@@ -152,28 +153,23 @@ class FrequencyResponse(Study):
         return read_axes(self.case, axes, source="frequency_response")
 
     @cached_property
-    def work(self) -> ImpactWork | ParticleResponse:
+    def work(self) -> Work:
         """Runs of all frequencies and levels."""
         particles = bool(self.case.particle_dampers)
-        options: dict[str, Any] = {
-            "measures": with_required((*_MEASURES, *["impacts_per_cycle"] * (not particles)), self.measure),
-            "cycles": self.cycles,
-            "samples": self.samples * self.cycles[1] + 1,
-            "point": self.point,
-            "intervals": True,
-        }
-        if particles:
-            options |= {"phase": self._driver[1].phase, "tolerance": self.tolerance}
-        else:
-            options["motion"] = True
-        if self.direction == "fresh":
-            return (ParticleResponse if particles else ImpactWork)(self.case, self.grid, **options)
-        directions = ("up", "down") if self.direction == "both" else (self.direction,)
-        continuation: type[ParticleContinuation | ContinuationWork] = (
-            ParticleContinuation if particles else ContinuationWork
+        grid, order = order_along(self.grid, self.direction)
+        variants = Variants(
+            _same_softening(self.case, self.grid) if particles and order.is_chain else self.case,
+            grid,
+            with_required((*_MEASURES, *["impacts_per_cycle"] * (not particles)), self.measure),
+            cycles=self.cycles,
+            samples=self.samples * self.cycles[1] + 1,
+            point=self.point,
+            intervals=True,
         )
-        case = _same_softening(self.case, self.grid) if particles else self.case
-        return continuation.along(case, self.grid, directions=directions, **options)
+        if particles:
+            steady = SteadyMotion(self._driver[1].phase, self.tolerance, self.cycles[1])
+            return Work(ParticleEngine(variants), order, steady)
+        return Work(ImpactEngine(variants, motion=True, state=order.is_chain), order)
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
@@ -187,12 +183,8 @@ class FrequencyResponse(Study):
         place, driver = self._driver
         runs = self.run_work(self.work)
         notes = result_notes(self.work, runs)
-        units = self.work.units_of("m")
-        if self.direction == "fresh":
-            runs = runs.expand_dims(direction=["fresh"])
-        elif isinstance(self.work, ContinuationWork):
-            runs = without_states(runs)
-        found = runs.rename({f"{place}.frequency": "frequency", f"{place}.amplitude": "level"}).load()
+        units = self.work.engine.variants.units_of("m")
+        found = with_direction(runs).rename({f"{place}.frequency": "frequency", f"{place}.amplitude": "level"}).load()
         if not self.case.particle_dampers:
             found = _steady(found, driver.phase, self.samples, self.tolerance, units)
         bare = _bare(self.case, driver, found.frequency.values, found.level.values, self.point)
@@ -226,10 +218,9 @@ def _driver(case: Case) -> tuple[str, Harmonic]:
     """Return path and signal of the harmonic load or base motion."""
     if not case.modes.decay.size:
         raise Hint(f"a {case.structure.kind} structure has no modes", "a structure of kind sdof, modal or matrices")
-    signals = [(f"{name}[{i}]", s) for name in ("loads", "base") for i, s in enumerate(getattr(case, name))]
-    harmonics = [(place, signal) for place, signal in signals if isinstance(signal, Harmonic)]
+    harmonics = list(case.harmonics.items())
     if len(harmonics) != 1:
-        names = f" ({', '.join(place for place, _ in harmonics)})" if harmonics else ""
+        names = f" ({', '.join(case.harmonics)})" if harmonics else ""
         raise Hint(
             f"the case has {len(harmonics)} harmonic loads or base motions{names}; a frequency response requires one",
             'kind = "harmonic"',

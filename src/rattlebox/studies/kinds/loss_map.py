@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox.model.errors import Hint
-from rattlebox.model.harmonics import Harmonic
-from rattlebox.model.structures import Shaker
 from rattlebox.studies.grid.axes import ParsedAxes, parse_axes, read_axes
 from rattlebox.studies.kinds.sweep import result_notes
 from rattlebox.studies.run.store import save_result
@@ -24,8 +22,11 @@ from rattlebox.studies.run.study import (
     Values,
     study_function,
 )
-from rattlebox.studies.work.map_work import AMPLITUDE, FREQUENCY, ImpactMapWork, ParticleMapWork
-from rattlebox.studies.work.steady import EXTENSIONS
+from rattlebox.studies.work.impact import ImpactEngine
+from rattlebox.studies.work.particles import EXTENSIONS, ParticleEngine
+from rattlebox.studies.work.reductions import ForceHarmonics
+from rattlebox.studies.work.variants import AMPLITUDE, FREQUENCY, Variants
+from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
     import xarray
@@ -119,15 +120,18 @@ class LossMap(Study):
     samples: Samples | None = None
 
     @cached_property
-    def work(self) -> ImpactMapWork | ParticleMapWork:
+    def work(self) -> Work:
         """Runs at all amplitudes and frequencies."""
-        options: dict[str, Any] = {"cycles": self.cycles or CYCLES, "samples": self.samples, "intervals": True}
-        grid = read_axes(self.case, list(self._axes.values()))
-        if self.case.particle_dampers:
-            names = [name for name in MEASURES if name != "impacts_per_cycle"]
-            repeats = EXTENSIONS if self.cycles is None else 0
-            return ParticleMapWork(self.case, grid, names, **options, extensions=repeats)
-        return ImpactMapWork(self.case, grid, MEASURES, motion=True, **options)
+        particles = bool(self.case.particle_dampers)
+        names = [name for name in MEASURES if not (particles and name == "impacts_per_cycle")]
+        grid, cycles = read_axes(self.case, list(self._axes.values())), self.cycles or CYCLES
+        variants = Variants(self.case, grid, names, cycles=cycles, samples=self.samples, intervals=True)
+        engine: ParticleEngine | ImpactEngine = (
+            ParticleEngine(variants, EXTENSIONS if self.cycles is None else 0)
+            if particles
+            else ImpactEngine(variants, motion=True)
+        )
+        return Work(engine, reduction=ForceHarmonics(softening=particles))
 
     @cached_property
     def _axes(self) -> dict[str, ParsedAxes]:
@@ -137,8 +141,8 @@ class LossMap(Study):
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
-        motion = self.case.structure.motion if isinstance(self.case.structure, Shaker) else ()
-        if len(motion) != 1 or not isinstance(motion[0], Harmonic):
+        motion = self.case.shaker_motion
+        if len(motion) != 1 or list(self.case.harmonics.values()) != list(motion):
             raise Hint("a loss map requires a case on a shaker with one harmonic motion", "a structure of kind shaker")
         if not self.case.dampers:
             raise Hint("a loss map requires a case with a damper", "a ball in a gap, or particles in a cavity")

@@ -19,8 +19,7 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.grid.axes import ParsedAxes, parse_axes
-from rattlebox.studies.grid.robust import robust_axes
+from rattlebox.studies.grid.axes import ParsedAxes, parse_axes, robust_axes
 from rattlebox.studies.grid.sampling import RandomDesign, random_design
 from rattlebox.studies.kinds.sweep import Sweep
 from rattlebox.studies.run.store import save_result

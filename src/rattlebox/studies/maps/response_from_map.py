@@ -18,8 +18,7 @@ from rattlebox.model.space import Triple, unit_vector
 from rattlebox.model.structures import StructurePart
 from rattlebox.model.units import parse, whole_number
 from rattlebox.studies.grid.sampling import Spaced
-from rattlebox.studies.maps.loss_table import LossTable
-from rattlebox.studies.maps.map_response import FLAGS, MapResponse, Transfer
+from rattlebox.studies.maps.map_response import FLAGS, LossTable, MapResponse, Transfer
 
 if TYPE_CHECKING:
     import xarray
@@ -334,6 +333,55 @@ def _frequencies(given: Any, table: MassTable, model: ModalModel, shapes: FloatA
 # ---- result
 
 
+_OVER = ("at", "number", "level", "frequency")
+_MOTION, _PEAK, _MODAL = (*_OVER, "solution"), _OVER[:3], (*_OVER[:2], "mode", "map_amplitude")
+
+_VARIABLES: list[tuple[str, tuple[str, ...], str, str, str]] = [
+    ("cavity_amplitude", _MOTION, "cavity_amplitude", "map", "largest amplitude of a damper"),
+    ("first_harmonic_share", _MOTION, "share", "1", "share of the motion of the dampers in the first harmonic"),
+    ("is_unstable", _MOTION, "is_unstable", "", "whether the motion is unstable"),
+    ("solutions", _OVER, "", "1", "number of steady motions in the map"),
+    ("flags", _OVER, "flags", "", "limits of the response"),
+    (
+        "interpolation_error",
+        _OVER,
+        "interpolation_error",
+        "1",
+        "relative change of the largest amplitude with half of the map",
+    ),
+    (
+        "amplitude_interval",
+        _OVER,
+        "amplitude_interval",
+        "m",
+        "half of the 95 % interval of the largest amplitude, from the map",
+    ),
+    ("bare_amplitude", _OVER[2:], "", "m", "amplitude without dampers"),
+    ("peak", _PEAK, "peak", "m", "largest amplitude over the frequency"),
+    ("peak_frequency", _PEAK, "peak_frequency", "Hz", "frequency of the largest amplitude"),
+    ("peak_interpolation_error", _PEAK, "peak_error", "1", "relative change of the peak with half of the map"),
+    ("peak_interval", _PEAK, "peak_interval", "m", "half of the 95 % interval of the peak, from the map"),
+    (
+        "peak_softening_error",
+        _PEAK,
+        "softening_error",
+        "1",
+        "relative change of the peak without the estimated effect of softening",
+    ),
+    ("mass_ratio", _OVER[:2], "mass_ratio", "1", "mass of the dampers over the effective mass for an impact"),
+    ("damping_ratio", _MODAL, "damping_ratio", "1", "damping ratio of the mode"),
+    (
+        "damping_ratio_interval",
+        _MODAL,
+        "damping_ratio_interval",
+        "1",
+        "half of the 95 % interval of the damping ratio, from the map",
+    ),
+    ("mode_frequency", _MODAL, "mode_frequency", "Hz", "natural frequency of the mode"),
+]
+"""Name, dimensions, field of a `MapResponse`, unit ("map": that of the amplitudes of the map) and meaning of variables."""
+
+
 def _described(units: str, long_name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name}
 
@@ -346,113 +394,46 @@ def _dataset(
 
     masses = table.masses
     count = max(part.amplitude.shape[-1] for row in parts for part in row)
-    over = ("at", "number", "level", "frequency")
 
-    def gather(name: str, missing: Any = None) -> Any:
+    def gather(name: str, *, motions: bool = False) -> Any:
+        """Return a field of all responses; those of motions padded to the largest number of motions."""
         arrays = [[getattr(part, name) for part in row] for row in parts]
-        if missing is None:
-            return np.array(arrays)
-        return np.array([[_padded(array, count, missing) for array in row] for row in arrays])
+        return np.array([[_padded(array, count) for array in row] for row in arrays] if motions else arrays)
 
-    amplitude = gather("amplitude", np.nan)
-    map_unit = "m/s^2" if masses.is_acceleration else "m"
-    flags = gather("flags")
-    flag_attributes = {
-        "long_name": "limits of the response",
-        "flag_masks": [1 << bit for bit in range(len(FLAGS))],
-        "flag_meanings": " ".join(FLAGS),
+    amplitude, flags = gather("amplitude", motions=True), gather("flags")
+    computed = {
+        "solutions": np.isfinite(amplitude).sum(axis=-1),
+        "bare_amplitude": np.abs(transfer.bare) * np.array(axes["level"][1])[:, None],
     }
-    motion, peak, modal = (*over, "solution"), over[:3], (*over[:2], "mode", "map_amplitude")
-    half = "with half of the map"
-    notes = [*_warnings(flags), *_softening_warnings(gather("softening_error"), about)]
+    units = {"map": "m/s^2" if masses.is_acceleration else "m"}
+    data: dict[str, Any] = {
+        "amplitude": (_MOTION, np.abs(amplitude), _described("m", f"amplitude, {about['point']}")),
+        "phase": (_MOTION, np.angle(amplitude), _described("rad", "phase to the load")),
+    }
+    for name, dims, field, unit, text in _VARIABLES:
+        values = gather(field, motions=dims == _MOTION) if field else computed[name]
+        data[name] = dims, values, _described(units.get(unit, unit), text) if unit else {"long_name": text}
+    masks = [1 << bit for bit in range(len(FLAGS))]
+    data["flags"][2].update(flag_masks=masks, flag_meanings=" ".join(FLAGS))
+    notes = [*_warnings(flags), *_softening_warnings(data["peak_softening_error"][1], about)]
     if table.interval is not None:
-        notes += _interval_warnings(gather("peak"), gather("peak_interval"))
-    return xarray.Dataset(
-        {
-            "amplitude": (motion, np.abs(amplitude), _described("m", f"amplitude, {about['point']}")),
-            "phase": (motion, np.angle(amplitude), _described("rad", "phase to the load")),
-            "cavity_amplitude": (
-                motion,
-                gather("cavity_amplitude", np.nan),
-                _described(map_unit, "largest amplitude of a damper"),
-            ),
-            "first_harmonic_share": (
-                motion,
-                gather("share", np.nan),
-                _described("1", "share of the motion of the dampers in the first harmonic"),
-            ),
-            "is_unstable": (motion, gather("is_unstable", False), {"long_name": "whether the motion is unstable"}),
-            "solutions": (
-                over,
-                np.isfinite(amplitude).sum(axis=-1),
-                _described("1", "number of steady motions in the map"),
-            ),
-            "flags": (over, flags, flag_attributes),
-            "interpolation_error": (
-                over,
-                gather("interpolation_error"),
-                _described("1", f"relative change of the largest amplitude {half}"),
-            ),
-            "amplitude_interval": (
-                over,
-                gather("amplitude_interval"),
-                _described("m", "half of the 95 % interval of the largest amplitude, from the map"),
-            ),
-            "bare_amplitude": (
-                over[2:],
-                np.abs(transfer.bare) * np.array(axes["level"][1])[:, None],
-                _described("m", "amplitude without dampers"),
-            ),
-            "peak": (peak, gather("peak"), _described("m", "largest amplitude over the frequency")),
-            "peak_frequency": (peak, gather("peak_frequency"), _described("Hz", "frequency of the largest amplitude")),
-            "peak_interpolation_error": (
-                peak,
-                gather("peak_error"),
-                _described("1", f"relative change of the peak {half}"),
-            ),
-            "peak_interval": (
-                peak,
-                gather("peak_interval"),
-                _described("m", "half of the 95 % interval of the peak, from the map"),
-            ),
-            "peak_softening_error": (
-                peak,
-                gather("softening_error"),
-                _described("1", "relative change of the peak without the estimated effect of softening"),
-            ),
-            "mass_ratio": (
-                over[:2],
-                gather("mass_ratio"),
-                _described("1", "mass of the dampers over the effective mass for an impact"),
-            ),
-            "damping_ratio": (modal, gather("damping_ratio"), _described("1", "damping ratio of the mode")),
-            "damping_ratio_interval": (
-                modal,
-                gather("damping_ratio_interval"),
-                _described("1", "half of the 95 % interval of the damping ratio, from the map"),
-            ),
-            "mode_frequency": (modal, gather("mode_frequency"), _described("Hz", "natural frequency of the mode")),
-        },
-        axes
-        | {
-            "frequency": ("frequency", transfer.frequency, _described("Hz", "frequency")),
-            "solution": (
-                "solution",
-                np.arange(1, count + 1),
-                _described("1", "number of the motion, the largest first"),
-            ),
-            "mode": ("mode", np.arange(1, transfer.model.stiffness.size + 1), _described("1", "number of the mode")),
-            "map_amplitude": (
-                "map_amplitude",
-                masses.amplitude,
-                _described(map_unit, "amplitude of the damper with the largest motion"),
-            ),
-        },
-        about | {"warnings": "\n".join(notes)},
-    )
+        notes += _interval_warnings(data["peak"][1], data["peak_interval"][1])
+    modes, motions = transfer.model.stiffness.size, np.arange(1, count + 1)
+    axes = axes | {
+        "frequency": ("frequency", transfer.frequency, _described("Hz", "frequency")),
+        "solution": ("solution", motions, _described("1", "number of the motion, the largest first")),
+        "mode": ("mode", np.arange(1, modes + 1), _described("1", "number of the mode")),
+        "map_amplitude": (
+            "map_amplitude",
+            masses.amplitude,
+            _described(units["map"], "amplitude of the damper with the largest motion"),
+        ),
+    }
+    return xarray.Dataset(data, axes, about | {"warnings": "\n".join(notes)})
 
 
-def _padded(array: Any, count: int, missing: Any) -> Any:
+def _padded(array: Any, count: int) -> Any:
+    missing = False if array.dtype == bool else np.nan
     shape = (*array.shape[:-1], count - array.shape[-1])
     return np.concatenate([array, np.full(shape, missing, array.dtype)], axis=-1)
 

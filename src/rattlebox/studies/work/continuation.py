@@ -1,10 +1,19 @@
-"""Continuation: runs along a parameter, each of which starts from the final state of the one before."""
+"""Continuation of 1-D runs: each starts from the final state of the one before.
+
+A slow sweep thus stays on its attractor until the attractor disappears, as in an experiment. The load continues without a
+break: each variant lasts whole cycles. The first variant starts from the initial state of the case. A variant that does not
+finish leaves the state unchanged.
+
+No run starts inside a closed soft contact. If a contact is closed at the end of the last cycle, the state is taken one or
+more eighths of a cycle earlier, when all contacts are open, and the next run starts at that phase of the load. If there is
+no such time, balls are moved to the wall that they touch.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +24,12 @@ from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
-from rattlebox.studies.grid.grid import Grid
-from rattlebox.studies.work.along_last import AlongLast
-from rattlebox.studies.work.case_work import Extra
-from rattlebox.studies.work.gather_variants import gather_values, gather_variants
-from rattlebox.studies.work.impact_work import ImpactWork, shortest_windows, with_intervals
-from rattlebox.studies.work.measures import MEASURES, check_names, name_of
+from rattlebox.studies.work.measures import MEASURES, check_names, name_of, shortest_windows, with_intervals
+from rattlebox.studies.work.variants import gather_values, gather_variants
 from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
 if TYPE_CHECKING:
-    import xarray
-
-    from rattlebox.model.case import Case
+    from rattlebox.studies.work.variants import Variants
 
 Vector = NDArray[np.float64]
 Members = NDArray[np.intp]
@@ -39,93 +42,69 @@ _CLOSED = -1e-12
 """Gap over the clearance below which a contact counts as closed; far above rounding."""
 
 
-def without_states(runs: xarray.Dataset) -> xarray.Dataset:
-    """Return the results of a continuation without the states for resuming."""
-    return runs.drop_dims("component").drop_vars("lead")
+def check_variants(variants: Variants) -> None:
+    """Raise if a measure or a parameter is not valid in a continuation."""
+    for name in variants.measures:
+        if name not in MEASURES:
+            raise Hint(f"there is no measure {name_of(name)!r} in a continuation", nearest(name_of(name), MEASURES))
+    check_names(variants.measures)
+    for path, column in variants.grid.columns.items():
+        if column.shape[-1] > 1 and place_of(variants.case, path)[-1] in _INITIAL_VALUES:
+            raise CaseError(f"{path} is an initial value, which affects only the first run", "an axis of a sweep")
 
 
-@dataclass
-class ContinuationWork(AlongLast, ImpactWork):
-    """Variants along the last dimension of a grid, each of which starts from the final state of its predecessor.
+def require_periodic(packed: _core.Problem, period: Any) -> None:
+    """Raise if a load or motion is not periodic with the first one."""
+    for load in packed.loads:
+        signal = load.signal
+        repeats = False
+        if isinstance(signal, _core.Harmonic):
+            turns = np.asarray(signal.frequency) * np.asarray(period) / (2 * np.pi)
+            acts = np.equal(signal.start, 0) & np.isinf(signal.stop)
+            repeats = bool(np.all(acts) and np.all(np.abs(turns - np.rint(turns)) < 1e-9))
+        if not repeats:
+            raise Hint(
+                "a load or motion is not periodic with the first one; a continuation requires periodic loads",
+                "harmonics without start and stop, the slowest one first, the others at multiples of its frequency",
+            )
 
-    A slow sweep thus stays on its attractor until the attractor disappears, as in an experiment. The load continues without
-    a break: each variant lasts whole cycles. The first variant starts from the initial state of the case. A variant that
-    does not finish leaves the state unchanged.
 
-    Notes
-    -----
-    No run starts inside a closed soft contact. If a contact is closed at the end of the last cycle, the state is taken
-    one or more eighths of a cycle earlier, when all contacts are open, and the next run starts at that phase of the load.
-    If there is no such time, balls are moved to the wall that they touch.
-    """
+class Batch(NamedTuple):
+    """All variants of a continuation: the problem of the core, the shape of the grid and the outputs of each."""
 
-    @classmethod
-    def along(cls, case: Case, grid: Grid, **options: Any) -> Self:
-        """Return the continuation along the last dimension of a grid; see `AlongLast.along`."""
-        return super().along(case, grid, **options, state=True)
+    packed: _core.Problem
+    shape: tuple[int, ...]
+    output: BlockOutput
 
-    @property
-    def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
-        """Further dimensions, number type and attributes of each output, with the lead of the final state."""
-        lead = {"units": "1", "long_name": "cycles from the state to the end of the run"}
-        return {**super().outputs, "lead": ((), "float64", lead)}
 
-    def describe(self) -> dict[str, Any]:
-        """Return a description of everything except the grid, in JSON types."""
-        return {"study": "continuation", **super().describe()}
-
-    def validate(self) -> None:
-        """Raise if the loads are not periodic with the first one, or an argument is not valid."""
-        for name in self.measures:
-            if name not in MEASURES:
-                raise Hint(f"there is no measure {name_of(name)!r} in a continuation", nearest(name_of(name), MEASURES))
-        check_names(self.measures)
-        along = (path for path, column in self.grid.columns.items() if column.shape[-1] > 1)
-        for path in along:
-            if place_of(self.case, path)[-1] in _INITIAL_VALUES:
-                raise CaseError(f"{path} is an initial value, which affects only the first run", "an axis of a sweep")
-        period = np.asarray(self.output.period)
-        for load in self.packed.loads:
-            signal = load.signal
-            repeats = False
-            if isinstance(signal, _core.Harmonic):
-                turns = np.asarray(signal.frequency) * period / (2 * np.pi)
-                acts = np.equal(signal.start, 0) & np.isinf(signal.stop)
-                repeats = bool(np.all(acts) and np.all(np.abs(turns - np.rint(turns)) < 1e-9))
-            if not repeats:
-                raise Hint(
-                    "a load or motion is not periodic with the first one; a continuation requires periodic loads",
-                    "harmonics without start and stop, the slowest one first, the others at multiples of its frequency",
-                )
-
-    def step(self, before: _States | None, members: Members, cancelled: Cancelled) -> Values | None:
-        """Run one variant of each chain."""
-        step = _Step(self, before, members, cancelled)
-        values = step.run()
+def follow(batch: Batch, numbers: range, before: Values | None, cancelled: Cancelled) -> dict[str, Any] | None:
+    """Run variants of one chain in their order; see `ChainEngine.follow`."""
+    states = None if before is None else _States(before["state"][-1:], before["lead"][-1:])
+    results: dict[int, Values] = {}
+    for index in numbers:
+        values = _follow_one(batch, states, np.array([index]), cancelled)
         if values is None:
             return None
-        after = before or _States(step.initial_states(), np.zeros(len(members)))
-        if "last_time" in values:
-            values["last_time"] = values["last_time"] - (after.lead * step.period)[:, None]
-        finished = values["status"] == Status.finished
-        after = _States(np.where(finished[:, None], values["state"], after.state), np.where(finished, 0.0, after.lead))
-        closed = finished & step.has_closed_contact(after.state)
-        after = step.open_states(after, closed)
-        return {**values, "state": after.state, "lead": after.lead}
+        states = _States(values["state"], values["lead"])
+        results[index] = values
+    rows = [results[index] for index in sorted(numbers)]
+    return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
 
-    def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Cancelled = None, before: Values | None = None
-    ) -> Values | None:
-        """Run a range of variants of one chain; see `ChainedWork.run`. `threads` has no effect."""
-        states = None if before is None else _States(before["state"][-1:], before["lead"][-1:])
-        results: dict[int, Values] = {}
-        for index in self.order(start, stop):
-            values = self.step(states, np.array([index]), cancelled)
-            if values is None:
-                return None
-            states = _States(values["state"], values["lead"])
-            results[index] = values
-        return {name: np.concatenate([results[index][name] for index in range(start, stop)]) for name in self.outputs}
+
+def _follow_one(batch: Batch, before: _States | None, members: Members, cancelled: Cancelled) -> Values | None:
+    """Run one variant of each chain."""
+    step = _Step(batch, before, members, cancelled)
+    values = step.run()
+    if values is None:
+        return None
+    after = before or _States(step.initial_states(), np.zeros(len(members)))
+    if "last_time" in values:
+        values["last_time"] = values["last_time"] - (after.lead * step.period)[:, None]
+    finished = values["status"] == Status.finished
+    after = _States(np.where(finished[:, None], values["state"], after.state), np.where(finished, 0.0, after.lead))
+    closed = finished & step.has_closed_contact(after.state)
+    after = step.open_states(after, closed)
+    return {**values, "state": after.state, "lead": after.lead}
 
 
 @dataclass
@@ -139,10 +118,10 @@ class _States:
 class _Step:
     """One variant of each chain, run from the states before it."""
 
-    def __init__(self, work: ContinuationWork, before: _States | None, members: Members, cancelled: Cancelled) -> None:
+    def __init__(self, batch: Batch, before: _States | None, members: Members, cancelled: Cancelled) -> None:
         self._cancelled, self._count = cancelled, len(members)
-        shape, output = work.grid.shape, work.output
-        self._variants = gather_variants(work.packed, shape, members)
+        shape, output = batch.shape, batch.output
+        self._variants = gather_variants(batch.packed, shape, members)
 
         def each(number: Any) -> Any:
             return gather_values(number, shape, members) if np.size(number) else number
@@ -179,6 +158,7 @@ class _Step:
         problem = self._variants.replace(mode_displacement=q, mode_velocity=p, dampers=dampers)
         if not before.lead.any():
             return problem
+        # The state was taken before the end of a cycle: the load starts at that phase, and the run is longer by the rest.
         wait = before.lead * self.period
         loads = [load.replace(signal=_start_earlier(load.signal, wait)) for load in problem.loads]
         settings = problem.settings.replace(duration=problem.settings.duration + wait)
@@ -238,6 +218,7 @@ class _Step:
         settings, waiting = self._packed.settings, closed
         nothing: dict[str, Any] = {"participation": np.zeros(0), "residual_mass": 0.0, "measures": (), "batched": ()}
         only_state = replace(self.output, **nothing, start=0.0, samples=2, motion=False, last=0)
+        # The end of a run cannot be moved back: run again to ever earlier times, only the chains that are still closed.
         for lead in _LEADS:
             if not waiting.any():
                 break

@@ -1,19 +1,23 @@
-"""Measures of a run, computed in the core (core/impact/measures.hpp) without storing its trajectory."""
+"""Measures of a run, from the table of the core (core/util/measures.hpp), and half widths of their 95 % intervals."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rattlebox._util.batch_means import ENOUGH_DECAY, FEWEST_VALUES, half_widths
+from rattlebox._util.batch_means import ENOUGH_DECAY, FEWEST_VALUES, half_widths, shortest_window
 from rattlebox._util.html import Catalogue
 from rattlebox._util.plugins import Registry, load_plugins, owner_of
+from rattlebox.core import _core
+from rattlebox.engines.batch import BlockOutput
 from rattlebox.model.errors import Hint
 from rattlebox.results.schema import OUTCOMES
+from rattlebox.studies.work.work import Values
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,13 +41,21 @@ class Measure(NamedTuple):
     average
         Relation between the measure of a steady motion and its values in parts of the window: "mean", "root mean square"
         or "total"; "" for peaks, shares and times, which have no interval.
+    of_impacts, of_base_force, of_loss_in_cycle, of_first_harmonic, of_acceleration
+        Whether it needs the impact log, which particle runs do not have; the force on the base; the energy that dampers
+        take in a cycle; the first harmonic of force and motion of the cavity; or accelerations at both ends of each step.
     """
 
     units: str
     long_name: str
     samples: bool = False
     cyclic: bool = False
-    average: Literal["", "mean", "root mean square", "total"] = ""
+    average: str = ""
+    of_impacts: bool = False
+    of_base_force: bool = False
+    of_loss_in_cycle: bool = False
+    of_first_harmonic: bool = False
+    of_acceleration: bool = False
 
 
 class Measures(Catalogue[Measure]):
@@ -82,56 +94,27 @@ class Measures(Catalogue[Measure]):
         return name, "" if entry.units == "1" else entry.units, entry.long_name, " and ".join(needs)
 
 
-_MEASURES: dict[str, Measure] = {
-    "impacts": Measure("1", "impacts", average="total"),
-    "impacts_per_cycle": Measure("1", "impacts per cycle", cyclic=True, average="mean"),
-    "peak_contact_force": Measure("N", "peak contact force"),
-    "peak_overlap": Measure("m", "largest overlap"),
-    "largest_approach_speed": Measure("m/s", "largest approach speed"),
-    "mean_approach_speed": Measure("m/s", "mean approach speed", average="mean"),
-    "longest_contact": Measure("s", "longest contact"),
-    "work": Measure("J", "work of load and base", average="total"),
-    "viscous_loss": Measure("J", "loss in the structure", average="total"),
-    "impact_loss": Measure("J", "loss in the damper", average="total"),
-    "viscous_share": Measure("1", "share lost in the structure"),
-    "impact_share": Measure("1", "share lost in the damper"),
-    "motion_share": Measure("1", "share left in the motion"),
-    "energy_residual": Measure("1", "energy residual over the energy put in"),
-    "peak": Measure("m", "peak displacement", samples=True),
-    "rms": Measure("m", "RMS displacement", samples=True, average="root mean square"),
-    "peak_velocity": Measure("m/s", "peak velocity", samples=True),
-    "rms_velocity": Measure("m/s", "RMS velocity", samples=True, average="root mean square"),
-    "peak_acceleration": Measure("m/s^2", "peak absolute acceleration, without peaks of contacts", samples=True),
-    "rms_acceleration": Measure(
-        "m/s^2", "RMS absolute acceleration, without peaks of contacts", samples=True, average="root mean square"
-    ),
-    "peak_relative_acceleration": Measure(
-        "m/s^2", "peak acceleration relative to the base, without peaks of contacts", samples=True
-    ),
-    "rms_relative_acceleration": Measure(
-        "m/s^2",
-        "RMS acceleration relative to the base, without peaks of contacts",
-        samples=True,
-        average="root mean square",
-    ),
-    "peak_damper_force": Measure("N", "peak force of all dampers, mean over a sample step", samples=True),
-    "rms_damper_force": Measure(
-        "N", "RMS force of all dampers, mean over a sample step", samples=True, average="root mean square"
-    ),
-    "peak_interface_force": Measure("N", "peak force on the base", samples=True),
-    "rms_interface_force": Measure("N", "RMS force on the base", samples=True, average="root mean square"),
-    "settling_time": Measure("s", "settling time to 5 % of the peak", samples=True),
-    "loss_per_cycle": Measure("J", "loss in the damper per cycle", cyclic=True, average="mean"),
-    "reduced_loss": Measure("1", "loss a cycle over m V^2", samples=True, cyclic=True, average="mean"),
-    "effective_mass": Measure("kg", "effective mass", samples=True, cyclic=True, average="mean"),
-    "damping_mass": Measure("kg", "imaginary part of the apparent mass", samples=True, cyclic=True, average="mean"),
-    "loss_factor": Measure("1", "loss factor", samples=True, cyclic=True, average="mean"),
-}
-MEASURES = Measures(_MEASURES)
+MEASURES = Measures(
+    {
+        row.name: Measure(
+            row.unit,
+            row.meaning,
+            row.of_samples,
+            row.cyclic,
+            row.average,
+            row.of_impacts,
+            row.of_base_force,
+            row.of_loss_in_cycle,
+            row.of_first_harmonic,
+            row.of_acceleration,
+        )
+        for row in _core.measures()
+    }
+)
 
 
 _FUNCTIONS: Registry[tuple[Callable[..., Any], Measure]] = Registry("measure")
-for _name in _MEASURES:
+for _name in MEASURES:
     _FUNCTIONS.reserve(_name, "rattlebox")
 
 Function = TypeVar("Function", bound="Callable[..., Any]")
@@ -163,13 +146,11 @@ def about(measure: Any) -> Measure:
     return declared if declared and function is measure else Measure("", name.replace("_", " "))
 
 
-MOST_BATCHES = 64
-"""Largest number of parts of a window for the interval of a measure; the same as in the core."""
 INTERVAL = "_interval"
 """Suffix of the name of the half width of an interval."""
 
 
-_RATIOS = {"loss_factor": ("damping_mass", "effective_mass")}
+RATIOS = {"loss_factor": ("damping_mass", "effective_mass")}
 """Numerators and denominators of measures that are ratios of averages."""
 
 
@@ -181,7 +162,124 @@ def parts_needed(names: Iterable[str]) -> list[str]:
     names
         Names of measures with intervals.
     """
-    return list(dict.fromkeys(part for name in names for part in _RATIOS.get(name, (name,))))
+    return list(dict.fromkeys(part for name in names for part in RATIOS.get(name, (name,))))
+
+
+_VARIANT_NAMES = {*OUTCOMES, "state", "displacement", "velocity", "relative_position", "relative_velocity"}
+_IMPACT_NAMES = {"last_time", "last_approach_speed", "last_contact"}
+_DESIGN_NAMES = {"trial", "front", "case", "missing", "feasible", "added_mass", "damping_ratio", "reason", "warnings"}
+RESERVED_NAMES = _VARIANT_NAMES | _IMPACT_NAMES | _DESIGN_NAMES
+"""Names of variables of studies that a function of a Run must not have."""
+
+
+def name_of(measure: Any) -> str:
+    """Return the name of a measure, or of a function of a Run.
+
+    Parameters
+    ----------
+    measure
+        Name, function, partial or callable object.
+    """
+    if isinstance(measure, partial):
+        measure = measure.func
+    return measure if isinstance(measure, str) else getattr(measure, "__name__", type(measure).__name__)
+
+
+def check_names(measures: Iterable[Any]) -> None:
+    """Raise if two measures have the same name, or a function has a reserved name.
+
+    Parameters
+    ----------
+    measures
+        Names and functions.
+
+    Raises
+    ------
+    CaseError
+        If a name is not allowed.
+    """
+    measures = list(measures)
+    for measure in measures:
+        if not isinstance(measure, str) and name_of(measure) in RESERVED_NAMES:
+            raise Hint(
+                f"{name_of(measure)} is the name of another variable of studies and cannot name a function",
+                "another name",
+            )
+    names = [name_of(measure) for measure in measures]
+    for name in names:
+        if names.count(name) > 1:
+            raise Hint(f"two measures have the name {name}", "each measure once, and functions with different names")
+
+
+def with_required(required: Sequence[str], measures: Any) -> list[Any]:
+    """Return the measures that a study requires, and the further requested ones.
+
+    Parameters
+    ----------
+    required
+        Names of the required measures.
+    measures
+        Requested measures.
+    """
+    return [*required, *(name for name in measures if name not in required)]
+
+
+# ---- intervals
+
+
+CONTACTS = "impacts"
+"""Batched in every window with intervals, last: without any, the motion is that of the linear structure."""
+
+
+def with_intervals(values: Values, output: BlockOutput, shortest: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    """Return outputs in which the intervals of measures replace the batches.
+
+    Parameters
+    ----------
+    values
+        Outputs of `run_block`.
+    output
+        Requested quantities.
+    shortest : (n,) float
+        Shortest window for an interval of each variant whose damper does not act [s].
+    """
+    found = dict(values)
+    if output.batched:
+        batches, lengths = found.pop("batches"), found.pop("batch_length")
+        parts = dict(zip((*output.batched[:-1], ""), batches, strict=True))
+        least = np.where(np.nansum(parts.pop(""), axis=1) > 0, 0.0, shortest)
+        for name in output.measures:
+            if set(parts_needed([name])) <= set(parts) and MEASURES[name].average:
+                found[name + INTERVAL] = interval_of(name, found[name], parts, lengths, least)
+    return found
+
+
+def shortest_windows(packed: _core.Problem, shape: Sequence[int], output: BlockOutput) -> NDArray[np.float64]:
+    """Return the shortest window for an interval of the linear motion of each variant, see `shortest_window`, flat [s].
+
+    Parameters
+    ----------
+    packed
+        Variants.
+    shape
+        Shape of their grid.
+    output
+        Requested quantities, with the shapes of the modes at the observed point.
+    """
+    modes = len(packed.mode_decay)
+    if not modes:  # a cavity with a given motion
+        return np.zeros(math.prod(shape))
+
+    def over_grid(values: Any) -> Any:
+        array = np.asarray(values, dtype=float)
+        array = array.reshape(modes, *(1,) * (len(shape) + 1 - array.ndim), *array.shape[1:])
+        return np.broadcast_to(array, (modes, *shape)).reshape(modes, -1)
+
+    decay, motion = over_grid(packed.mode_decay), np.abs(over_grid(output.shape))
+    seen = np.where(motion > 1e-9 * motion.max(axis=0, initial=0.0), decay, 0.0)
+    # Few variants differ in their structure.
+    different, inverse = np.unique(seen, axis=1, return_inverse=True)
+    return np.array([shortest_window(column) for column in different.T])[inverse.ravel()]
 
 
 def interval_of(
@@ -221,8 +319,8 @@ def interval_of(
     """
     average = MEASURES[name].average
     value = np.asarray(value, dtype=float)
-    if name in _RATIOS:
-        above, below = _RATIOS[name]
+    if name in RATIOS:
+        above, below = RATIOS[name]
         return _interval_of_ratio(value, parts[above], parts[below], lengths, shortest)
     batches = parts[name]
     if average == "root mean square":
@@ -300,62 +398,3 @@ def interval_warning(found: xr.Dataset, case: Case) -> dict[str, str]:
         "correlation of the motion, which must be steady; try: more cycles to skip and to evaluate, or a window"
         f"{length or ' that is ten times as long'}"
     }
-
-
-_VARIANT_NAMES = {*OUTCOMES, "state", "displacement", "velocity", "relative_position", "relative_velocity"}
-_IMPACT_NAMES = {"last_time", "last_approach_speed", "last_contact"}
-_DESIGN_NAMES = {"trial", "front", "case", "missing", "feasible", "added_mass", "damping_ratio", "reason", "warnings"}
-RESERVED_NAMES = _VARIANT_NAMES | _IMPACT_NAMES | _DESIGN_NAMES
-"""Names of variables of studies that a function of a Run must not have."""
-
-
-def name_of(measure: Any) -> str:
-    """Return the name of a measure, or of a function of a Run.
-
-    Parameters
-    ----------
-    measure
-        Name, function, partial or callable object.
-    """
-    if isinstance(measure, partial):
-        measure = measure.func
-    return measure if isinstance(measure, str) else getattr(measure, "__name__", type(measure).__name__)
-
-
-def check_names(measures: Iterable[Any]) -> None:
-    """Raise if two measures have the same name, or a function has a reserved name.
-
-    Parameters
-    ----------
-    measures
-        Names and functions.
-
-    Raises
-    ------
-    CaseError
-        If a name is not allowed.
-    """
-    measures = list(measures)
-    for measure in measures:
-        if not isinstance(measure, str) and name_of(measure) in RESERVED_NAMES:
-            raise Hint(
-                f"{name_of(measure)} is the name of another variable of studies and cannot name a function",
-                "another name",
-            )
-    names = [name_of(measure) for measure in measures]
-    for name in names:
-        if names.count(name) > 1:
-            raise Hint(f"two measures have the name {name}", "each measure once, and functions with different names")
-
-
-def with_required(required: Sequence[str], measures: Any) -> list[Any]:
-    """Return the measures that a study requires, and the further requested ones.
-
-    Parameters
-    ----------
-    required
-        Names of the required measures.
-    measures
-        Requested measures.
-    """
-    return [*required, *(name for name in measures if name not in required)]

@@ -1,18 +1,28 @@
-"""Classification of motions under a periodic load by their stroboscopic states, one state per cycle."""
+"""Reductions of motions to numbers: period and kind of a motion, its first harmonic, harmonics of the force on particles."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.batch_means import half_widths
+from rattlebox.analysis.shaken import force_harmonics
+from rattlebox.studies.work.measures import INTERVAL
+from rattlebox.studies.work.work import Extra, Outputs, Signals
+
 if TYPE_CHECKING:
     import xarray
 
     from rattlebox.core import _core
+
+
+# ---- motions by their stroboscopic states, one per cycle
+
 
 Vector = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -105,6 +115,7 @@ def _classify(strobes: Vector, tolerance: float, apart: float) -> Orbits:
     motion = np.where(finite, Motion.IRREGULAR, Motion.NOT_FINISHED).astype(np.int64)
     multiplier = np.full(rows, np.nan)
     open_ = finite.copy()
+    # The shortest period wins: a motion of period n also repeats after 2 n, and a longer candidate is never tried for it.
     for n in range(1, longest + 1):
         steps = strobes[:, n:] - strobes[:, :-n]
         largest[n] = np.abs(steps).max(axis=(1, 2))
@@ -118,6 +129,7 @@ def _classify(strobes: Vector, tolerance: float, apart: float) -> Orbits:
         motion[contracting] = Motion.TRANSIENT
         multiplier[contracting] = factor[contracting]
         open_ &= ~(settled | contracting)
+    # Motions that no linear map describes, such as those with rare grazing impacts, may still come together.
     falling, factor = _falls(strobes)
     late = open_ & falling
     motion[late], multiplier[late] = Motion.TRANSIENT, factor[late]
@@ -139,6 +151,7 @@ def _settled(steps: Vector, strobes: Vector, n: int, tolerance: float) -> tuple[
         The states.
     """
     size = np.abs(steps).max(axis=2)
+    # Close is not enough: a slow contraction has small differences far from its limit. The map tells how far.
     close = size.max(axis=1) <= tolerance
     exact = size.max(axis=1) <= _ROUNDING
     samples = steps.shape[1]
@@ -166,6 +179,7 @@ def _linear_map(steps: Vector, n: int) -> tuple[Mask, Vector, Vector, Vector]:
     """Fit differences of states by a linear map of n cycles with one or two multipliers, by least squares."""
     now, before = steps[:, n:], steps[:, :-n]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        # One multiplier: differences that shrink along one direction, as of most contractions.
         power = (now * now).sum(axis=(1, 2))
         slope = (now * before).sum(axis=(1, 2)) / (before * before).sum(axis=(1, 2))
         left = 1 - slope * (now * before).sum(axis=(1, 2)) / power
@@ -274,6 +288,8 @@ def attractors(strobes: Vector, ranges: Vector, period: Whole, residual: Vector,
     """
     label = np.zeros(len(strobes), dtype=np.int64)
     best: list[int] = []
+    # Motions in the order of their accuracy: the most exact one of an attractor represents it, so that the result does not
+    # depend on the order of the starts.
     left = np.flatnonzero(period > 0)
     left = left[np.argsort(residual[left], kind="stable")]
     while left.size and len(best) < _MAX_ATTRACTORS:
@@ -281,6 +297,7 @@ def attractors(strobes: Vector, ranges: Vector, period: Whole, residual: Vector,
         best.append(int(first))
         n = int(period[first])
         orbit = strobes[first, -n:]
+        # Strobes may begin at any point of the orbit: compare all n shifts.
         alike = left[period[left] == n]
         away = strobes[alike, -n:] / ranges[first]
         orbit = orbit / ranges[first]
@@ -292,3 +309,156 @@ def attractors(strobes: Vector, ranges: Vector, period: Whole, residual: Vector,
     rank = np.zeros(len(best) + 1, dtype=np.int64)
     rank[order + 1] = np.arange(1, len(best) + 1)
     return rank[label], np.array(best, dtype=np.int64)[order]
+
+
+# ---- reductions of runs
+
+
+FloatArray = NDArray[np.float64]
+
+# ---- harmonics of the force
+
+HIGHEST = 8
+"""Largest number of a harmonic."""
+
+
+@dataclass(frozen=True)
+class ForceHarmonics:
+    """Harmonics of the force on the content of a shaken cavity, and how its first harmonic varies from cycle to cycle.
+
+    Attributes
+    ----------
+    softening
+        Whether contacts may be softened: then also the softening of each run, and its estimated effect on the loss.
+    """
+
+    softening: bool
+
+    @property
+    def outputs(self) -> Outputs:
+        """Further dimensions, number type and attributes of each output."""
+        along: Extra = (("harmonic", HIGHEST - 1),)
+        rows: list[tuple[str, Extra, str, str]] = [
+            ("force_harmonics", along, "N", "amplitude of a harmonic of the force on the particles"),
+            ("force_variation", (), "N", "variation of the first harmonic of the force from cycle to cycle"),
+        ]
+        if self.softening:
+            rows += [
+                ("softening", (), "1", "largest softening of a damper"),
+                ("softening_change", (), "1", "estimated change of the loss in a cycle by softening, over m V^2"),
+            ]
+        return {name: (extra, "float64", {"units": unit, "long_name": text}) for name, extra, unit, text in rows}
+
+    def coords(self) -> dict[str, Any]:
+        """Return the numbers of the harmonics."""
+        numbers = np.arange(2, HIGHEST + 1)
+        return {"harmonic": ("harmonic", numbers, {"units": "1", "long_name": "number of the harmonic"})}
+
+    def describe(self) -> dict[str, Any]:
+        """Return a description in JSON types: it follows from the kind of study."""
+        return {}
+
+    def reduce(self, signals: Signals) -> dict[str, Any]:
+        """Return the outputs of some runs, runs first."""
+        harmonics, variation = force_harmonics(signals.time, signals.momentum(), signals.frequency, HIGHEST)
+        found = {"force_harmonics": signals.rate * harmonics, "force_variation": np.ravel(signals.rate) * variation}
+        if self.softening:
+            found |= {name: np.array([signals.diagnostics[name]]) for name in ("softening", "softening_change")}
+            if signals.diagnostics["weightless"] and found["softening"] > 1:
+                found["softening_change"] = np.array([np.nan])  # the estimate is for beds under their weight
+        return found
+
+
+# ---- steady motion
+
+
+QUANTITIES: dict[str, tuple[str, str, str]] = {
+    "amplitude": ("float64", "m", "amplitude of the first harmonic"),
+    "amplitude" + INTERVAL: ("float64", "m", "half of the 95 % interval, amplitude of the first harmonic"),
+    "phase": ("float64", "rad", "phase to the load"),
+    "phase" + INTERVAL: ("float64", "rad", "half of the 95 % interval, phase to the load"),
+    "spread": ("float64", "1", "spread of strobes over the range of motion"),
+    "period": ("int64", "1", "cycles after which the motion repeats"),
+    "motion": ("int64", "1", "kind of motion: " + ", ".join(f"{kind:d} {kind.name.lower()}" for kind in Motion)),
+    "multiplier": ("float64", "1", "estimated factor per cycle of the distance to the periodic motion"),
+}
+"""Number type, unit and meaning of the quantities of a steady motion."""
+
+
+_APART = 10
+"""Difference of states that count as different, over the tolerance."""
+
+
+def steady_motion(
+    displacement: FloatArray, others: FloatArray, phase: float, samples: int, tolerance: float
+) -> dict[str, NDArray[Any]]:
+    """Return the quantities of steady motions.
+
+    Parameters
+    ----------
+    displacement : (..., T) float
+        Displacement in whole cycles, both ends included [m].
+    others : (..., T, B) float
+        Further displacements that must repeat in a periodic motion [m].
+    phase
+        Phase of the load [rad].
+    """
+    cycles = (displacement.shape[-1] - 1) // samples
+    turns = np.exp(-2j * np.pi * np.arange(samples) / samples)
+    parts = displacement[..., :-1].reshape(*displacement.shape[:-1], cycles, samples)
+    each = 2j / samples * (parts @ turns) * np.exp(-1j * phase)
+    mean = each.mean(axis=-1)
+    with np.errstate(invalid="ignore", divide="ignore"):  # of runs that failed, and structures at rest
+        relative = each / mean[..., None]
+        along, across = (
+            half_widths(part.reshape(-1, cycles))[0].reshape(mean.shape) for part in (relative.real, relative.imag)
+        )
+        positions = np.concatenate([displacement[..., None], others], axis=-1)
+        strobes = positions[..., ::samples, :] / np.ptp(positions, axis=-2).max(axis=-1)[..., None, None]
+        orbits = classify(strobes, tolerance, _APART * tolerance)
+        spread = np.abs(np.diff(strobes, axis=-2)).max(axis=(-2, -1))
+    values = (
+        np.abs(mean),
+        np.abs(mean) * along,
+        np.angle(mean),
+        across,
+        spread,
+        orbits.period,
+        orbits.motion,
+        orbits.multiplier,
+    )
+    return dict(zip(QUANTITIES, values, strict=True))
+
+
+@dataclass(frozen=True)
+class SteadyMotion:
+    """First harmonic, period and kind of the motion of the observed point under a harmonic load.
+
+    Attributes
+    ----------
+    phase
+        Phase of the load [rad].
+    """
+
+    phase: float
+    tolerance: float
+    cycles: int
+
+    @property
+    def outputs(self) -> Outputs:
+        """Further dimensions, number type and attributes of each output."""
+        return {name: ((), kind, {"units": unit, "long_name": text}) for name, (kind, unit, text) in QUANTITIES.items()}
+
+    def coords(self) -> dict[str, Any]:
+        """Return the coordinates of further dimensions: none."""
+        return {}
+
+    def describe(self) -> dict[str, Any]:
+        """Return a description in JSON types."""
+        return {"phase": self.phase, "tolerance": self.tolerance}
+
+    def reduce(self, signals: Signals) -> dict[str, Any]:
+        """Return the outputs of some runs, runs first."""
+        count, size = signals.displacement.shape
+        nothing = np.zeros((count, size, 0))
+        return steady_motion(signals.displacement, nothing, self.phase, (size - 1) // self.cycles, self.tolerance)

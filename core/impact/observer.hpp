@@ -1,5 +1,4 @@
-// Measures: numbers that characterise a run, computed from the samples and impacts of a window. Their
-// equations are in rattlebox/studies/measures.py.
+// A run of the 1-D engine in a window, as util/measures.hpp needs it for measures.
 #pragma once
 
 #include <array>
@@ -9,26 +8,9 @@
 #include "impact/batch.hpp"
 #include "impact/result.hpp"
 #include "structure/coupled_modes.hpp"
+#include "util/measures.hpp"
 
 namespace rattlebox {
-
-// Sums and extremes over impacts. The sum of the approach speeds is compensated (two-sum: D. E. Knuth, The
-// Art of Computer Programming, vol. 2, section 4.2.2).
-struct ImpactSums {
-    real impacts = 0, approach_speeds = 0, rounded_off = 0;
-    real largest_approach_speed = 0, peak_force = 0, peak_overlap = 0, longest_contact = 0;
-
-    void add(const Impact& i) {
-        impacts += 1;
-        const real sum = approach_speeds + i.approach_speed, part = sum - approach_speeds;
-        rounded_off += (approach_speeds - (sum - part)) + (i.approach_speed - part);
-        approach_speeds = sum;
-        largest_approach_speed = std::fmax(largest_approach_speed, i.approach_speed);
-        peak_force = std::fmax(peak_force, i.peak_force);
-        peak_overlap = std::fmax(peak_overlap, i.peak_overlap);
-        longest_contact = std::fmax(longest_contact, i.duration);
-    }
-};
 
 // Largest number of batches of which the interval of a mean is computed.
 inline constexpr std::size_t most_batches = 64;
@@ -50,6 +32,8 @@ class Observer {
     }
 
 public:
+    static constexpr bool is_even = true; // equally spaced samples
+
     Observer(const Problem& problem, const Result& run, const Window& window)
         : problem_(problem), run_(run), window_(window), first_(0), count_(run.samples.time.size()) {}
 
@@ -90,8 +74,6 @@ public:
             if (load.base) base += load.signal.mean(time(i - 1), time(i));
         return base;
     }
-
-    enum class Frame { base, absolute };
 
     // Acceleration of the point at the begin and the end of the step before sample i. Springs, dashpots,
     // harmonic loads and the base act with their values at these times. Contacts and other loads, whose
@@ -134,20 +116,6 @@ public:
         return result;
     }
 
-    real peak_acceleration(Frame frame) const {
-        real most = 0;
-        for (std::size_t i = 1; i < count(); ++i)
-            for (const real each : accelerations(i, frame)) most = std::fmax(most, std::fabs(each));
-        return most;
-    }
-
-    real rms_acceleration(Frame frame) const { // trapezoids
-        real total = 0;
-        for (std::size_t i = 1; i < count(); ++i)
-            for (const real each : accelerations(i, frame)) total += 0.5 * square(each);
-        return std::sqrt(total / static_cast<real>(last()));
-    }
-
     // Calls f with the damper and the force of each ball on its cavity, mean over the interval before sample
     // i, from the change of its momentum. Balls that touch each other exchange momentum within one damper.
     template <class F> void each_contact_force(std::size_t i, F&& f) const {
@@ -188,55 +156,6 @@ public:
         return force;
     }
 
-    template <class F> real peak(F&& f) const {
-        real most = 0;
-        for (std::size_t i = 0; i < count(); ++i) most = std::fmax(most, std::fabs(f(i)));
-        return most;
-    }
-
-    // The same for means over the intervals between samples.
-    template <class F> real peak_of_means(F&& f) const {
-        real most = 0;
-        for (std::size_t i = 1; i < count(); ++i) most = std::fmax(most, std::fabs(f(i)));
-        return most;
-    }
-
-    template <class F> real rms_of_means(F&& f) const {
-        real total = 0;
-        for (std::size_t i = 1; i < count(); ++i) total += square(f(i));
-        return std::sqrt(total / static_cast<real>(last()));
-    }
-
-    template <class F> real rms(F&& f) const { // trapezoids
-        real total = 0.5 * (square(f(0)) + square(f(last())));
-        for (std::size_t i = 1; i < last(); ++i) total += square(f(i));
-        return std::sqrt(total / static_cast<real>(last()));
-    }
-
-    // Time after which the point stays within a fraction of its peak. NaN unless it has stayed there at least
-    // for the duration of its last swing, because the motion may just pass through the band.
-    real settling(real band) const {
-        const auto z = [&](std::size_t i) { return point(i).q; };
-        const real limit = band * peak(z);
-        const auto side = [&](std::size_t i) { return (z(i) > limit) - (z(i) < -limit); };
-        const auto begin_of = [&](std::size_t i) { // of consecutive samples on one side, or within the band
-            const int here = side(i);
-            while (i > 0 && side(i - 1) == here) --i;
-            return i;
-        };
-        if (side(last()) != 0) return not_a_number;
-        const std::size_t within = begin_of(last());
-        if (within == 0) return time(0);
-        const std::size_t i = within - 1, begin = begin_of(i);
-        const real out = std::copysign(limit, z(i));
-        const real passed = time(i) + (time(i + 1) - time(i)) * (out - z(i)) / (z(i + 1) - z(i));
-        if (begin == 0) return passed;
-        const std::size_t before = side(begin - 1) == 0 ? begin_of(begin - 1) : begin;
-        if (before == 0 || side(before - 1) == side(i)) return passed;
-        const real swing = time(begin) - time(begin_of(before - 1));
-        return time(last()) - passed < swing ? not_a_number : passed;
-    }
-
     // ---- energy
 
     real gravity(std::size_t i) const {
@@ -265,49 +184,16 @@ public:
         return sum(samples().normal, i) - sum(samples().normal, 0) + sum(samples().plastic, i) -
                sum(samples().plastic, 0);
     }
-    real supplied() const {
-        return motion(0) + load_work(last()) + base_work(last()) + gravity(0) - gravity(last());
-    }
-    real share(real part) const { return supplied() > 0 ? part / supplied() : not_a_number; }
-
-    struct Balance {
-        real residual = 0, supplied = 0,
-             turnover = 0; // largest residual; energy supplied; sum of all terms
-    };
-
-    Balance balance() const {
-        Balance sums;
-        real load = 0, base = 0, height = 0;
-        const real before = motion(0) + gravity(0);
-        for (std::size_t i = 0; i < count(); ++i) {
-            const real residual =
-                motion(i) + gravity(i) - before - load_work(i) - base_work(i) + viscous(i) + impact(i);
-            if (!(std::fabs(residual) <= sums.residual)) sums.residual = std::fabs(residual); // or NaN
-            if (!std::isfinite(residual)) break;
-            sums.turnover =
-                std::fmax(sums.turnover, motion(i) + std::fabs(gravity(i)) + samples().viscous[first_ + i] +
-                                             std::fabs(samples().load_work[first_ + i]) +
-                                             std::fabs(samples().base_work[first_ + i]));
-            load = std::fmax(load, std::fabs(load_work(i)));
-            base = std::fmax(base, std::fabs(base_work(i)));
-            height = std::fmax(height, std::fabs(gravity(i) - gravity(0)));
-        }
-        sums.supplied = load + base + motion(0) + height;
-        return sums;
-    }
-
-    // Zero if nothing moves, so that only rounding errors of the largest energy are left.
-    real energy_residual() const {
-        const Balance b = balance();
-        const bool rests =
-            b.supplied <= energy_at_rest * b.turnover && b.residual <= energy_at_rest * b.turnover;
-        return b.residual == 0 || rests ? 0 : b.residual / b.supplied;
+    // Sum of all terms of the balance, whose rounding errors the residual contains.
+    real handled(std::size_t i, real moving, real potential) const {
+        return moving + std::fabs(potential) + samples().viscous[first_ + i] +
+               std::fabs(samples().load_work[first_ + i]) + std::fabs(samples().base_work[first_ + i]);
     }
 
     // Returns the status of a run that reached its end. A residual at rounding level is no error if little
     // energy was supplied.
     Status end(real bound) const {
-        const Balance b = balance();
+        const Balance b = balance(*this);
         if (!std::isfinite(b.residual)) return Status::not_finite;
         real floor = run_.rounding(problem_.settings) * b.turnover;
         for (real mass : problem_.ball_mass) floor += mass * square(speed_at_rest);
@@ -421,14 +307,19 @@ public:
         return power / std::norm(cavity_acceleration(problem_.dampers[0]));
     }
 
-    // Loss per cycle over m V^2, where V is the velocity amplitude of the cavity; a dimensionless measure.
-    real reduced_loss() const {
-        if (problem_.dampers.empty()) return 0;
-        real mass = 0;
-        for (real m : problem_.ball_mass) mass += m;
-        const real speed = std::abs(cavity_acceleration(problem_.dampers[0])) * window_.period / (2 * pi);
-        return impact(last()) / cycles() / (mass * square(speed));
+    real mass() const {
+        real total = 0;
+        for (real m : problem_.ball_mass) total += m;
+        return total;
     }
+
+    // Amplitude of the velocity of the first cavity.
+    real cavity_speed() const {
+        return std::abs(cavity_acceleration(problem_.dampers[0])) * window_.period / (2 * pi);
+    }
+
+    bool has_dampers() const { return !problem_.dampers.empty(); }
+    real loss_per_cycle() const { return impact(last()) / cycles(); }
 
     // ---- batches: equal parts of the window, of whole cycles if it has cycles, up to its end
 
@@ -454,72 +345,6 @@ public:
         const auto to = static_cast<std::size_t>(std::ceil(end - slack));
         return part(static_cast<std::size_t>(std::floor(begin + slack)), std::min(to, last()));
     }
-};
-
-struct Measure {
-    const char* name;
-    bool samples; // needs samples of the motion
-    bool peaks;   // needs the peaks of each impact
-    real (*value)(const Observer&);
-    bool of_energy_residual = false; // is computed also if the energy residual exceeds its limit
-};
-
-inline constexpr Measure measures[] = {
-    {"impacts", false, false, [](const Observer& o) { return o.impacts().impacts; }},
-    {"impacts_per_cycle", false, false, [](const Observer& o) { return o.impacts().impacts / o.cycles(); }},
-    {"peak_contact_force", false, true, [](const Observer& o) { return o.impacts().peak_force; }},
-    {"peak_overlap", false, true, [](const Observer& o) { return o.impacts().peak_overlap; }},
-    {"largest_approach_speed", false, false,
-     [](const Observer& o) { return o.impacts().largest_approach_speed; }},
-    {"mean_approach_speed", false, false,
-     [](const Observer& o) {
-         const ImpactSums all = o.impacts();
-         return all.impacts > 0 ? (all.approach_speeds + all.rounded_off) / all.impacts : not_a_number;
-     }},
-    {"longest_contact", false, false, [](const Observer& o) { return o.impacts().longest_contact; }},
-    {"work", false, false, [](const Observer& o) { return o.load_work(o.last()) + o.base_work(o.last()); }},
-    {"viscous_loss", false, false, [](const Observer& o) { return o.viscous(o.last()); }},
-    {"impact_loss", false, false, [](const Observer& o) { return o.impact(o.last()); }},
-    {"viscous_share", false, false, [](const Observer& o) { return o.share(o.viscous(o.last())); }},
-    {"impact_share", false, false, [](const Observer& o) { return o.share(o.impact(o.last())); }},
-    {"motion_share", false, false, [](const Observer& o) { return o.share(o.motion(o.last())); }},
-    {"energy_residual", false, false, [](const Observer& o) { return o.energy_residual(); }, true},
-    {"peak", true, false,
-     [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).q; }); }},
-    {"rms", true, false,
-     [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).q; }); }},
-    {"peak_velocity", true, false,
-     [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).p; }); }},
-    {"rms_velocity", true, false,
-     [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).p; }); }},
-    {"peak_acceleration", true, false,
-     [](const Observer& o) { return o.peak_acceleration(Observer::Frame::absolute); }},
-    {"rms_acceleration", true, false,
-     [](const Observer& o) { return o.rms_acceleration(Observer::Frame::absolute); }},
-    {"peak_relative_acceleration", true, false,
-     [](const Observer& o) { return o.peak_acceleration(Observer::Frame::base); }},
-    {"rms_relative_acceleration", true, false,
-     [](const Observer& o) { return o.rms_acceleration(Observer::Frame::base); }},
-    {"peak_damper_force", true, false,
-     [](const Observer& o) {
-         return o.peak_of_means([&](std::size_t i) { return o.mean_damper_force(i); });
-     }},
-    {"rms_damper_force", true, false,
-     [](const Observer& o) { return o.rms_of_means([&](std::size_t i) { return o.mean_damper_force(i); }); }},
-    {"peak_interface_force", true, false,
-     [](const Observer& o) { return o.peak([&](std::size_t i) { return o.interface_force(i); }); }},
-    {"rms_interface_force", true, false,
-     [](const Observer& o) { return o.rms([&](std::size_t i) { return o.interface_force(i); }); }},
-    {"settling_time", true, false, [](const Observer& o) { return o.settling(0.05); }},
-    {"loss_per_cycle", false, false, [](const Observer& o) { return o.impact(o.last()) / o.cycles(); }},
-    {"reduced_loss", true, false, [](const Observer& o) { return o.reduced_loss(); }},
-    {"effective_mass", true, false, [](const Observer& o) { return o.apparent_mass().real(); }},
-    {"damping_mass", true, false, [](const Observer& o) { return -o.apparent_mass().imag(); }},
-    {"loss_factor", true, false,
-     [](const Observer& o) {
-         const std::complex<real> mass = o.apparent_mass();
-         return -mass.imag() / std::fabs(mass.real());
-     }},
 };
 
 } // namespace rattlebox
