@@ -64,6 +64,7 @@ def read_result(path: Path, _: ModesRequest) -> ModesInFile:
                 f"{path}: the modes have {modes.shape[2]} components at nodes; three finite ones are needed",
                 "a model in 3-D, with translations along x, y and z",
             )
+        # Ansys can scale modes to a largest component of 1, which the file does not state. It is seen in the numbers.
         largest = np.abs(modes).max(axis=(1, 2))
         if len(largest) > 1 and np.allclose(largest, 1.0, rtol=1e-9):
             raise DataError(
@@ -100,6 +101,8 @@ def read_full(path: Path, request: ModesRequest) -> ModesInFile:
             ).tocsr()
             for name in ("K", "M")
         ]
+        # The file holds one triangle. Supported degrees of freedom are in it, too, and are removed: otherwise each
+        # would be a mode of frequency zero.
         K, M = (csr_array(matrix + triu(matrix, 1).T) for matrix in upper)
         fixed = {(int(node), int(axis)) for node, axis in arrays["fixed"][:, :2]}
         free = np.array([(int(node), int(axis)) not in fixed for node, axis in numbers])
@@ -107,6 +110,7 @@ def read_full(path: Path, request: ModesRequest) -> ModesInFile:
         axes = numbers[:, 1]
         vectors = np.zeros((len(numbers), values.size))
         vectors[free] = free_vectors
+        # A rigid motion along an axis moves the free translations; rotations and supports do not take part.
         directions = np.array([axes == axis for axis in range(3)], dtype=float).T
         directions[~free] = 0.0
         shapes = {}
@@ -152,6 +156,7 @@ def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, Flo
 
     n = stiffness.shape[0]
     count = min(count, n)
+    # A typical squared frequency of the matrices is the unit of shift and tolerances, whatever the units of the file.
     scale = float(np.median(np.abs(stiffness.diagonal())) / np.median(np.abs(mass.diagonal())))
     try:
         if n <= _MOST_DENSE or count > n // 3:

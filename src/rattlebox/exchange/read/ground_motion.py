@@ -59,6 +59,7 @@ def read_ground_motion(path: Path) -> GroundMotion:
             lines = path.read_text(encoding="latin-1").splitlines()
         except OSError as error:
             raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
+        # The number of header lines differs between editions of the format: the last one is that with count and step.
         above, count, step = 0, "", ""
         for line in lines[:_HEADER]:
             above += 1
@@ -73,6 +74,7 @@ def read_ground_motion(path: Path) -> GroundMotion:
             )
         header = "\n".join(lines[:above])
         other = _OTHER_QUANTITY.search(header)
+        # Velocities and displacements have the same layout, and would be read as accelerations.
         if other and not re.search(r"\baccel", header, re.I):
             raise DataError(
                 f"{path} contains a {other[1].lower()}, not an acceleration", "the file with the ending .AT2"
@@ -93,6 +95,7 @@ def read_ground_motion(path: Path) -> GroundMotion:
                 raise DataError(
                     f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers", _WHOLE
                 ) from None
+        # The stated number is the only sign of a truncated file.
         if len(values) != int(count):
             raise DataError(
                 f"{path} states {count} samples, but contains {len(values)}",

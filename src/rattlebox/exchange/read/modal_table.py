@@ -42,6 +42,7 @@ def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
         ]
         if not numbered:
             raise DataError(f"{path} contains no table", "a first line such as frequency (Hz), damping (%), tip")
+        # Programs of countries with decimal commas separate by semicolons; the first line decides for all.
         mark = next((mark for mark in ";\t," if mark in numbered[0][1]), ",")
         rows = [(k, _cells(path, k, line, mark)) for k, line in numbered]
         head, body = rows[0][1], rows[1:]
@@ -60,6 +61,7 @@ def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
         table = np.zeros((len(body), len(head)))
         for row, (number, cells) in enumerate(body):
             if len(cells) != len(head):
+                # A short last line is what a full disk or a broken download leaves; elsewhere it is a slip of the user.
                 is_last = row == len(body) - 1
                 advice = "the complete file: its last line is cut short" if is_last else "a number below each name"
                 raise DataError(f"{path}, line {number}: {len(cells)} cells, but {len(head)} names above", advice)
@@ -107,6 +109,8 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
             )
         return factors[key]
 
+    # Each column is a quantity of the mode, its number, or a mode shape: a name that is no quantity is a point, with an
+    # axis after a blank.
     columns: dict[str, list[int]] = {}  # by quantity
     points: dict[str, dict[int, int]] = {}  # column of each axis, -1 for a shape without components
     for column, name in enumerate(names):
@@ -130,6 +134,8 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
             raise DataError(f"{path}: two columns are called {names[places[1]]!r}", "another name for one of them")
     if not points:
         raise DataError(f"{path} contains no mode shape at any point", "a column for each point, called by its name")
+    # The unit of mass follows from what the table states: modal masses, or else the unit kg^-1/2 of mass-normalised
+    # shapes.
     (frequency,) = columns["frequency"]
     modal_masses, mass_unit = None, None
     if "mass" in columns:
@@ -160,6 +166,7 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
                 f"{path}: the participation is in another unit of mass than the mode shapes or modal masses",
                 "one unit of mass: (kg^0.5) and (kg^-0.5) without modal masses, (kg) with them",
             )
+    # Units that the table leaves out are assumed, and noted with the largest value, which shows a wrong assumption.
     frequencies, damping = table[:, frequency] * float(scale(frequency, _FREQUENCY) or 1.0), None
     notes = []
     if not units[frequency].strip():

@@ -76,7 +76,7 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
         raise DataError(
             f"{path}: the last data set does not end with -1; the file may be cut short", "the complete file"
         )
-    if not {each["type"] for each in sets} & set(kinds):
+    if not {block["type"] for block in sets} & set(kinds):
         available = ", ".join(map(str, sorted(set(types))))
         raise DataError(
             f"{path} contains no set {' or '.join(map(str, kinds))}; it contains {available}",
@@ -100,28 +100,29 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
     """
     with errors_of(path, "a universal file"):
         every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
-        sets = [each for each in every if each["type"] not in _GEOMETRY]
+        sets = [block for block in every if block["type"] not in _GEOMETRY]
         # The set 55 may also have stresses, velocities or accelerations of the same modes.
-        normal = [each for each in sets if each["type"] == 55 and _is_normal(each)]
-        quantities = {int(each["spec_data_type"]) for each in normal}
+        normal = [block for block in sets if block["type"] == 55 and _is_normal(block)]
+        quantities = {int(block["spec_data_type"]) for block in normal}
         wanted = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
-        chosen = [each for each in sets if each["type"] != 164 and _is_mode(each, wanted)]
-        modes = [_mode(path, each) for each in _without_twins(chosen)]
+        chosen = [block for block in sets if block["type"] != 164 and _is_mode(block, wanted)]
+        modes = [_mode(path, block) for block in _without_twins(chosen)]
         others = [_QUANTITIES.get(kind, f"data of type {kind}") for kind in sorted(quantities - set(wanted))]
         notes = [f"{path.name} does not state the quantity of its modes; displacements are assumed"] * (
             bool(quantities) and wanted == _UNKNOWN and bool(modes)
         )
+        # From here on the errors say why there are no modes: other quantities, complex modes, other analyses.
         if not modes and others:
             raise DataError(
                 f"{path} contains normal modes of {' and '.join(others)}; mode shapes are displacements (type 8)",
                 "an export of displacements",
             )
         if not modes:
-            kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
+            kinds = sorted({int(block["analysis_type"]) for block in sets if block["type"] != 164})
             scatter = [
-                _phase_scatter(each)
-                for each in sets
-                if each["type"] == 55 and int(each["analysis_type"]) in _COMPLEX_MODES
+                _phase_scatter(block)
+                for block in sets
+                if block["type"] == 55 and int(block["analysis_type"]) in _COMPLEX_MODES
             ]
             if scatter:
                 raise DataError(
@@ -133,6 +134,7 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
                 f"{path} contains no normal modes (analysis type 2); its types are {', '.join(map(str, kinds)) or 'none'}",
                 "an export of real normal modes",
             )
+        # A structure needs all shapes at the same nodes; files that join several exports may differ.
         nodes = modes[0][3]
         for number, mode in enumerate(modes, start=1):
             if not np.array_equal(mode[3], nodes):
@@ -151,27 +153,30 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
             shapes={str(int(node)): shapes[:, k] for k, node in enumerate(nodes)},
             modal_masses=masses,
             damping_ratios=damping if damping.any() else None,
-            mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164], needs_units),
-            notes=tuple(notes) + _check_axes(path, [each for each in every if each["type"] in _GEOMETRY], nodes),
+            mass_unit=_mass_unit(path, [block for block in sets if block["type"] == 164], needs_units),
+            notes=tuple(notes) + _check_axes(path, [block for block in every if block["type"] in _GEOMETRY], nodes),
         )
 
 
 def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str, ...]:
     """Return a note if a node has displacements along the axes of a system that the file does not define."""
     turned: dict[int, str] = {}
-    known = {0, 1}  # 1 is the global Cartesian system of most programs
-    for each in sets:
-        if each["type"] == 2420:
-            for label, kind, matrix in zip(each["CS_sys_labels"], each["CS_types"], each["CS_matrices"], strict=True):
-                known.add(int(label))
+    defined = {0, 1}  # 1 is the global Cartesian system of most programs
+    for block in sets:
+        if block["type"] == 2420:
+            for label, kind, matrix in zip(
+                block["CS_sys_labels"], block["CS_types"], block["CS_matrices"], strict=True
+            ):
+                defined.add(int(label))
                 if int(kind) != 0 or not np.allclose(np.asarray(matrix)[:3], np.eye(3), atol=1e-6):
                     turned[int(label)] = "Cartesian, with turned axes" if int(kind) == 0 else "not Cartesian"
     used = {
         int(node): int(system)
-        for each in sets
-        if each["type"] != 2420
-        for node, system in zip(each["node_nums"], each["disp_cs"], strict=True)
+        for block in sets
+        if block["type"] != 2420
+        for node, system in zip(block["node_nums"], block["disp_cs"], strict=True)
     }
+    # Displacements along turned axes would be mixed with those along global ones. Only nodes with modes matter.
     undefined: dict[int, int] = {}
     for node in map(int, nodes):
         system = used.get(node, 0)
@@ -180,7 +185,7 @@ def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str
                 f"{path}: node {node} has displacements in the coordinate system {system}, which is {turned[system]}",
                 "an export with displacements along the global axes x, y and z",
             )
-        if system not in known:
+        if system not in defined:
             undefined.setdefault(system, node)
     if not undefined:
         return ()
@@ -191,55 +196,55 @@ def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str
     )
 
 
-def _phase_scatter(each: dict[str, Any]) -> float:
+def _phase_scatter(block: dict[str, Any]) -> float:
     """Return the RMS deviation of the phases of a complex mode from a line through zero, weighted by amplitude [degrees].
 
     The line is the principal axis of the components z in the complex plane, at half the phase of sum(z^2).
     """
-    z = np.concatenate([np.asarray(each[f"r{k}"], dtype=complex) for k in (1, 2, 3)])
+    z = np.concatenate([np.asarray(block[f"r{k}"], dtype=complex) for k in (1, 2, 3)])
     z = z * np.exp(-0.5j * np.angle(np.sum(z**2)))
     return float(np.degrees(np.arctan2(np.linalg.norm(z.imag), np.linalg.norm(z.real))))
 
 
 def _without_twins(sets: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the sets without those of type 55 if those of type 2414 are the same modes."""
-    of_55 = [float(each["freq"]) for each in sets if each["type"] == 55]
-    of_2414 = [float(each["record12_field2"]) for each in sets if each["type"] == 2414]
+    of_55 = [float(block["freq"]) for block in sets if block["type"] == 55]
+    of_2414 = [float(block["record12_field2"]) for block in sets if block["type"] == 2414]
     if of_2414 and len(of_55) == len(of_2414) and np.allclose(of_55, of_2414, rtol=1e-4):
-        return [each for each in sets if each["type"] == 2414]
+        return [block for block in sets if block["type"] == 2414]
     return sets
 
 
-def _is_normal(each: dict[str, Any]) -> bool:
-    return int(each["analysis_type"]) == _NORMAL_MODES
+def _is_normal(block: dict[str, Any]) -> bool:
+    return int(block["analysis_type"]) == _NORMAL_MODES
 
 
-def _is_mode(each: dict[str, Any], wanted: tuple[int, ...]) -> bool:
+def _is_mode(block: dict[str, Any], wanted: tuple[int, ...]) -> bool:
     """Return whether a set has a mode shape; `wanted` are the types of data in the set 55."""
-    if each["type"] == 55:
-        return _is_normal(each) and int(each["spec_data_type"]) in wanted
-    at_nodes = int(each.get("dataset_location", 1)) == 1
-    return int(each["analysis_type"]) == _NORMAL_MODES and int(each["result_type"]) == _DISPLACEMENT and at_nodes
+    if block["type"] == 55:
+        return _is_normal(block) and int(block["spec_data_type"]) in wanted
+    at_nodes = int(block.get("dataset_location", 1)) == 1
+    return int(block["analysis_type"]) == _NORMAL_MODES and int(block["result_type"]) == _DISPLACEMENT and at_nodes
 
 
-def _mode(path: Path, each: dict[str, Any]) -> tuple[float, float, float, Any, Any]:
+def _mode(path: Path, block: dict[str, Any]) -> tuple[float, float, float, Any, Any]:
     """Return frequency, modal mass, damping ratio, nodes and shape of a set."""
-    if each["type"] == 55:
-        if int(each["n_data_per_node"]) not in (3, 6):
+    if block["type"] == 55:
+        if int(block["n_data_per_node"]) not in (3, 6):
             raise DataError(
-                f"{path}: a mode has {each['n_data_per_node']} values at a node; 3 or 6 are needed",
+                f"{path}: a mode has {block['n_data_per_node']} values at a node; 3 or 6 are needed",
                 "translations x, y, z",
             )
-        nodes = np.asarray(each["node_nums"])
-        shape = np.array([each[f"r{k}"] for k in (1, 2, 3)]).T
-        values = each["freq"], each["modal_m"], each["modal_damp_vis"]
+        nodes = np.asarray(block["node_nums"])
+        shape = np.array([block[f"r{k}"] for k in (1, 2, 3)]).T
+        values = block["freq"], block["modal_m"], block["modal_damp_vis"]
     else:
-        nodes = np.asarray(each["node_nums"])
-        table = np.atleast_2d(np.asarray(each["data_at_node"], dtype=complex))
-        if int(each["data_type"]) in (5, 6) and not np.iscomplexobj(each["data_at_node"]):
+        nodes = np.asarray(block["node_nums"])
+        table = np.atleast_2d(np.asarray(block["data_at_node"], dtype=complex))
+        if int(block["data_type"]) in (5, 6) and not np.iscomplexobj(block["data_at_node"]):
             table = table[:, 0::2] + 1j * table[:, 1::2]
         shape = table[:, :3]
-        values = each["record12_field2"], each["record12_field4"], each["record12_field5"]
+        values = block["record12_field2"], block["record12_field4"], block["record12_field5"]
     if shape.shape != (len(nodes), 3):
         raise DataError(f"{path}: a mode has {shape.shape} components for {len(nodes)} nodes", "the complete file")
     if np.abs(np.imag(shape)).max(initial=0.0) > _LARGEST_IMAGINARY * np.abs(shape).max(initial=0.0):
@@ -279,9 +284,11 @@ def read_functions(path: Path) -> list[Function]:
     """
     with errors_of(path, "a universal file"):
         functions = []
-        for number, each in enumerate(_read_sets(path, (58,)), start=1):
-            values = np.asarray(each["data"])
-            stated = int(each["num_pts"])
+        for number, block in enumerate(_read_sets(path, (58,)), start=1):
+            # The number of points and the size of the values show a truncated file and a wrong byte order, which the
+            # reader does not notice.
+            values = np.asarray(block["data"])
+            stated = int(block["num_pts"])
             if values.size != stated:
                 raise DataError(
                     f"{path}: function {number} states {stated} points, but has {values.size}", "the complete file"
@@ -295,13 +302,13 @@ def read_functions(path: Path) -> list[Function]:
                 )
             functions.append(
                 Function(
-                    name=str(each.get("rsp_ent_name") or each.get("id1", "")).strip(),
-                    kind=int(each["func_type"]),
-                    abscissa=np.asarray(each["x"], dtype=float),
+                    name=str(block.get("rsp_ent_name") or block.get("id1", "")).strip(),
+                    kind=int(block["func_type"]),
+                    abscissa=np.asarray(block["x"], dtype=float),
                     values=values,
-                    unit=_label(each, "ordinate"),
-                    source_unit=_label(each, "orddenom"),
-                    quantities=(int(each["ordinate_spec_data_type"]), int(each["orddenom_spec_data_type"])),
+                    unit=_label(block, "ordinate"),
+                    source_unit=_label(block, "orddenom"),
+                    quantities=(int(block["ordinate_spec_data_type"]), int(block["orddenom_spec_data_type"])),
                 )
             )
         return functions
@@ -326,5 +333,5 @@ def modes_of_universal(path: Path, request: ModesRequest) -> ModesInFile:
 
 def _label(block: dict[str, Any], axis: str) -> str:
     """Return the unit of an axis; pyuff replaces the superscript 2 of other encodings by U+FFFD."""
-    unit = str(each.get(f"{axis}_axis_units_lab", "")).strip().replace("\ufffd", "²")
+    unit = str(block.get(f"{axis}_axis_units_lab", "")).strip().replace("\ufffd", "²")
     return "" if unit.upper() == "NONE" else unit
