@@ -186,7 +186,9 @@ def formula(latex, display):
         lambda match: f"<mi>{chr(0x1D400 + ord(match[1]) - (65 if match[1] < 'a' else 71))}</mi>",
         text,
     )
-    text = text.replace("<mo>&#x0002F;</mo>", '<mo lspace="0" rspace="0">/</mo>').replace("&#x00028;", "(")
+    text = text.replace("<mo>&#x0002F;</mo>", '<mo lspace="0" rspace="0">/</mo>')
+    for entity, character in (("&#x00028;", "("), ("&#x0002C;", ","), ("&#x0003D;", "=")):
+        text = text.replace(entity, character)
     text = re.sub(r"<mover>(<mi>\w</mi><mo>&#x0(?:02D9|00A8);)", r'<mover accent="true">\1', text)
     function = "sin|cos|tan|cot|sinh|cosh|tanh|coth|exp|ln|log|max|min"
     text = re.sub(rf"(<m[io]>(?:{function})</m[io]>)(?=<m[infrs])", r'\1<mspace width="0.17em"/>', text)

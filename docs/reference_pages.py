@@ -191,7 +191,8 @@ def add_types(app, what, name, subject, options, lines):
         known = dict.fromkeys(types[each] for each in names if each in types)
         if lines[k] and not lines[k].startswith(" ") and known:
             optional = all(each.endswith(", optional") for each in known)
-            shown = " or ".join(dict.fromkeys(each.removesuffix(", optional") for each in known))
+            kinds = {each.removesuffix(", optional"): None for each in known}
+            shown = " or ".join(kind for kind in kinds if not any(f"{kind} " in other for other in kinds))
             lines[k] = f"{lines[k]} : {shown}{', optional' if optional else ''}"
 
 

@@ -110,6 +110,14 @@ def test_code_can_be_pasted(pages: dict[str, Page]) -> None:
     assert [name for name, page in pages.items() if page.cites] == []
 
 
+def test_signs_and_functions_have_their_space(site: Path) -> None:
+    """A sign after "=" or a bracket has no space behind it, a function has; browsers do the reverse of TeX unless told."""
+    text = "".join(path.read_text(encoding="utf-8") for path in site.rglob("*.html"))
+    assert text.count("<math") > 300
+    assert not re.search(r">(?:[=(,]|&#x000(?:3D|28|2C);)</mo><mo>&#x02212;</mo>", text)
+    assert not re.search(r"<mi>(?:sin|cos|exp|ln)</mi><m[inf]", text)
+
+
 def test_names_in_code_are_links(site: Path) -> None:
     """A name of the package in a guide leads to its entry; names looked like links, and were none."""
     for name, link in (
