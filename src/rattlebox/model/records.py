@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, BinaryIO, Literal, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from rattlebox.exchange.read.guarded import errors_of
 
 from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
+from .text_tables import Dialect, comma_is_both, decode, dialect_of, has_point
 from .units_in_text import Line
 
 Column = int | str
@@ -139,6 +140,7 @@ class _Text:
     step: float | None
     notes: tuple[str, ...]
     is_blank: bool  # whether blanks separate the columns
+    step_is_noted: bool = False
 
     @property
     def width(self) -> int:
@@ -269,7 +271,7 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
                 f"column {index + 1} of {text.width} columns without names is read, one sample a row, {values.size} in all"
             )
     # A step from the header is an assumption that the run must show; that of the first line is noted already.
-    if step is None and text.step is not None and not text.notes:
+    if step is None and text.step is not None and not text.step_is_noted:
         notes.append(f"the time step of {text.step:g} s is taken from the text above the samples")
     times = _even_times(text.file, values.size, step or text.step)
     return Columns(times, values, ([], headings), tuple(text.lines), tuple(notes))
@@ -469,14 +471,21 @@ def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] 
     text = quick and _layout(file, *quick, known, requested)
     if text and _is_of_numbers(text.rows):
         return text
-    text = _layout(file, _split_lines(file), np.empty((0, 0)), [], known, requested)
+    lines, dialect = _split_lines(file)
+    text = _layout(file, lines, np.empty((0, 0)), [], dialect, known, requested)
     if text is None:
         raise DataError(f"{file} contains no numbers", _ANY)
     return text
 
 
 def _layout(
-    file: Path, lines: list[_Row], below: Array, last: list[_Row], known: Sequence[str], requested: Sequence[str]
+    file: Path,
+    lines: list[_Row],
+    below: Array,
+    last: list[_Row],
+    dialect: Dialect,
+    known: Sequence[str],
+    requested: Sequence[str],
 ) -> _Text | None:
     """Return the table in the lines of a file, with the numbers of the rows below; None if there is no line of data."""
     # Where the rows begin.
@@ -487,6 +496,12 @@ def _layout(
     if all(not row.cells[0] for row in head):  # a delimiter at the beginning of each line
         lines = [row._replace(cells=row.cells[1:] if not row.cells[0] else row.cells) for row in lines]
         head = [row._replace(cells=row.cells[1:]) for row in head]
+    if dialect.delimiter == "," and comma_is_both([row.cells for row in head[:_PROBED]], [r.cells for r in lines[:start]]):
+        raise DataError(
+            f"{file}, line {head[0].number}: the comma separates columns and seems to be the decimal mark, too:"
+            f" {head[0].content[:60]!r}",
+            "semicolons between the columns, or decimal points",
+        )
     rows = _Rows(head, below, last)
     # What the lines above and the first row state about the sampling.
     step: float | None = None
@@ -494,6 +509,9 @@ def _layout(
     if counted := _number_of_samples(file, rows):
         step, note = counted
         rows, notes = _Rows(head[1:], below, last), (note,)
+    step_is_noted = bool(notes)
+    if reading := dialect.note():
+        notes = (*notes, reading)
     if step is None:
         stated = {float(match[1]) for row in lines[:start] for match in _STEP.finditer(row.content)}
         step = stated.pop() if len(stated) == 1 and 0 < min(stated) < np.inf else None
@@ -518,7 +536,7 @@ def _layout(
         if cells is None or cells not in headings or "unit" in row.content.lower()
     ]
     is_blank = all(row.cells == row.content.split() for row in rows.head[:_PROBED])
-    return _Text(file, rows, names, headings, free, step, notes, is_blank)
+    return _Text(file, rows, names, headings, free, step, notes, is_blank, step_is_noted)
 
 
 def _heading_cells(row: _Row, width: int) -> list[str] | None:
@@ -681,10 +699,10 @@ def _is_of_numbers(rows: _Rows) -> bool:
         return False
 
 
-def _read_quickly(file: Path) -> tuple[list[_Row], Array, list[_Row]] | None:
+def _read_quickly(file: Path) -> tuple[list[_Row], Array, list[_Row], Dialect] | None:
     """Return the first lines of a large file, the numbers of the rows below, and the last row; None for other content."""
     try:
-        with file.open("rb") as stream:
+        with _open(file) as stream:
             # Both ends are read as lines of text: they show delimiter, names and units, and where the file is cut short.
             start = stream.read(_HEAD)
             begin, size = start.rfind(b"\n") + 1, stream.seek(0, io.SEEK_END)
@@ -695,54 +713,79 @@ def _read_quickly(file: Path) -> tuple[list[_Row], Array, list[_Row]] | None:
             above = start[:begin].decode("utf-8-sig").splitlines()
             if size <= len(start) or len(ending) < 4 or len(above) != start.count(b"\n"):
                 return None
+            dialect = dialect_of(ending, b'"' in start or b'"' in tail)
+            if dialect.has_comma and dialect.quoted:
+                return None
             # Between them only rows of numbers are expected; anything else raises.
             stream.seek(begin)
-            between = sum(block.count(b"\n") for block in iter(lambda: stream.read(1 << 20), b""))
+            between = 0
+            for block in iter(lambda: stream.read(1 << 20), b""):
+                between += block.count(b"\n")
+                if dialect.has_comma and b"." in block:
+                    return None
             between -= tail[cut:].count(b"\n")
             stream.seek(begin)
-            delimiter, quoted = _delimiter(ending), b'"' in start or b'"' in tail
             with io.TextIOWrapper(stream, "utf-8", newline="\n") as lines, warnings.catch_warnings():
                 warnings.simplefilter("error", UserWarning)  # no data
+                rows = islice(lines, between)
                 below = np.loadtxt(
-                    islice(lines, between),
-                    delimiter=delimiter,
+                    rows if dialect.is_plain else map(dialect.plain, rows),
+                    delimiter=dialect.delimiter,
                     comments=None,
-                    quotechar='"' if quoted and delimiter else None,
+                    quotechar='"' if dialect.quoted and dialect.delimiter else None,
                     ndmin=2,
                 )
-        head = _as_rows(file, above, delimiter, quoted)
-        last = [row._replace(number=len(above) + between + 1) for row in _as_rows(file, ending[-1:], delimiter, quoted)]
+        head = _as_rows(file, above, dialect)
+        last = [row._replace(number=len(above) + between + 1) for row in _as_rows(file, ending[-1:], dialect)]
     except (ValueError, OSError, Warning):
         return None
     is_data = head and last and not last[0].is_comment
-    return (head, below, last) if is_data and np.isfinite(below).all() else None
+    return (head, below, last, dialect) if is_data and np.isfinite(below).all() else None
 
 
-def _split_lines(file: Path) -> list[_Row]:
-    """Return the lines that are not empty."""
+def _open(file: Path) -> BinaryIO:
+    """Return the text of a file as a stream in UTF-8."""
+    stream = file.open("rb")
+    start = stream.read(_HEAD)
+    stream.seek(0)
     try:
-        text = file.read_text(encoding="utf-8-sig").splitlines()
+        start[: start.rfind(b"\n") + 1].decode()
+        is_ready = b"\0" not in start
     except UnicodeDecodeError:
-        raise DataError(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat") from None
+        is_ready = False
+    if is_ready:
+        return stream
+    with stream:
+        return io.BytesIO(_decoded(file, stream.read()).encode())
+
+
+def _decoded(file: Path, content: bytes) -> str:
+    text = decode(content)
+    if text is None:
+        raise DataError(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat")
+    return text[0]
+
+
+def _split_lines(file: Path) -> tuple[list[_Row], Dialect]:
+    """Return the lines that are not empty, and how they are written."""
+    try:
+        text = _decoded(file, file.read_bytes()).splitlines()
     except OSError as error:
         raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
-    return _as_rows(file, text, _delimiter(text), any('"' in line for line in text))
+    dialect = dialect_of(text, any('"' in line for line in text))
+    return _as_rows(file, text, dialect), dialect
 
 
-def _delimiter(text: Sequence[str]) -> str | None:
-    """Return the delimiter of most of the last three lines of data, of which the very last may be cut short."""
-    data = [line for line in text if line.strip() and line.lstrip()[0] not in "#%"][-3:]
-    return next((mark for mark in ";\t," if 2 * sum(mark in line for line in data) >= max(1, len(data))), None)
-
-
-def _as_rows(file: Path, text: Sequence[str], delimiter: str | None, quoted: bool) -> list[_Row]:
+def _as_rows(file: Path, text: Sequence[str], dialect: Dialect) -> list[_Row]:
     """Return the lines that are not empty, with their cells."""
     lines = []
+    delimiter = dialect.delimiter
     for number, line in enumerate(text, start=1):
         is_comment = line.lstrip()[:1] in ("#", "%")
         content = line.lstrip("#% \t") if is_comment and delimiter != "\t" else line.strip(" ").lstrip("#%")
+        content = dialect.parts(content)
         try:
-            if quoted and delimiter is not None:
+            if dialect.quoted and delimiter is not None:
                 cells = next(csv.reader([content], delimiter=delimiter), [])
             else:
                 cells = content.split(delimiter)
@@ -751,6 +794,14 @@ def _as_rows(file: Path, text: Sequence[str], delimiter: str | None, quoted: boo
         cells = [cell.strip() for cell in cells]
         while cells and not cells[-1]:
             cells.pop()
+        if not dialect.is_plain:
+            plain = [dialect.number(cell) for cell in cells]
+            if dialect.has_comma and not is_comment and has_point(cells) and all(map(_is_number, plain)):
+                raise DataError(
+                    f"{file}, line {number}: {content.strip()[:60]!r} has a decimal point, but other lines decimal commas",
+                    "the same decimal mark in all lines",
+                )
+            cells = plain
         if cells:
             lines.append(_Row(number, cells, is_comment, content))
     return lines
