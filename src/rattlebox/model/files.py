@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.mat_check import check_mat
-from rattlebox.exchange.read.guarded import errors_of
+from rattlebox.exchange.read.guarded import arrays_from_child, errors_of
 
 from .errors import Hint
 from .units import LARGEST
@@ -112,8 +112,10 @@ def read_arrays(file: Path) -> dict[str, Array]:
         with errors_of(file, file.suffix[1:].upper()):
             file.open("rb").close()  # SciPy would hide the reason if this fails
             content = dict(_flatten(_load_mat(file) if file.suffix.lower() == ".mat" else _load_numpy(file)))
-    except NotImplementedError:
-        raise DataError(f"{file} is a MAT file of version 7.3", "save('...', '-v7') in MATLAB") from None
+    except NotImplementedError:  # version 7.3
+        content = arrays_from_child(file, "mat")
+        names = content.pop("names").tolist()
+        content = dict(zip(names, (content[f"array_{k}"] for k in range(len(names))), strict=True))
     return {name: np.asarray(value, dtype=float) for name, value in content.items() if _is_real(value)}
 
 

@@ -187,9 +187,11 @@ class Record(FilePart, Sampled):
         number and time step, is no data.
     columns
         Columns or variables with times and values, by number in the order of the file from 1, or by name: `columns=(1, 3)`,
-        `columns=("t", "a")`. With `dt` only that of the values; in a universal file the number of the time history. Optional
-        if the file has only two columns (with `dt` one), or variables called time and value. `columns="rows"`: samples that
-        go on from row to row, five or eight a row; optional if the rows show it.
+        `columns=("t", "a")`. A name alone, `columns="acc_z"`, is that of the values: their times are the first column, if it
+        increases, and in a MAT file the first of two columns of that variable, or the variable called t or time. With `dt`
+        only that of the values; in a file of time histories the name or number of one. Optional if the file has only two
+        columns (with `dt` one), or variables called time and value. `columns="rows"`: samples that go on from row to row,
+        five or eight a row; optional if the rows show it.
     time_zero
         Time of the record that is 0 s in the run [s], or "first" for its first point; default 0 s, in universal files
         "first". A run notes a shift, and points before 0 s, which are not used.
@@ -219,7 +221,7 @@ class Record(FilePart, Sampled):
     times: Column1D = Field(default_factory=lambda: _column(()))
     values: Column1D = Field(default_factory=lambda: _column(()))
     file: str | None = None
-    columns: tuple[Column, Column] | tuple[Column] | Literal["rows"] | None = None
+    columns: tuple[Column, Column] | tuple[Column] | str | None = None
     dt: PositiveTime | None = None
     scale: Number = 1.0
     time_zero: Annotated[Literal["first"] | float | None, SI("s"), BeforeValidator(_as_time_zero)] = None

@@ -46,6 +46,8 @@ _SAMPLES = re.compile(
 _HEADINGS = 2  # lines above a single column that may name it
 _STEP = re.compile(r"\bDT\s*[=:]\s*(\d*\.?\d+(?:E[-+]?\d+)?)\s*(?:$|[,;)]|s\b|sec)", re.I)
 """Time step in a line above the numbers: "NPTS= 2676, DT= .0200 SEC"."""
+_TIMES = ("t", "time", "times", "time_s", "zeit", "temps", "tiempo", "tempo")
+"""Names of variables of times."""
 _LARGE = 10  # samples from which a number in a text is no coincidence
 _PROBED = 2000  # rows from which the layout is concluded
 _HEAD, _TAIL = 1 << 16, 1 << 14
@@ -140,7 +142,8 @@ class _Text:
     step: float | None
     notes: tuple[str, ...]
     is_blank: bool  # whether blanks separate the columns
-    step_is_noted: bool = False
+    step_is_noted: bool
+    dialect: Dialect
 
     @property
     def width(self) -> int:
@@ -233,6 +236,21 @@ def _times_and_values(text: _Text, columns: Sequence[Column] | None) -> Columns:
     by_number = not any(isinstance(column, str) for column in columns or ())
     if by_number and not (text.width == 2 and text.rises()) and text.goes_by_rows():
         raise _by_rows_error(text.file, text.width, 'dt = "0.01 s", the time between samples, and columns = "rows"')
+    if columns is None and text.dialect.has_complex:
+        raise DataError(
+            f"{text.file} has complex numbers, whose real and imaginary parts are read as columns 1 to {text.width}",
+            "columns = [1, 3], the real parts of the first two numbers of each row, if all are complex",
+        )
+    if columns is not None and len(columns) == 1:
+        (index,) = _column_indices(text.file, columns, text.labels, needed=1)
+        if index == 0 or not text.rises():
+            raise DataError(
+                f"{text.file}: its first column does not increase as times do, so the times of {columns[0]!r} are not known"
+                if index
+                else f"{text.file}: {columns[0]!r} is its first column, and so has no times",
+                'columns = ["time", "force"], or dt = "0.01 s", the time between samples',
+            )
+        columns = (1, index + 1)
     indices = _column_indices(text.file, columns, text.labels, is_named=text.is_named, rises=text.rises())
     times, values = _parse_rows(text.file, text.rows, indices).T
     headings = text.above(indices[0]), text.above(indices[1])
@@ -337,16 +355,20 @@ def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) ->
 
 def as_columns(value: Any, count: int = 2) -> Any:
     """Return `count` columns as a tuple; None and "rows" are returned unchanged."""
-    if value is None or value == "rows":
+    if value is None or (isinstance(value, str) and value == "rows"):
         return value
-    good = isinstance(value, (list, tuple)) and len(value) == count
+    value = (value,) if isinstance(value, str) else value
+    good = isinstance(value, (list, tuple)) and len(value) in {count, 1}
     if not good or not all(isinstance(item, (int, str)) and not isinstance(item, bool) for item in value):
         if count == 1:
             raise Hint(
                 "with dt, one column is needed, that of the values",
                 'columns = ["force"], or columns = "rows" for samples that go on from row to row',
             )
-        raise Hint("two numbers or names are needed: columns of times and of values", 'columns = ["time", "force"]')
+        raise Hint(
+            "two numbers or names are needed, columns of times and of values, or one, that of the values",
+            'columns = ["time", "force"], or columns = "force"',
+        )
     return tuple(value)
 
 
@@ -354,6 +376,7 @@ def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Colum
     """Return times and values: two variables, or two columns of the only variable."""
     if columns is None and {"time", "value"} <= set(arrays):
         columns = ("time", "value")
+    columns, arrays = _variable_of_values(file, arrays, columns)
     if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
         ((_, table),) = arrays.items()
         if columns is None and table.ndim == 2 and table.shape[0] == 2 != table.shape[1]:
@@ -376,6 +399,47 @@ def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Colum
     if times.size != values.size:
         raise DataError(f"{file}: {time} has {times.size} numbers, but {value} {values.size}", "as many of both")
     return times.ravel(), values.ravel()
+
+
+def _variable_of_values(
+    file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None
+) -> tuple[Sequence[Column] | None, dict[str, Array]]:
+    """Return the columns of times and values, and the arrays that contain them, for a name of the values alone."""
+    variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
+    timed = [name for name, array in arrays.items() if _has_times(array)]
+    vectors = [name for name in arrays if name.lower().rpartition(".")[2] in _TIMES]
+    if columns is None and len(arrays) > 1 and (timed or (vectors and len(arrays) > 2)):
+        beside = [
+            key for key in arrays if vectors and key not in vectors and arrays[key].size == arrays[vectors[0]].size
+        ]
+        if timed or beside:
+            raise DataError(
+                f"{file} has {several(len(arrays), 'variable')} ({', '.join(variables)})",
+                f'columns = "{(timed or beside)[0]}"',
+            )
+    if columns is None or len(columns) != 1:
+        return columns, arrays
+    (index,) = _column_indices(file, columns, list(arrays), variables, needed=1)
+    values = list(arrays)[index]
+    if values in timed:
+        return None, {values: arrays[values]}
+    # Times of the same struct, or the only ones of this length.
+    struct = values.rpartition(".")[0]
+    like = [name for name in vectors if name != values and arrays[name].size == arrays[values].size]
+    own = [name for name in like if name.rpartition(".")[0] == struct]
+    if len(own or like) != 1:
+        raise DataError(
+            f"{file}: {values} has shape {arrays[values].shape}; it has no times, and there is no variable t or time",
+            'columns = ["time", "force"], the variables of both, or dt = "0.01 s"',
+        )
+    return ((own or like)[0], values), arrays
+
+
+def _has_times(array: Array) -> bool:
+    """Return whether an array is a table of times and values, in two columns or two rows."""
+    if array.ndim != 2 or 2 not in array.shape or array.size < 6:
+        return False
+    return _increases(array if array.shape[1] == 2 else array.T)
 
 
 def _column_indices(
@@ -496,7 +560,9 @@ def _layout(
     if all(not row.cells[0] for row in head):  # a delimiter at the beginning of each line
         lines = [row._replace(cells=row.cells[1:] if not row.cells[0] else row.cells) for row in lines]
         head = [row._replace(cells=row.cells[1:]) for row in head]
-    if dialect.delimiter == "," and comma_is_both([row.cells for row in head[:_PROBED]], [r.cells for r in lines[:start]]):
+    if dialect.delimiter == "," and comma_is_both(
+        [row.cells for row in head[:_PROBED]], [r.cells for r in lines[:start]]
+    ):
         raise DataError(
             f"{file}, line {head[0].number}: the comma separates columns and seems to be the decimal mark, too:"
             f" {head[0].content[:60]!r}",
@@ -536,7 +602,7 @@ def _layout(
         if cells is None or cells not in headings or "unit" in row.content.lower()
     ]
     is_blank = all(row.cells == row.content.split() for row in rows.head[:_PROBED])
-    return _Text(file, rows, names, headings, free, step, notes, is_blank, step_is_noted)
+    return _Text(file, rows, names, headings, free, step, notes, is_blank, step_is_noted, dialect)
 
 
 def _heading_cells(row: _Row, width: int) -> list[str] | None:

@@ -7,6 +7,7 @@ _OTHERS = {  # ours: others'
     "mass M": "m",
     "damping_ratio damping_ratios": "zeta xi modal_damping damping_factor",
     "damping": "damping_ratio",
+    "columns": "channel channels column variable variables signal",
     "e restitution": "e cor coefficient_of_restitution",
     "friction coefficient": "mu friction_coefficient coefficient_of_friction sliding_friction",
     "rolling coefficient": "mu_r rolling_friction rolling_resistance",

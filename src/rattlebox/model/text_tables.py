@@ -76,9 +76,11 @@ class Dialect:
         mark = self.delimiter or " "
         # "+-2" is -2, and "--2" is 2.
         return _COMPLEX.sub(
-            lambda match: match[1]
-            + mark
-            + (match[3] if match[2] == "+" else match[3][1:] if match[3][0] == "-" else f"-{match[3].lstrip('+')}"),
+            lambda match: (
+                match[1]
+                + mark
+                + (match[3] if match[2] == "+" else match[3][1:] if match[3][0] == "-" else f"-{match[3].lstrip('+')}")
+            ),
             line,
         )
 

@@ -19,17 +19,20 @@ _LABELS = re.compile(r"[txyzTXYZ]|\d*")
 # A unit in running text: "g", "cm/s^2", "CM/SEC/SEC", "m s^-2", "cm / s2". Words and numbers next to it are not part of it.
 _UNIT = r"(?:[^\W\d_]+(?:\s+s\^?-2|\s?/\s?\(?s(?:ec)?[\d^*²)]*(?:\s?/\s?s(?:ec)?)?)?|[^\s,;:()\[\]\"']+)"
 _END = r"(?=$|[\s,;:.()\[\]\"'])"
-_WORD = r"(?<![^\W_])(?:units?|einheit(?:en)?|unit[eé]s?|unidad(?:es)?)(?:[ _-](?:label|[xyz\d])(?![^\W_]))?"
+_WORDS = "units?|einheit(?:en)?|unit[eéà]s?|unidade?s?|eenheid|enhet|jednostka|jednotka|birim|единица|单位|単位"
+_WORD = rf"(?<![^\W_])(?:{_WORDS})(?:[ _-](?:label|[xyz\d])(?![^\W_]))?"
 _MARKED = re.compile(rf"{_WORD}\s*(?:of|is|are|in)?\s*[:=;,]?\s*[(\[\"']?\s*({_UNIT}){_END}", re.I)
-_IN = re.compile(rf"\bin\s+[(\[]?({_UNIT}){_END}", re.I)
+_IN = re.compile(rf"\b(?:in|en|em)\s+[(\[]?({_UNIT}){_END}", re.I)
 _BARE = re.compile(r"(?<![\w/^.-])([^\W\d_]+\s?/\s?\(?s(?:ec)?[\d^*²)]*(?:\s?/\s?s(?:ec)?)?|m?gals?)(?![\w/^])", re.I)
 _CLOSING = re.compile(r"[,;)\]]")
 _AFTER_NUMBER = re.compile(r"[\d.]\s*[(\[]?$")
 _SEPARATED = re.compile(r"[\s,_]+")
 _QUANTITIES = {
-    "m/s^2": re.compile(r"acc|beschl", re.I),
-    "N": re.compile(r"force|load|kraft", re.I),
-    "m": re.compile(r"disp|deflection|weg\b|stroke", re.I),
+    "m/s^2": re.compile(r"acc|beschl|aceler|acel|versnelling|przyspiesz|zrychl|ivme|ускор|加速度", re.I),
+    "N": re.compile(r"force|load|kraft|forza|fuerza|força|kracht|siła|síla|kuvvet|сила|荷重", re.I),
+    "m": re.compile(
+        r"disp|deflection|weg\b|stroke|dépl|depl|desp|spost|desloc|verplaats|przemiesz|výchyl|перемещ|位移|変位", re.I
+    ),
 }
 """Words that show that a unit of free text is the unit of the values; also of "in cm" and "(N)", which are ambiguous."""
 
