@@ -21,7 +21,7 @@ from pydantic import (
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.frozen import complete
-from rattlebox.exchange.read import ground_motion, universal  # noqa: F401  (they register their readers)
+from rattlebox.exchange.read import ground_motion, strong_motion, universal  # noqa: F401  (they register their readers)
 from rattlebox.exchange.read.formats import Format, read_no_signals, record_reader, signals_in
 
 from .base import FilePart
@@ -105,9 +105,12 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
     return None, []
 
 
-def _signal_format(path: str) -> Format[Callable[..., Any]] | None:
-    """Return the format of a file of time histories; None for tables of numbers."""
-    form = record_reader.of(path)
+def _signal_format(path: str, *, is_table: bool = False) -> Format[Callable[..., Any]] | None:
+    """Return the format of a file of time histories; None for tables of numbers.
+
+    `is_table` says that the fields of a record are those of a table, so that the content of a text decides nothing.
+    """
+    form = record_reader.of(path, has_content=not is_table)
     return None if form is None or form.read is read_no_signals else form
 
 
@@ -115,18 +118,22 @@ def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: An
     """Read a time history, by its name or number in `columns`; None stands for the only one."""
     signals = signals_in(path, form)
     names = [signal.name or f"number {number}" for number, signal in enumerate(signals, start=1)]
-    if columns is None and len(signals) > 1:
+    measured = [number for number, signal in enumerate(signals, start=1) if not signal.is_derived]
+    if columns is None and len(signals) > 1 and len(measured) != 1:
         raise DataError(f"{path} contains {len(signals)} time histories ({', '.join(names)})", "columns = [1]")
-    wanted = columns[0] if columns else 1
+    wanted: Column = columns[0] if columns else next(iter(measured), 1)
+    if isinstance(wanted, str) and names.count(wanted) > 1:
+        numbers = " or ".join(str(number) for number, name in enumerate(names, start=1) if name == wanted)
+        raise DataError(f"{path} contains {names.count(wanted)} time histories {wanted!r}", f"columns = [{numbers}]")
     index = names.index(wanted) if wanted in names else wanted - 1 if isinstance(wanted, int) else -1
     if not 0 <= index < len(signals):
         raise DataError(f"{path} contains no time history {wanted!r}, but {', '.join(names)}", "columns = [1]")
     signal = signals[index]
     if form.needs_unit and unit is None and not signal.unit and not any(units_in_lines(signal.lines, UNITS)):
         raise DataError(f"{path} states no unit", 'unit = "g"')
-    headings = [f"a ({signal.unit})"] if signal.unit else []
+    headings = [f"values ({signal.unit[:_SHOWN]})"] if signal.unit else []
     times, values = np.asarray(signal.times, dtype=float), np.asarray(signal.values, dtype=float)
-    return Columns(times, values, ([], headings), signal.lines)
+    return Columns(times, values, ([], headings), signal.lines, signal.notes)
 
 
 def _words_on_text(columns: Columns) -> str:
@@ -285,7 +292,8 @@ class Record(FilePart, Sampled):
         step, wanted = values.get("dt"), values.get("unit")
         with at("file"):
             path = absolute(values["file"])
-            form = _signal_format(path)
+            is_table = step is not None or values.get("columns") == "rows" or np.size(values.get("columns") or ()) == 2
+            form = _signal_format(path, is_table=is_table)
         with at("columns"):
             columns = as_columns(values.get("columns"), 1 if step is not None or form else 2)
         with at("file"):

@@ -13,6 +13,7 @@ Line = tuple[int, str]
 """Number and text of a line of a file."""
 
 _BRACKETED = re.compile(r"[\[(]([^\[\]()]*)[\])]")
+_PRODUCT = re.compile(r"[/*·]\s*\(")
 _LABELS = re.compile(r"[txyzTXYZ]|\d*")
 """Text in brackets at the end of a heading that is a label: a(t), a (X), force (1)."""
 
@@ -76,7 +77,7 @@ def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str
             parts.append(words[-1])  # "Acc g", "acc_g"; N may be north, and in an input
         for part in reversed(parts):
             known = known or factor_of(part, units)
-        if brackets and not known:  # "m/(s^2)"; last, since pint loads to read "acceleration (m/s^2)" as a unit
+        if not known and _PRODUCT.search(head):  # "m/(s^2)", but not "a (cm/s)", which would be years times cm/s
             known = factor_of(head, units)
         if known:
             return known

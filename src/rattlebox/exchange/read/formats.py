@@ -6,8 +6,10 @@ units. The model converts units and selects points and signals, the same for all
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -19,6 +21,11 @@ from rattlebox._util.plugins import Registry, load_plugins, owner_of
 
 from .guarded import errors_of
 from .modes_in_file import ModesInFile
+
+BINARY_TABLES = (".npy", ".npz", ".mat")
+"""Endings of tables of numbers that are not text."""
+
+_START = 4096  # bytes that show the format of a file
 
 Read = TypeVar("Read", bound=Callable[..., Any])
 
@@ -37,6 +44,10 @@ class SignalInFile:
         Unit as the file writes it, such as "g" or "m/s^2"; "" if the file states none.
     lines
         Numbers and texts of the lines above the values, in which a unit may be.
+    notes
+        Notes on assumptions, which a run reports.
+    is_derived
+        Whether it is computed from another one of the file, and therefore not read unless `columns` selects it.
     """
 
     times: NDArray[np.float64]
@@ -44,6 +55,8 @@ class SignalInFile:
     name: str = ""
     unit: str = ""
     lines: tuple[tuple[int, str], ...] = ()
+    notes: tuple[str, ...] = ()
+    is_derived: bool = False
 
 
 @dataclass(frozen=True)
@@ -64,6 +77,8 @@ class Format(NamedTuple, Generic[Read]):
     """Whether the first point of a record is 0 s of a run, unless `time_zero` sets another."""
     needs_unit: bool = False
     """Whether a record without a unit is refused, because its values are rarely in SI units."""
+    needs_scale: bool = False
+    """Whether a record without a scale is refused, because its values are fractions of full scale."""
 
 
 class Formats(Generic[Read]):
@@ -72,18 +87,26 @@ class Formats(Generic[Read]):
     def __init__(self, content: str) -> None:
         self._endings: Registry[Format[Read]] = Registry(f"ending of a file of {content},")
         self._starts: Registry[Format[Read]] = Registry(f"start of a file of {content},")
+        self._contents: Registry[Format[Read]] = Registry(f"content of a file of {content},")
 
     def __call__(
         self,
         *endings: str,
         starts: Sequence[bytes] = (),
+        contents: bytes = b"",
         starts_at_first: bool = False,
         needs_unit: bool = False,
+        needs_scale: bool = False,
     ) -> Callable[[Read], Read]:
-        """Register a function as the reader of files with an ending, such as ".uff", or with some first bytes."""
+        """Register a function as the reader of files with an ending, such as ".uff", or with some first bytes.
+
+        `contents` is a regular expression that is found in the first bytes of files without an ending of their own.
+        """
 
         def register(read: Read) -> Read:
-            form = Format(read, starts_at_first, needs_unit)
+            form = Format(read, starts_at_first, needs_unit, needs_scale)
+            if contents:
+                self._contents.add(contents.hex(), form, owner_of(read))
             for ending in endings:
                 self._endings.add(ending.lower(), form, owner_of(read))
             for start in starts:
@@ -92,20 +115,29 @@ class Formats(Generic[Read]):
 
         return register
 
-    def of(self, path: str | Path) -> Format[Read] | None:
-        """Return the format of a file; None if neither its ending nor its start is known."""
+    def of(self, path: str | Path, *, has_content: bool = True) -> Format[Read] | None:
+        """Return the format of a file; None if neither its ending nor its start is known.
+
+        Without `has_content` the expressions of `contents` are not tried.
+        """
         load_plugins()
         path = Path(path)
-        if path.suffix.lower() in self._endings:
-            return self._endings[path.suffix.lower()]
-        if not self._starts:
-            return None
+        known = self._endings.get(path.suffix.lower())
+        is_of_tables = known is not None and known.read is read_no_signals
+        if known is not None and (path.suffix.lower() in BINARY_TABLES or not is_of_tables):
+            return known
+        if not self._starts and not self._contents:
+            return known
         try:
             with path.open("rb") as file:
-                start = file.read(max(len(key) // 2 for key in self._starts)).hex()
+                start = file.read(_START)
         except OSError:  # the reader of tables of numbers has the message
-            return None
-        return next((form for key, form in self._starts.items() if start.startswith(key)), None)
+            return known
+        of_start = (form for key, form in self._starts.items() if start.startswith(bytes.fromhex(key)))
+        of_content = (
+            form for key, form in self._contents.items() if has_content and re.search(bytes.fromhex(key), start)
+        )
+        return next(chain(of_start, of_content), known)
 
     @property
     def endings(self) -> Sequence[str]:
@@ -121,7 +153,7 @@ record_reader: Formats[Callable[[Path], Iterable[SignalInFile]]] = Formats("reco
 """Decorator of functions of a path that return the time histories in a file."""
 
 
-@record_reader(".csv", ".txt", ".tsv", ".npy", ".npz", ".mat")
+@record_reader(".csv", ".txt", ".tsv", *BINARY_TABLES)
 def read_no_signals(path: Path) -> list[SignalInFile]:
     """Return nothing: tables of numbers have columns, which the model reads (`rattlebox.model.records`)."""
     return []

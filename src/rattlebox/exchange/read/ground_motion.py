@@ -1,4 +1,4 @@
-"""Ground motions of the PEER database, files with the ending .AT2."""
+"""Ground motions of the PEER database: accelerations (.AT2), displacements (.DT2); velocities (.VT2) are refused."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ _COUNT = re.compile(r"NPTS\s*=\s*(\d+)", re.I)
 _STEP = re.compile(r"DT\s*=\s*(\d*\.?\d*(?:E[-+]?\d+)?)", re.I)
 _OLD_HEADER = re.compile(r"^\s*(\d+)\s+(\d*\.?\d*(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
 _UNIT = re.compile(r"UNITS?\s+OF\s+(\S+)", re.I)
-_OTHER_QUANTITY = re.compile(r"\b(velocity|displacement)\b", re.I)
+_QUANTITY = re.compile(r"\b(accel|velocity|displacement)", re.I)
+_QUANTITIES = {".at2": "accel", ".vt2": "velocity", ".dt2": "displacement"}
+_JOINED = re.compile(r"(?<=\d)(?=-)")
 _WHOLE = "the file as it was downloaded"
 _HEADER = 12  # most lines of the header
 _DIGITS = 12  # from which a number of samples is absurd
@@ -26,7 +28,7 @@ _DIGITS = 12  # from which a number of samples is absurd
 
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
-    """Evenly spaced samples of a ground acceleration.
+    """Evenly spaced samples of a ground acceleration, or of a ground displacement.
 
     Attributes
     ----------
@@ -73,11 +75,20 @@ def read_ground_motion(path: Path) -> GroundMotion:
                 'the ending .csv or .txt, and dt = "0.01 s" for one column of numbers',
             )
         header = "\n".join(lines[:above])
-        other = _OTHER_QUANTITY.search(header)
-        # Velocities and displacements have the same layout, and would be read as accelerations.
-        if other and not re.search(r"\baccel", header, re.I):
+        # The three quantities have the same layout: the header decides, and the ending if it does not say.
+        named = {match.lower() for match in _QUANTITY.findall(header)}
+        kind = path.suffix.lower()
+        quantity = "accel" if "accel" in named else next(iter(sorted(named)), _QUANTITIES.get(kind, "accel"))
+        if quantity == "velocity" or (kind == ".vt2" and quantity == "accel"):
             raise DataError(
-                f"{path} contains a {other[1].lower()}, not an acceleration", "the file with the ending .AT2"
+                f"{path} contains a velocity, not an acceleration",
+                "the file with the ending .AT2, or .DT2 for a motion",
+            )
+        if quantity != _QUANTITIES.get(kind, quantity):
+            raise DataError(
+                f"{path} contains {'a displacement' if quantity == 'displacement' else 'an acceleration'} by its header, "
+                f"but not by its ending {path.suffix}",
+                "the ending .DT2 for displacements, .AT2 for accelerations",
             )
         if not (_is_positive(step) and len(count) < _DIGITS):
             raise DataError(
@@ -88,7 +99,7 @@ def read_ground_motion(path: Path) -> GroundMotion:
         values = []
         for number, line in enumerate(lines[above:], start=above + 1):
             try:
-                values += [float(word) for word in line.split()]
+                values += _row(line)
             except ValueError:
                 if len(values) == int(count):
                     continue  # such as "*** End Data ***"
@@ -110,12 +121,20 @@ def read_ground_motion(path: Path) -> GroundMotion:
         )
 
 
-@record_reader(".at2", needs_unit=True)
+@record_reader(".at2", ".vt2", ".dt2", needs_unit=True)
 def ground_motion_signals(path: Path) -> list[SignalInFile]:
-    """Return the record of an AT2 file."""
+    """Return the record of an AT2 or DT2 file."""
     motion = read_ground_motion(path)
     times = np.arange(motion.values.size, dtype=float) * motion.step
     return [SignalInFile(times, motion.values, unit=motion.unit, lines=motion.lines)]
+
+
+def _row(line: str) -> list[float]:
+    """Return the numbers of a line, also with exponents of Fortran, or without blanks before minus signs."""
+    try:
+        return [float(word) for word in line.split()]
+    except ValueError:
+        return [float(word) for word in _JOINED.sub(" ", line.upper().replace("D", "E")).split()]
 
 
 def _is_positive(text: str) -> bool:
