@@ -85,6 +85,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         modes = _modes_of_toml(modes, path, masses, has_mass_unit=given.get("mass_unit") is not None)
     elif masses is not None:
         modes = replace(modes, modal_masses=masses, mass_unit=1.0)
+    modes = _chosen(modes, given, name)
     with at("file"):
         _check_numbers(modes, path)
     # The first modes only, mass-normalised and in SI units.
@@ -92,6 +93,15 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
     total = modes.frequencies.size
     if count is not None and count > total:
         raise Hint(f"{name} has {total} modes", f"mode_count = {total}", ["mode_count"])
+    bad = min(modes.unfit, default=total + 1)
+    if bad <= (count or total):
+        fit = [number for number in range(1, total + 1) if number not in modes.unfit]
+        advice = (
+            f"mode_numbers = {fit}, which leaves out those that do not fit" if fit else "an export of real normal modes"
+        )
+        raise DataError(
+            f"{path}: mode {bad} at {modes.frequencies[bad - 1]:.4g} Hz: {modes.unfit[bad]}", advice, ["file"]
+        )
     scale, notes = _scale(modes, given, name, path)
     points = _select_points(modes, given, name)
     with at("file"):
@@ -120,6 +130,24 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         )
     size = f"the largest mass-normalised shape is {largest:.4g} kg^-0.5, at {point}"
     return fields, [f"{note}; {size}" for note in (*notes, *modes.notes)]
+
+
+def _chosen(modes: ModesInFile, given: Mapping[str, Any], name: str) -> ModesInFile:
+    """Return the modes that `mode_numbers` names by their numbers in the file; all if it names none."""
+    chosen, total = given.get("mode_numbers"), modes.frequencies.size
+    if chosen is None:
+        return modes
+    if not isinstance(chosen, (list, tuple)) or not chosen:
+        raise Hint("mode_numbers are a list of numbers of modes in the file", "mode_numbers = [1, 3]", ["mode_numbers"])
+    with at("mode_numbers"):
+        numbers = [whole_number(number, "mode_numbers", 1) for number in chosen]
+    if max(numbers) > total or len(set(numbers)) < len(numbers):
+        raise Hint(
+            f"mode_numbers must name each mode once, by numbers from 1 to {total}, which {name} has; got {numbers}",
+            f"mode_numbers = {sorted({min(number, total) for number in numbers})}",
+            ["mode_numbers"],
+        )
+    return modes.chosen(numbers)
 
 
 def _check_numbers(modes: ModesInFile, path: str) -> None:

@@ -333,6 +333,8 @@ class Modal(FilePart, StructurePart):
         default all points, if there are few.
     mode_count
         Number of modes, the first ones of the file; the number of computed modes of a .full file, default 10.
+    mode_numbers
+        Numbers of the modes of the file that are used, from 1 on; default all. Of a modal test, those with real shapes.
     mass_unit
         Unit of mass of the file, "kg", "t" or "g", if the file does not state it; another one than it states is refused.
     modal_masses
@@ -386,6 +388,7 @@ class Modal(FilePart, StructurePart):
     file: str | None = None
     points: dict[str, int | str] | None = Field(default=None, examples=[{"tip": "21 z"}])
     mode_count: Annotated[int, Field(ge=1)] | None = None
+    mode_numbers: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=1)] | None = None
     mass_unit: Literal["kg", "g", "t"] | None = None
     modal_masses: list[PositiveMass] | None = None
 
@@ -437,7 +440,7 @@ class Modal(FilePart, StructurePart):
     @classmethod
     def _from_file(cls, values: Any, handler: Any) -> Self:
         if not isinstance(values, dict) or values.get("file") is None:
-            for name in ("points", "mode_count", "mass_unit", "modal_masses"):
+            for name in ("points", "mode_count", "mode_numbers", "mass_unit", "modal_masses"):
                 if isinstance(values, dict) and values.get(name) is not None:
                     raise Hint(f"{name} are those of a file", 'file = "modes.csv"', [name])
             made: Self = handler(values)
@@ -461,7 +464,7 @@ class Modal(FilePart, StructurePart):
         path
             A table of modes (.csv, .toml), a universal file (.uff, .unv), a result (.rst) or matrices (.full) of Ansys.
         **options
-            points, mode_count, damping_ratio, mass_unit, modal_masses, participation.
+            points, mode_count, mode_numbers (or modes), damping_ratio, mass_unit, modal_masses, participation.
 
         Returns
         -------
@@ -475,6 +478,8 @@ class Modal(FilePart, StructurePart):
         MissingDependency
             If the library that reads it is not installed; the message names the extra, `uff` or `fe`.
         """
+        if "modes" in options:  # the name of a method, so that no field can have it
+            options.setdefault("mode_numbers", options.pop("modes"))
         return cls(**{"file": os.fspath(path), **options})
 
     def notes(self) -> Iterator[str]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +35,8 @@ class ModesInFile:
         Mass that a rigid motion of the base along x, y and z moves, in the file's unit of mass, if the file states it.
     mass_unit
         The file's unit of mass [kg]; None if the file does not state it.
+    unfit
+        Numbers of modes that cannot be used, from 1 on, and why; they are an error unless others are chosen.
     """
 
     frequencies: FloatArray
@@ -44,7 +46,26 @@ class ModesInFile:
     participation: FloatArray | None = None
     total_mass: FloatArray | None = None
     mass_unit: float | None = None
+    unfit: Mapping[int, str] = field(default_factory=dict)
     notes: tuple[str, ...] = field(default=())
+
+    def chosen(self, numbers: Sequence[int]) -> ModesInFile:
+        """Return the modes of these numbers, from 1 on, in this order."""
+        rows = np.asarray(numbers, dtype=int) - 1
+
+        def of(array: FloatArray | None) -> FloatArray | None:
+            # Another number of values is an error of the file, or those of the chosen modes: the model checks it.
+            return array if array is None or len(array) != self.frequencies.size else np.asarray(array)[rows]
+
+        return replace(
+            self,
+            frequencies=self.frequencies[rows],
+            shapes={point: shape[rows] for point, shape in self.shapes.items()},
+            modal_masses=of(self.modal_masses),
+            damping_ratios=of(self.damping_ratios),
+            participation=of(self.participation),
+            unfit={k: self.unfit[number] for k, number in enumerate(numbers, start=1) if number in self.unfit},
+        )
 
 
 def listed(labels: Sequence[str]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,8 +31,13 @@ _QUANTITIES = {
     9: "reaction force", 10: "kinetic energy", 11: "velocity", 12: "acceleration",
 }  # fmt: skip
 _GEOMETRY = (15, 2411, 2420)  # nodes, nodes, coordinate systems
+_TURN = 1e-3  # largest deviation of axes from perpendicular unit vectors
+_LISTED = 12  # modes in a note
 _TAIL = 4096  # bytes that contain the last line
 _LARGEST_IMAGINARY = 1e-6  # largest imaginary part of a real mode, over the largest component
+LARGEST_SCATTER = 10.0
+"""Largest scatter of the phases of a complex mode that is read as a real one [degrees]."""
+_LARGEST_PHASE = 45.0  # largest deviation of modal A from that of a normal mode [degrees]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +91,16 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
 
 
 def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile:
-    """Read the normal modes of a universal file.
+    """Read the normal modes of a universal file; complex modes if it has no others, rotated to the real axis.
 
     Notes
     -----
     The unit of mass is that of force over that of acceleration, l / f kg, with the factors l and f of the set 164 from m and
     N to the units of length and force of the file.
+
+    A complex mode psi of the eigenvalue lambda = -zeta w + i w_d is read as Re(psi exp(-i theta)), with the angle theta of
+    its principal axis, and has the modal mass |a| / (2 w_d): with proportional damping psi is normal, and
+    a = psi^T (2 lambda M + C) psi = 2 i w_d m exp(2 i theta). Its sign depends on the sense of the measured force.
 
     References
     ----------
@@ -104,111 +113,163 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
         # The set 55 may also have stresses, velocities or accelerations of the same modes.
         normal = [block for block in sets if block["type"] == 55 and _is_normal(block)]
         quantities = {int(block["spec_data_type"]) for block in normal}
-        wanted = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
-        chosen = [block for block in sets if block["type"] != 164 and _is_mode(block, wanted)]
-        modes = [_mode(path, block) for block in _without_twins(chosen)]
+        wanted: tuple[int, ...] = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
+        chosen = [block for block in sets if block["type"] != 164 and _is_mode(block, wanted, (_NORMAL_MODES,))]
         others = [_QUANTITIES.get(kind, f"data of type {kind}") for kind in sorted(quantities - set(wanted))]
-        notes = [f"{path.name} does not state the quantity of its modes; displacements are assumed"] * (
-            bool(quantities) and wanted == _UNKNOWN and bool(modes)
-        )
-        # From here on the errors say why there are no modes: other quantities, complex modes, other analyses.
-        if not modes and others:
+        # From here on the errors say why there are no modes: other quantities, other analyses.
+        if not chosen and others:
             raise DataError(
                 f"{path} contains normal modes of {' and '.join(others)}; mode shapes are displacements (type 8)",
                 "an export of displacements",
             )
-        if not modes:
+        is_complex = not chosen
+        if is_complex:  # as most programs of modal tests write them
+            wanted = (_DISPLACEMENT, *_UNKNOWN)
+            chosen = [block for block in sets if block["type"] != 164 and _is_mode(block, wanted, _COMPLEX_MODES)]
+        if not chosen:
             kinds = sorted({int(block["analysis_type"]) for block in sets if block["type"] != 164})
-            scatter = [
-                _phase_scatter(block)
-                for block in sets
-                if block["type"] == 55 and int(block["analysis_type"]) in _COMPLEX_MODES
-            ]
-            if scatter:
-                raise DataError(
-                    f"{path} contains only complex modes, whose phases scatter by up to {max(scatter):.3g} degrees; "
-                    "normal modes are needed",
-                    "an export of real normal modes; they are similar if the phases scatter by less than about 10 degrees",
-                )
             raise DataError(
-                f"{path} contains no normal modes (analysis type 2); its types are {', '.join(map(str, kinds)) or 'none'}",
-                "an export of real normal modes",
+                f"{path} contains no modes of displacements (analysis types 2, 3 and 7); its analysis types are "
+                f"{', '.join(map(str, kinds)) or 'none'}",
+                "an export of mode shapes",
+            )
+        modes = [_complex_mode(path, block) if is_complex else _mode(path, block) for block in _without_twins(chosen)]
+        notes = [f"{path.name} does not state the quantity of its modes; displacements are assumed"] * (
+            bool(quantities) and wanted == _UNKNOWN
+        )
+        if is_complex:
+            scatters = ", ".join(f"{mode.scatter:.2g}" for mode in modes[:_LISTED]) + ", ..." * (len(modes) > _LISTED)
+            notes.append(
+                f"the complex modes of {path.name} are rotated to the real axis; their phases scatter by {scatters} degrees"
             )
         # A structure needs all shapes at the same nodes; files that join several exports may differ.
-        nodes = modes[0][3]
+        nodes = modes[0].nodes
         for number, mode in enumerate(modes, start=1):
-            if not np.array_equal(mode[3], nodes):
+            if not np.array_equal(mode.nodes, nodes):
                 raise DataError(f"{path}: mode {number} has other nodes than mode 1", "the same nodes for all modes")
-        frequencies = np.array([mode[0] for mode in modes])
-        shapes = np.array([mode[4] for mode in modes])
+        frequencies = np.array([mode.frequency for mode in modes])
+        shapes = np.array([mode.shape for mode in modes])
         for what, values in (("frequency", frequencies), ("mode shape", shapes)):
             if not np.isfinite(values).all() or np.abs(values).max(initial=0.0) > 1e30:
                 raise DataError(f"{path}: a {what} is not finite", "the file as it was written: bytes may be swapped")
         if (frequencies < 0).any():
             raise DataError(f"{path}: a frequency is negative", "the file as the program wrote it")
-        masses = np.array([mode[1] for mode in modes])
-        damping = np.array([mode[2] for mode in modes])
+        damping = np.array([mode.damping for mode in modes])
+        axes, assumed = _axes_of_nodes(path, [block for block in every if block["type"] in _GEOMETRY], nodes)
+        for k, R in axes.items():  # rows of R are the axes of the system: u = R^T u_local
+            shapes[:, k] = shapes[:, k] @ R
         return ModesInFile(
             frequencies=frequencies,
             shapes={str(int(node)): shapes[:, k] for k, node in enumerate(nodes)},
-            modal_masses=masses,
+            modal_masses=np.array([mode.mass for mode in modes]),
             damping_ratios=damping if damping.any() else None,
             mass_unit=_mass_unit(path, [block for block in sets if block["type"] == 164], needs_units),
-            notes=tuple(notes) + _check_axes(path, [block for block in every if block["type"] in _GEOMETRY], nodes),
+            unfit={number: mode.unfit for number, mode in enumerate(modes, start=1) if mode.unfit},
+            notes=(*notes, *assumed),
         )
 
 
-def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str, ...]:
-    """Return a note if a node has displacements along the axes of a system that the file does not define."""
-    turned: dict[int, str] = {}
-    defined = {0, 1}  # 1 is the global Cartesian system of most programs
+def _axes_of_nodes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[dict[int, FloatArray], tuple[str, ...]]:
+    """Return the axes, as rows, of the nodes with own ones, and a note if the file does not define those of a node."""
+    systems: dict[int, tuple[int, FloatArray]] = {0: (0, np.eye(3))}
     for block in sets:
         if block["type"] == 2420:
             for label, kind, matrix in zip(
                 block["CS_sys_labels"], block["CS_types"], block["CS_matrices"], strict=True
             ):
-                defined.add(int(label))
-                if int(kind) != 0 or not np.allclose(np.asarray(matrix)[:3], np.eye(3), atol=1e-6):
-                    turned[int(label)] = "Cartesian, with turned axes" if int(kind) == 0 else "not Cartesian"
+                system = int(kind), np.asarray(matrix, dtype=float)[:3]
+                before = systems.get(int(label), system)
+                if label and (before[0] != system[0] or not np.allclose(before[1], system[1], atol=1e-6)):
+                    raise DataError(
+                        f"{path} defines the coordinate system {int(label)} twice", "one definition, or one part"
+                    )
+                systems[int(label)] = system
     used = {
         int(node): int(system)
         for block in sets
         if block["type"] != 2420
         for node, system in zip(block["node_nums"], block["disp_cs"], strict=True)
     }
-    # Displacements along turned axes would be mixed with those along global ones. Only nodes with modes matter.
+    turned: dict[int, FloatArray] = {}
     undefined: dict[int, int] = {}
-    for node in map(int, nodes):
-        system = used.get(node, 0)
-        if system in turned:
+    for k, node in enumerate(map(int, nodes)):
+        label = used.get(node, 0)
+        if label not in systems:
+            if label != 1:  # the global Cartesian system of most programs
+                undefined.setdefault(label, node)
+            continue
+        kind, R = systems[label]
+        where = f"{path}: node {node} has displacements in the coordinate system {label}, which"
+        if kind != 0:
             raise DataError(
-                f"{path}: node {node} has displacements in the coordinate system {system}, which is {turned[system]}",
-                "an export with displacements along the global axes x, y and z",
+                f"{where} is not Cartesian",
+                "an export with displacements along Cartesian axes, such as the global ones",
             )
-        if system not in defined:
-            undefined.setdefault(system, node)
+        if R.shape != (3, 3) or not np.allclose(R @ R.T, np.eye(3), atol=_TURN) or np.linalg.det(R) < 0:
+            raise DataError(f"{where} has axes that are not perpendicular unit vectors", "the file as it was written")
+        if not np.array_equal(R, np.eye(3)):
+            turned[k] = R
     if not undefined:
-        return ()
-    system, node = next(iter(undefined.items()))
-    return (
-        f"{path.name} does not define the coordinate system {system} of the displacements of node {node}; the global axes "
+        return turned, ()
+    label, node = next(iter(undefined.items()))
+    return turned, (
+        f"{path.name} does not define the coordinate system {label} of the displacements of node {node}; the global axes "
         "are assumed",
     )
 
 
-def _phase_scatter(block: dict[str, Any]) -> float:
-    """Return the RMS deviation of the phases of a complex mode from a line through zero, weighted by amplitude [degrees].
+class _Mode(NamedTuple):
+    """A mode of a set; `unfit` says why a complex mode is not read as a real one, "" if it is."""
 
-    The line is the principal axis of the components z in the complex plane, at half the phase of sum(z^2).
-    """
-    z = np.concatenate([np.asarray(block[f"r{k}"], dtype=complex) for k in (1, 2, 3)])
-    z = z * np.exp(-0.5j * np.angle(np.sum(z**2)))
+    frequency: float
+    mass: float
+    damping: float
+    nodes: Any
+    shape: Any
+    scatter: float = 0.0
+    unfit: str = ""
+
+
+def _principal_angle(z: Any) -> float:
+    """Return the angle of the principal axis of complex components, half the phase of sum(z^2) [rad]."""
+    return 0.5 * float(np.angle(np.sum(np.square(z))))
+
+
+def _phase_scatter(z: Any) -> float:
+    """Return the RMS deviation of phases from the principal axis, weighted by amplitude [degrees]."""
+    z = np.asarray(z) * np.exp(-1j * _principal_angle(z))
     return float(np.degrees(np.arctan2(np.linalg.norm(z.imag), np.linalg.norm(z.real))))
+
+
+def _complex_mode(path: Path, block: dict[str, Any]) -> _Mode:
+    """Return the real mode that is closest to a complex one."""
+    nodes, z = _nodes_and_shape(path, block)
+    if block["type"] == 55:
+        eigenvalue, a = complex(block["eig"]), complex(block["modal_a"])
+    else:
+        values = [float(block[f"record13_field{k}"]) for k in range(1, 5)]
+        eigenvalue, a = complex(*values[:2]), complex(*values[2:])
+    angle, scatter = _principal_angle(z), _phase_scatter(z)
+    omega, decay = abs(eigenvalue.imag), -eigenvalue.real
+    unfit = ""
+    if scatter > LARGEST_SCATTER:
+        unfit = f"its phases scatter by {scatter:.3g} degrees; at most {LARGEST_SCATTER:g} are read as a real mode"
+    elif not omega > 0 or decay < 0:
+        unfit = f"its eigenvalue is {eigenvalue.real:.4g} {eigenvalue.imag:+.4g}i rad/s; a damped oscillation is needed"
+    elif a:
+        # A quarter of a turn apart, modal A belongs to another quantity, such as a velocity, or to another scale.
+        phase = float(np.degrees(np.angle((a * np.exp(-2j * angle) / 1j) ** 2))) / 2
+        if abs(phase) > _LARGEST_PHASE:
+            unfit = f"its modal A is {phase:.3g} degrees from that of a normal mode of displacements"
+    mass = abs(a) / (2 * omega) if omega > 0 else 0.0
+    size = abs(eigenvalue)
+    damping = decay / size if size > 0 and not unfit else 0.0
+    return _Mode(size / (2 * np.pi), mass, damping, nodes, np.real(z * np.exp(-1j * angle)), scatter, unfit)
 
 
 def _without_twins(sets: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the sets without those of type 55 if those of type 2414 are the same modes."""
-    of_55 = [float(block["freq"]) for block in sets if block["type"] == 55]
+    of_55 = [float(block["freq"]) for block in sets if block["type"] == 55 and "freq" in block]
     of_2414 = [float(block["record12_field2"]) for block in sets if block["type"] == 2414]
     if of_2414 and len(of_55) == len(of_2414) and np.allclose(of_55, of_2414, rtol=1e-4):
         return [block for block in sets if block["type"] == 2414]
@@ -219,38 +280,46 @@ def _is_normal(block: dict[str, Any]) -> bool:
     return int(block["analysis_type"]) == _NORMAL_MODES
 
 
-def _is_mode(block: dict[str, Any], wanted: tuple[int, ...]) -> bool:
-    """Return whether a set has a mode shape; `wanted` are the types of data in the set 55."""
+def _is_mode(block: dict[str, Any], wanted: tuple[int, ...], analyses: tuple[int, ...]) -> bool:
+    """Return whether a set has a mode shape of these analyses; `wanted` are the types of data in the set 55."""
+    if int(block["analysis_type"]) not in analyses:
+        return False
     if block["type"] == 55:
-        return _is_normal(block) and int(block["spec_data_type"]) in wanted
-    at_nodes = int(block.get("dataset_location", 1)) == 1
-    return int(block["analysis_type"]) == _NORMAL_MODES and int(block["result_type"]) == _DISPLACEMENT and at_nodes
+        return int(block["spec_data_type"]) in wanted
+    return int(block["result_type"]) == _DISPLACEMENT and int(block.get("dataset_location", 1)) == 1
 
 
-def _mode(path: Path, block: dict[str, Any]) -> tuple[float, float, float, Any, Any]:
-    """Return frequency, modal mass, damping ratio, nodes and shape of a set."""
+def _nodes_and_shape(path: Path, block: dict[str, Any]) -> tuple[Any, Any]:
+    """Return the nodes and the translations of a set, (n, 3)."""
+    nodes = np.asarray(block["node_nums"])
     if block["type"] == 55:
         if int(block["n_data_per_node"]) not in (3, 6):
             raise DataError(
                 f"{path}: a mode has {block['n_data_per_node']} values at a node; 3 or 6 are needed",
                 "translations x, y, z",
             )
-        nodes = np.asarray(block["node_nums"])
         shape = np.array([block[f"r{k}"] for k in (1, 2, 3)]).T
-        values = block["freq"], block["modal_m"], block["modal_damp_vis"]
     else:
-        nodes = np.asarray(block["node_nums"])
         table = np.atleast_2d(np.asarray(block["data_at_node"], dtype=complex))
         if int(block["data_type"]) in (5, 6) and not np.iscomplexobj(block["data_at_node"]):
             table = table[:, 0::2] + 1j * table[:, 1::2]
         shape = table[:, :3]
-        values = block["record12_field2"], block["record12_field4"], block["record12_field5"]
     if shape.shape != (len(nodes), 3):
         raise DataError(f"{path}: a mode has {shape.shape} components for {len(nodes)} nodes", "the complete file")
+    return nodes, shape
+
+
+def _mode(path: Path, block: dict[str, Any]) -> _Mode:
+    """Return the normal mode of a set."""
+    nodes, shape = _nodes_and_shape(path, block)
+    if block["type"] == 55:
+        values = block["freq"], block["modal_m"], block["modal_damp_vis"]
+    else:
+        values = block["record12_field2"], block["record12_field4"], block["record12_field5"]
     if np.abs(np.imag(shape)).max(initial=0.0) > _LARGEST_IMAGINARY * np.abs(shape).max(initial=0.0):
         raise DataError(f"{path}: the mode at {float(values[0]):.6g} Hz is complex", "an export of real normal modes")
     frequency, mass, damping = (float(value) for value in values)
-    return frequency, mass, damping, nodes, np.real(shape)
+    return _Mode(frequency, mass, damping, nodes, np.real(shape))
 
 
 def _mass_unit(path: Path, sets: list[dict[str, Any]], is_needed: bool) -> float | None:
