@@ -21,7 +21,7 @@ from pydantic import (
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.frozen import complete
-from rattlebox.exchange.read import ground_motion, strong_motion, universal  # noqa: F401  (they register their readers)
+from rattlebox.exchange.read import ground_motion, measurement_files, strong_motion, universal  # noqa: F401  (they register)
 from rattlebox.exchange.read.formats import Format, read_no_signals, record_reader, signals_in
 
 from .base import FilePart
@@ -301,6 +301,11 @@ class Record(FilePart, Sampled):
                 raise Hint("a file of time histories has no rows", "columns = [1]", ["columns"])
             if form and step is not None:
                 raise Hint(f"{path} states its time step", "leave dt out")
+            if form and form.needs_scale and (values.get("scale") is None or wanted is None):
+                raise DataError(
+                    f"{path} states no calibration: its numbers are fractions of full scale",
+                    'unit = "g" and scale = 50, if full scale is 50 g',
+                )
             record = _signal(existing(path), form, columns, wanted) if form else read_columns(path, columns, step)
         name = " ".join(Path(path).name.split())
         # The unit of the file has priority: that of the user must agree with it. A table without any unit has the unit

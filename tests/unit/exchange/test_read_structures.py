@@ -529,6 +529,26 @@ def test_records_of_universal_files() -> None:
     assert np.iscomplexobj(read_functions(UFF / "frf_58.uff")[0].values)
 
 
+def test_functions_that_are_no_record_are_named(tmp_path: Path) -> None:
+    """The message names the types of functions; a general function over frequency was read as times, since all had times."""
+    with pytest.raises(rb.DataError, match="no time history, but 1 x frequency response function"):
+        rb.Record.from_file(UFF / "frf_58.uff")
+    lines = (UFF / "time_history_58.uff").read_text(encoding="latin-1").splitlines(keepends=True)
+    first = next(k for k, line in enumerate(lines) if line.strip() == "58")
+    for kind, over, message in (
+        (9, 18, "power spectral density"),
+        (6, 18, "coherence"),
+        (0, 18, "general function"),
+        (99, 17, "function of type 99"),
+    ):
+        edit = [*lines]
+        edit[first + 6] = f"{kind:5d}" + edit[first + 6][5:]
+        edit[first + 8] = f"{over:10d}" + edit[first + 8][10:]
+        (tmp_path / "a.uff").write_text("".join(edit), encoding="latin-1")
+        with pytest.raises(rb.DataError, match=f"no time history, but 1 x {message}"):
+            rb.Record.from_file(tmp_path / "a.uff")
+
+
 def edited(content: bytes, old: bytes, new: bytes) -> bytes:
     """Replace the first occurrence of `old`, which must exist."""
     assert old in content

@@ -33,6 +33,16 @@ _QUANTITIES = {
 _GEOMETRY = (15, 2411, 2420)  # nodes, nodes, coordinate systems
 _TURN = 1e-3  # largest deviation of axes from perpendicular unit vectors
 _LISTED = 12  # modes in a note
+_FUNCTIONS = {
+    0: "general function", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 4: "frequency response function",
+    5: "transmissibility", 6: "coherence", 7: "auto correlation", 8: "cross correlation", 9: "power spectral density",
+    10: "energy spectral density", 11: "probability density", 12: "spectrum", 13: "cumulative frequency distribution",
+    14: "peaks and valleys", 15: "stress cycles", 16: "strain cycles", 17: "orbit", 18: "mode indicator function",
+    19: "force pattern", 20: "partial power", 21: "partial coherence", 22: "eigenvalue", 23: "eigenvector",
+    24: "shock response spectrum", 25: "impulse response filter", 26: "multiple coherence", 27: "order function",
+}  # fmt: skip
+"""Names of the types of functions in the set 58."""
+_OVER_FREQUENCY = 18  # type of data of an abscissa
 _TAIL = 4096  # bytes that contain the last line
 _LARGEST_IMAGINARY = 1e-6  # largest imaginary part of a real mode, over the largest component
 LARGEST_SCATTER = 10.0
@@ -59,6 +69,7 @@ class Function:
     unit: str
     source_unit: str = ""
     quantities: tuple[int, int] = (0, 0)
+    over: int = 0
 
 
 def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()) -> list[dict[str, Any]]:
@@ -378,6 +389,7 @@ def read_functions(path: Path) -> list[Function]:
                     unit=_label(block, "ordinate"),
                     source_unit=_label(block, "orddenom"),
                     quantities=(int(block["ordinate_spec_data_type"]), int(block["orddenom_spec_data_type"])),
+                    over=int(block.get("abscissa_spec_data_type", 0)),
                 )
             )
         return functions
@@ -386,9 +398,16 @@ def read_functions(path: Path) -> list[Function]:
 @record_reader(".uff", ".unv", ".uf", starts_at_first=True)
 def time_histories(path: Path) -> list[SignalInFile]:
     """Return the time histories among the functions of a universal file."""
-    functions = [each for each in read_functions(path) if each.kind in (0, 1) and not np.iscomplexobj(each.values)]
+    every = read_functions(path)
+    functions = [
+        each
+        for each in every
+        if each.kind in (0, 1) and not np.iscomplexobj(each.values) and each.over != _OVER_FREQUENCY
+    ]
     if not functions:
-        raise DataError(f"{path} contains no time history", "a function of type 1 in a set 58")
+        kinds = [_FUNCTIONS.get(each.kind, f"function of type {each.kind}") for each in every]
+        found = ", ".join(f"{kinds.count(kind)} x {kind}" for kind in dict.fromkeys(kinds))
+        raise DataError(f"{path} contains no time history, but {found}", "a function of type 1, over time, in a set 58")
     return [
         SignalInFile(each.abscissa, np.asarray(each.values, dtype=float), each.name, each.unit) for each in functions
     ]
