@@ -36,6 +36,8 @@ from rattlebox.model.friction import Mindlin as Mindlin
 from rattlebox.model.friction import Rolling as Rolling
 from rattlebox.model.harmonics import Harmonic as Harmonic
 from rattlebox.model.harmonics import SineSweep as SineSweep
+from rattlebox.model.inspect_file import FileContents as FileContents
+from rattlebox.model.inspect_file import inspect as inspect
 from rattlebox.model.materials import Material as Material
 from rattlebox.model.materials import materials as materials
 from rattlebox.model.matrices import Matrices as Matrices

@@ -141,6 +141,18 @@ def run(
     run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, replace=replace)
 
 
+@_command(example="inspect quake.csv")
+def inspect(
+    ctx: typer.Context, file: Annotated[Path, typer.Argument(help="File of records or modes, of any program.")]
+) -> None:
+    """Show what a file of another program contains, what would be assumed, and the lines that use it."""
+    _check_single(ctx, file)
+    from rattlebox.model.case import Case  # noqa: F401  (a message about one part names the fields of others)
+    from rattlebox.model.inspect_file import inspect
+
+    typer.echo(printable(str(inspect(file))))
+
+
 @_command(example="sweep study.toml -o study.zarr --workers 4")
 def sweep(
     ctx: typer.Context,

@@ -105,6 +105,11 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
     return None, []
 
 
+def is_table(form: Format[Callable[..., Any]]) -> bool:
+    """Return whether a format is a table of numbers, whose columns the model reads."""
+    return form.read is read_no_signals
+
+
 def _signal_format(path: str, *, is_table: bool = False) -> Format[Callable[..., Any]] | None:
     """Return the format of a file of time histories; None for tables of numbers.
 

@@ -353,6 +353,53 @@ def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) ->
     return check_finite(array.ravel(), f"{file}: {name}"), ()
 
 
+def columns_of_text(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the name of each channel of a table of text, and the fields of a record that read it; dt None is unknown."""
+    text = _parse_text(file)
+    step: dict[str, Any] = {} if text.step else {"dt": None}
+    if text.width == 1 or text.goes_by_rows():
+        yield "samples", {**step, "columns": "rows"} if text.width > 1 else step
+        return
+    first = 1 if text.rises() else 0
+    for index in range(first, text.width):
+        name = text.labels[index]
+        by_name = text.is_named and text.labels.count(name) == 1 and name != "rows"
+        yield (
+            name if by_name else f"column {index + 1}",
+            ({"columns": name} if by_name else {"columns": (1, index + 1)})
+            if first
+            else {"dt": None, "columns": (name if by_name else index + 1,)},
+        )
+
+
+def columns_of_arrays(file: Path, arrays: dict[str, Array]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the name of each channel of arrays, and the fields of a record that read it; dt None is unknown."""
+    if not arrays:
+        raise DataError(f"{file} contains no numbers", _ANY)
+    if len(arrays) == 1:
+        ((name, table),) = arrays.items()
+        width = table.shape[1] if table.ndim == 2 and table.shape[0] > 1 else 1
+        if width == 1:
+            yield name or "samples", {"dt": None}
+        elif _has_times(table) and table.shape[1] > 2:
+            yield name or "values", {}
+        else:
+            rises = _increases(table[:_PROBED])
+            for index in range(1 if rises else 0, width):
+                fields = {"columns": (1, index + 1)} if rises else {"dt": None, "columns": (index + 1,)}
+                yield f"column {index + 1}", fields
+        return
+    for name, array in arrays.items():
+        is_time = name.lower().rpartition(".")[2] in _TIMES
+        if is_time or array.size < 2 or not (_has_times(array) or array.size == max(array.shape)):
+            continue
+        try:
+            _select_arrays(file, arrays, (name,))
+            yield name, {"columns": name}
+        except DataError:
+            yield name, {"dt": None, "columns": (name,)}
+
+
 def as_columns(value: Any, count: int = 2) -> Any:
     """Return `count` columns as a tuple; None and "rows" are returned unchanged."""
     if value is None or (isinstance(value, str) and value == "rows"):

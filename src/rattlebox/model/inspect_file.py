@@ -1,0 +1,230 @@
+"""Previews of files: what a record or modes read from a file would be, with lines of TOML and Python that read it."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rattlebox._util.exceptions import DataError, RattleboxError
+from rattlebox.exchange.read.formats import modes_reader, record_reader, signals_in
+from rattlebox.exchange.read.guarded import errors_of
+
+from .files import BINARY, existing, read_arrays
+from .recorded import Record, is_table
+from .records import columns_of_arrays, columns_of_text
+from .structures import Modal
+from .units import STANDARD_GRAVITY
+
+_ASSUMED_STEP, _ASSUMED_UNIT, _ASSUMED_DAMPING = "0.01 s", "m/s^2", 0.01
+_LISTED = 12
+_HEAD = 1000  # bytes of a table that contain its headings
+_EVEN = 1e-3  # relative difference of time steps that count as the same
+
+
+@dataclass(frozen=True)
+class FileContents:
+    """What is in a file; its text is the preview.
+
+    Attributes
+    ----------
+    file
+        Path of the file.
+    content
+        What the file is, such as "a record".
+    lines
+        Channels with unit, samples, sampling and peak, or modes with their frequencies.
+    notes
+        What is assumed.
+    toml, python
+        Lines that read the first channel, or the modes; "" if there is none.
+    """
+
+    file: str
+    content: str
+    lines: tuple[str, ...]
+    notes: tuple[str, ...]
+    toml: str
+    python: str
+
+    def __str__(self) -> str:
+        parts = [f"{self.file}: {self.content}", *(f"  {line}" for line in self.lines)]
+        parts += [f"  note: {note}" for note in self.notes]
+        if self.python:
+            parts += ["", "In a case file:", "", self.toml, "", "In Python:", "", self.python]
+        return "\n".join(parts)
+
+
+def inspect(file: str | os.PathLike[str]) -> FileContents:
+    r"""Return a preview of a file of another program: channels or modes, what is assumed, and how to use it.
+
+    Parameters
+    ----------
+    file
+        A file with records (text, MAT, NPY, NPZ, AT2, universal file, ...) or modes.
+
+    Returns
+    -------
+    FileContents
+        The content; `print` shows it.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> with open("push.csv", "w") as file:
+    ...     _ = file.write("time (ms),force (kN)\n0,0\n1,1.5\n2,0.5\n")
+    >>> print(rb.inspect("push.csv").python)
+    rb.Record.from_file("push.csv", columns="force (kN)")
+    """
+    path, given = existing(file), os.fspath(file)
+    problem: RattleboxError | None = None
+    # Universal files and tables may have records or modes: the first that can be read.
+    with errors_of(path, "a file"), path.open("rb") as stream:
+        is_table_of_modes = b"frequenc" in stream.read(_HEAD).lower() and path.suffix.lower() in (
+            ".csv",
+            ".txt",
+            ".tsv",
+        )
+    for view in (_modes, _records) if is_table_of_modes else (_records, _modes):
+        try:
+            if found := view(path, given):
+                return found
+        except RattleboxError as error:
+            is_other = problem is not None and "contains no set 58" in str(problem)  # the modes have the better reason
+            problem = error if is_other or is_table_of_modes else problem or error
+    raise problem or DataError(
+        f"{path}: files with the ending {path.suffix.lower()!r} have neither records nor modes that are read",
+        ", ".join(sorted({*record_reader.endings, *modes_reader.endings})),
+    )
+
+
+def _records(path: Path, given: str) -> FileContents | None:
+    if path.suffix.lower() == ".toml":
+        return None
+    form = record_reader.of(path)
+    if form is None and modes_reader.of(path) is not None:
+        return None
+    if form is None or is_table(form):
+        kind = "a file of arrays" if path.suffix.lower() in BINARY else "a table of text"
+        with errors_of(path, "columns of numbers"):
+            ways = list(
+                columns_of_arrays(path, read_arrays(path)) if path.suffix.lower() in BINARY else columns_of_text(path)
+            )
+    else:
+        kind = "a file of time histories"
+        signals = signals_in(path, form)
+        ways = [(signal.name or f"number {k}", {"columns": (k,)}) for k, signal in enumerate(signals, start=1)]
+        ways = [(ways[0][0], {})] if len(ways) == 1 else ways
+    # Each way to read a channel is tried: what is shown is what a case would use.
+    lines: list[str] = []
+    first: tuple[Record, dict[str, Any], list[str]] | None = None
+    problem: RattleboxError | None = None
+    for name, options in ways[:_LISTED]:
+        assumed: list[str] = []
+        try:
+            record = Record(file=str(path), **_with_step(options, assumed))
+            options = _with_step(options, [])
+            if record.unit is None:
+                options = {**options, "unit": _ASSUMED_UNIT}
+                assumed.append(
+                    f"unit = {_ASSUMED_UNIT!r}, since the file states none that is known: set that of the values"
+                )
+                record = Record(file=str(path), **options)
+        except RattleboxError as error:
+            problem = problem or error
+            lines.append(f"{name}: cannot be read: {' '.join(error.complaint.split())[:200]}")
+            continue
+        lines.append(f"{name}: {_described(record)}")
+        first = first or (record, options, assumed)
+    if len(ways) > _LISTED:
+        lines.append(f"... and {len(ways) - _LISTED} more")
+    if first is None:
+        if problem is not None:
+            raise problem
+        return None
+    record, options, assumed = first
+    table = {"m/s^2": "base", "m": "motion"}.get(record.unit or "", "load")
+    fields = {"file": given, **options}
+    toml = [f"[{table}]", 'kind = "record"', *(f"{key} = {_toml(value)}" for key, value in fields.items())]
+    python = "".join(f", {key}={_python(value)}" for key, value in options.items())
+    return FileContents(
+        given,
+        f"{kind} with {len(ways)} {'channel' if len(ways) == 1 else 'channels'}",
+        tuple(lines),
+        (*(f"assumed: {text}" for text in assumed), *record.notes()),
+        "\n".join(toml),
+        f"rb.Record.from_file({json.dumps(given, ensure_ascii=False)}{python})",
+    )
+
+
+def _with_step(options: dict[str, Any], assumed: list[str]) -> dict[str, Any]:
+    """Return options with a time step in place of an unknown one."""
+    if options.get("dt", "") is not None:
+        return options
+    assumed.append(f"dt = {_ASSUMED_STEP!r}, since the file states no time between samples: set it")
+    return {**options, "dt": _ASSUMED_STEP}
+
+
+def _described(record: Record) -> str:
+    """Return samples, sampling and peak of a record."""
+    steps = np.diff(record.times)
+    step = float(steps.mean())
+    is_even = float(np.ptp(steps)) <= _EVEN * step
+    sampling = f"every {step:.6g} s ({1 / step:.6g} Hz)" if is_even else f"at uneven steps of {step:.4g} s in the mean"
+    peak = f"{record.peak:.4g} {record.unit}"
+    if record.unit == "m/s^2":
+        peak += f" = {record.peak / STANDARD_GRAVITY:.4g} g"
+    if record.unit == "m":
+        peak += f" = {1e3 * record.peak:.4g} mm"
+    return f"{record.times.size} samples {sampling}, {record.times[0]:.6g} s to {record.times[-1]:.6g} s, peak {peak}"
+
+
+def _modes(path: Path, given: str) -> FileContents | None:
+    if modes_reader.of(path) is None:
+        return None
+    options: dict[str, Any] = {}
+    assumed = []
+    try:
+        modal = Modal.from_file(str(path))
+    except RattleboxError as error:
+        if "states no damping" not in str(error):
+            raise
+        options = {"damping_ratio": _ASSUMED_DAMPING}
+        assumed.append(f"assumed: damping_ratio = {_ASSUMED_DAMPING}, since the file states no damping")
+        modal = Modal.from_file(str(path), **options)
+    frequencies = ", ".join(f"{frequency:.5g}" for frequency in modal.frequencies[:_LISTED])
+    points = list(modal.shapes)
+    lines = [
+        f"{len(modal.frequencies)} modes: {frequencies}{', ...' if len(modal.frequencies) > _LISTED else ''} Hz",
+        f"{len(points)} points: {', '.join(points[:_LISTED])}{', ...' if len(points) > _LISTED else ''}",
+    ]
+    fields = {"file": given, **options}
+    toml = ["[structure]", 'kind = "modal"', *(f"{key} = {_toml(value)}" for key, value in fields.items())]
+    python = "".join(f", {key}={value!r}" for key, value in options.items())
+    return FileContents(
+        given,
+        "modes of a structure",
+        tuple(lines),
+        tuple(assumed),
+        "\n".join(toml),
+        f"rb.Modal.from_file({json.dumps(given, ensure_ascii=False)}{python})",
+    )
+
+
+def _toml(value: Any) -> str:
+    return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
+
+
+def _python(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(_toml(item) for item in value)}{',' if len(value) == 1 else ''})"
+    return _toml(value)

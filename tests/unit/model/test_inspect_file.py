@@ -1,0 +1,85 @@
+"""Previews of files: the numbers that they show, and the lines of TOML and Python that they offer."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.io
+
+import rattlebox as rb
+
+TIMES = 0.02 * np.arange(21)
+VALUES = np.round(3.5 * np.sin(7 * TIMES), 4)
+MODES = 'frequencies = ["3.5 Hz", "9 Hz"]\n[shapes]\ntip = [0.4, -0.2]\nroot = [0.1, 0.3]\n'
+
+
+def written(folder: Path) -> dict[str, tuple[str, ...]]:
+    """Write files of several kinds; return what the preview of each must contain."""
+    pairs = list(zip(TIMES.tolist(), VALUES.tolist(), strict=True))
+    numbers = "".join(f"{t:.2f};{a:.4f};{2 * a:.4f}\n" for t, a in pairs)
+    (folder / "comma.csv").write_text("t (s);a x (m/s^2);disp (mm)\n" + numbers.replace(".", ","), "latin-1")
+    (folder / "bare.txt").write_text("".join(f"{a}\n" for _, a in pairs))
+    (folder / "rows.txt").write_text(
+        "NPTS= 21, DT= .02 SEC\n" + " ".join(map(str, VALUES[:11])) + "\n" + " ".join(map(str, VALUES[11:]))
+    )
+    (folder / "force.txt").write_text("# t (s) F (kN)\n" + "".join(f"{t} {a}\n" for t, a in pairs))
+    scipy.io.savemat(folder / "two.mat", {"ch_1": np.array(pairs), "ch_2": np.array(pairs)})
+    np.save(folder / "table.npy", np.array(pairs))
+    np.save(folder / "samples.npy", VALUES)
+    at2 = "QUAKE\nSITE\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 21, DT= .0200 SEC\n"
+    (folder / "quake.at2").write_text(at2 + "".join(f"{a}\n" for _, a in pairs))
+    (folder / "modes.toml").write_text(MODES)
+    peak = float(np.abs(VALUES).max())
+    return {
+        "comma.csv": ("2 channels", "a x (m/s^2): 21 samples every 0.02 s (50 Hz)", f"{peak:.4g} m/s^2", "decimal mark"),
+        "bare.txt": ("1 channel", "dt = '0.01 s', since the file states no time", "unit = 'm/s^2'"),
+        "rows.txt": ("21 samples every 0.02 s", "unit = 'm/s^2'"),
+        "force.txt": (f"peak {1e3 * peak:.4g} N", "[load]"),
+        "two.mat": ("2 channels", "ch_1", "ch_2"),
+        "table.npy": ("1 channel", "every 0.02 s"),
+        "samples.npy": ("21 samples", "dt = '0.01 s'"),
+        "quake.at2": (f"= {peak:.4g} g", "every 0.02 s"),
+        "modes.toml": ("2 modes: 3.5, 9 Hz", "2 points: ", "damping_ratio = 0.01, since"),
+    }  # fmt: skip
+
+
+NAMES = [
+    "comma.csv",
+    "bare.txt",
+    "rows.txt",
+    "force.txt",
+    "two.mat",
+    "table.npy",
+    "samples.npy",
+    "quake.at2",
+    "modes.toml",
+]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_preview_and_its_lines(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A preview shows channels, sampling, peak and assumptions; its lines of TOML and Python are executed and agree."""
+    monkeypatch.chdir(tmp_path)
+    expected = written(tmp_path)[name]
+    contents = rb.inspect(name)
+    for words in expected:
+        assert words in str(contents)
+    part = eval(contents.python, {"rb": rb})
+    ((table, fields),) = tomllib.loads(contents.toml).items()
+    kinds: dict[str, Any] = {"record": rb.Record, "modal": rb.Modal}
+    assert kinds[fields.pop("kind")](**fields) == part
+    assert table == {"m/s^2": "base", "N": "load"}.get(getattr(part, "unit", ""), "structure")
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"words only\n", b"\x00\x01\x02" * 40, b"t;F\n0,5;1\n0,7;1.5\n0,8;1,5\n0,9;2,5\n"]
+)
+def test_files_without_numbers(content: bytes, tmp_path: Path) -> None:
+    """A file without a channel raises the error of its reader."""
+    (tmp_path / "a.csv").write_bytes(content)
+    with pytest.raises(rb.DataError, match=r"(?s)a\.csv.*try:"):
+        rb.inspect(tmp_path / "a.csv")
