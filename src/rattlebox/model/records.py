@@ -20,6 +20,7 @@ import numpy as np
 
 from rattlebox._util.exceptions import DataError
 from rattlebox.exchange.read.guarded import errors_of
+from rattlebox.exchange.read.sheets import SHEETS, sheet_lines
 
 from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
@@ -578,7 +579,7 @@ def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] 
     The names are the last line above the data with as many cells and no number in them, or an earlier one (above a line of
     units) that contains more of the known or requested names.
     """
-    quick = _read_quickly(file)
+    quick = None if file.suffix.lower() in SHEETS else _read_quickly(file)
     text = quick and _layout(file, *quick, known, requested)
     if text and _is_of_numbers(text.rows):
         return text
@@ -882,7 +883,8 @@ def _decoded(file: Path, content: bytes) -> str:
 def _split_lines(file: Path) -> tuple[list[_Row], Dialect]:
     """Return the lines that are not empty, and how they are written."""
     try:
-        text = _decoded(file, file.read_bytes()).splitlines()
+        is_sheet = file.suffix.lower() in SHEETS
+        text = sheet_lines(file) if is_sheet else _decoded(file, file.read_bytes()).splitlines()
     except OSError as error:
         raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
     dialect = dialect_of(text, any('"' in line for line in text))
