@@ -305,6 +305,8 @@ FMU_EXPORT int fmi3Terminate(void* i) { return terminate(i); }
 FMU_EXPORT int fmi3Reset(void* i) { return reset(i); }
 FMU_EXPORT int fmi3GetFloat64(void* i, References r, Size n, double* v, Size) { return get(i, r, n, v); }
 FMU_EXPORT int fmi3SetFloat64(void* i, References r, Size n, const double* v, Size) { return set(i, r, n, v); }
+FMU_EXPORT int fmi3GetInt32(void* i, References r, Size n, std::int32_t* v, Size) { return choice(i, r, n, v); }
+FMU_EXPORT int fmi3SetInt32(void* i, References r, Size n, const std::int32_t* v, Size) { return choose(i, r, n, v); }
 FMU_EXPORT int fmi3GetInt64(void* i, References r, Size n, std::int64_t* v, Size) { return choice(i, r, n, v); }
 FMU_EXPORT int fmi3SetInt64(void* i, References r, Size n, const std::int64_t* v, Size) { return choose(i, r, n, v); }
 #define NO_VARIABLES(kind, type) \
@@ -315,7 +317,6 @@ NO_VARIABLES(Int8, std::int8_t)
 NO_VARIABLES(UInt8, std::uint8_t)
 NO_VARIABLES(Int16, std::int16_t)
 NO_VARIABLES(UInt16, std::uint16_t)
-NO_VARIABLES(Int32, std::int32_t)
 NO_VARIABLES(UInt32, std::uint32_t)
 NO_VARIABLES(UInt64, std::uint64_t)
 NO_VARIABLES(Boolean, bool)

@@ -87,7 +87,7 @@ class Unit:
         for name, value in values.items():
             reference = [self.reference[name]]
             if name == "input_time":
-                (self.fmu.setInteger if self.is_2 else self.fmu.setInt64)(reference, [int(value)])
+                (self.fmu.setInteger if self.is_2 else self.fmu.setInt32)(reference, [int(value)])
             else:
                 (self.fmu.setReal if self.is_2 else self.fmu.setFloat64)(reference, [value])
 
@@ -481,3 +481,41 @@ def test_an_fmu_that_cannot_be_written_leaves_the_earlier_one(tmp_path: Path, mo
     for path in (tmp_path / "folder.fmu", file / "damper.fmu"):
         with pytest.raises(rb.DataError, match=f"{path.name}"):
             rb.to_fmu(ball(), path)
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_variables_that_every_importer_can_set(fmi: int, tmp_path: Path) -> None:
+    """The time of the inputs is an integer, units stand in declared types, and descriptions name load and point.
+
+    FMPy sets enumerations, too, so that no test saw that other importers leave them at their start values.
+    """
+    structure = rb.Modal(frequencies=[5.0, 31.0], damping_ratio=0.01, shapes={"tip": [0.5, 0.1], "mid": [0.2, -0.4]})
+    loads = [
+        rb.Harmonic(amplitude="2 N", frequency="5 Hz", point="tip"),
+        rb.HalfSine(amplitude="1 N", duration="2 ms", point="mid"),
+    ]
+    case = rb.Case(
+        structure=structure,
+        loads=loads,
+        dampers=[rb.reference_case().dampers[0].model_copy(update={"point": "tip"})],
+        duration=0.1,
+    )
+    path = rb.to_fmu(case, tmp_path / "a.fmu", fmi=fmi)  # type: ignore[arg-type]
+    description = fmpy.read_model_description(str(path), validate=True)
+    variables = {variable.name: variable for variable in description.modelVariables}
+    assert variables["input_time"].type == ("Integer" if fmi == 2 else "Int32")
+    assert [variables[f"load_{k}"].description for k in (1, 2)] == [
+        "load, in place of the harmonic at tip",
+        "load, in place of the half sine at mid",
+    ]
+    for variable in description.modelVariables:
+        assert variable.unit is None
+        if variable.declaredType is not None:
+            assert variable.declaredType.unit == variable.declaredType.name
+    assert variables["displacement_tip"].declaredType.unit == "m"
+    with unit(tmp_path, case, fmi) as own:
+        own.initialize(input_time=1)
+        own.step(0.0, 1e-3)
+        own.fmu.terminate()
+        with pytest.raises(Exception, match="fmi"):
+            own.step(1e-3, 1e-3)

@@ -110,7 +110,7 @@ def to_fmu(
 
     Notes
     -----
-    The FMU is self-contained: it needs neither Python nor Rattlebox. Its parameter `input_time` is the end of a
+    The FMU is self-contained: it needs neither Python nor Rattlebox. Its integer parameter `input_time` is the end of a
     communication step to which the inputs belong: 1 is the start, from which they are extrapolated linearly, 2 the end.
     Gravity can be changed between steps, restitution and friction before the initialization. The page
     documentation/index.html in the FMU lists the notes of the stepper (`Stepper.notes`). For the equations see `Stepper`.
@@ -156,7 +156,8 @@ def fmu_and_notes(
     packed = pack_component(case, alone=alone)
     model = re.sub(r"\W", "_", path.stem)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
-    variables = list(_variables(packed, input))
+    signals = () if alone else (*case.loads, *case.base_acceleration())
+    variables = list(_variables(packed, input, tuple(map(_described, signals))))
     words: dict[str, object] = {"name": model, "variables": variables, "version": rattlebox.__version__, "token": token}
     words |= {"base_units": BASE_UNITS, "input_time": INPUT_TIME, "notes": packed.notes, "systems": list(libraries)}
     content = {
@@ -190,7 +191,18 @@ def _limits(case: Case, packed: PackedComponent) -> str:
     return "\n".join([*lines, ""])
 
 
-def _variables(packed: PackedComponent, quantity: str) -> Iterator[Variable]:
+def _described(signal: Signal) -> str:
+    """Return kind, point and direction of a load or motion, for those who connect it in another program."""
+    words = signal.kind.replace("_", " ")
+    if signal.point is not None:
+        words += f" at {signal.point}"
+    if signal.direction is not None:
+        axis = signal.direction
+        words += f" along {axis if isinstance(axis, str) else '(' + ', '.join(f'{x:g}' for x in axis) + ')'}"
+    return words
+
+
+def _variables(packed: PackedComponent, quantity: str, signals: tuple[str, ...]) -> Iterator[Variable]:
     """Yield the variables in their order in the file; `quantity` is the input of a damper alone."""
     if len(packed.inputs) > MOST_INPUTS or len(packed.dampers) > MOST_DAMPERS:
         raise Hint(f"an FMU has at most {MOST_INPUTS} inputs and {MOST_DAMPERS} dampers", "a smaller case")
@@ -218,7 +230,8 @@ def _variables(packed: PackedComponent, quantity: str) -> Iterator[Variable]:
         for number, name in enumerate(packed.inputs):
             unit = "m/s2" if name.startswith("base") else "N"
             description = "acceleration of the base" if unit == "m/s2" else "load"
-            yield Variable(name, INPUT + number, unit, description, "input", start=0.0)
+            where = f", in place of the {signals[number]}" if number < len(signals) else ""
+            yield Variable(name, INPUT + number, unit, f"{description}{where}", "input", start=0.0)
     for number, damper in enumerate(packed.dampers):
         label = "" if packed.alone else f"_{_plain(damper)}"
         yield from each(f"force{label}", FORCE + 3 * number, "N", "mean force on the structure in the last step")
