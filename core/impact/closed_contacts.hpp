@@ -1,5 +1,5 @@
-// Integration of closed contacts with DOP853 (math/dop853.hpp), events within its steps, and peaks of force
-// and overlap.
+// Integration of closed soft contacts with DOP853 (math/dop853.hpp), events within its steps, and peaks of
+// force and overlap.
 //
 // Events: M. Dowell, P. Jarratt, BIT 11 (1971) 168, doi:10.1007/BF01934364 (the Illinois algorithm).
 #pragma once
@@ -56,12 +56,6 @@ protected:
                 stored_[d] += stored_energy(law, a.state, x);
             });
             add_wall_force(a.contact, system_.force(y.data(), j));
-        }
-        if (!system_.stuck.empty()) {
-            partial_.resize(system_.size());
-            system_(y.data(), partial_.data());
-            for (std::size_t i = 0; i < system_.stuck.size(); ++i)
-                add_wall_force(system_.stuck[i], system_.stuck_forces()[i]);
         }
         record(t, scratch_, ledger, given);
     }
@@ -239,7 +233,7 @@ protected:
             [&](const auto& law) { return contact_force(law, r.state, x, -g.rate).total; });
     }
 
-    enum class Event { none, phase_end, touch, rest_touch, opened, reengaged, unstuck };
+    enum class Event { none, phase_end, touch, rest_touch, opened, reengaged };
 
     void integrate_closed() {
         open_all_released(-1);
@@ -388,23 +382,6 @@ protected:
                     consider(Event::reengaged, static_cast<int>(r), std::fmax(was, 0.0),
                              [&](const real* y) { return release_margin(y, released); });
             }
-            if (!system_.stuck.empty()) {
-                std::vector<real> work(n);
-                real rounding = 0; // a row in free flight has forces of rounding errors only
-                for (const real* y : {y_.data(), trial_.data()}) {
-                    system_(y, work.data());
-                    for (real force : system_.stuck_forces())
-                        rounding = std::fmax(rounding, 512 * epsilon * std::fabs(force));
-                }
-                for (std::size_t i = 0; i < system_.stuck.size(); ++i) {
-                    const auto force_margin = [&](const real* y) {
-                        system_(y, work.data());
-                        return system_.stuck_forces()[i] + rounding;
-                    };
-                    consider(Event::unstuck, static_cast<int>(i), std::fmax(force_margin(y_.data()), 0.0),
-                             force_margin);
-                }
-            }
             bool retry = false;
             for (int c = 0; c < problem_.contact_count() && !retry; ++c) {
                 if (phase(c) != Phase::open && phase(c) != Phase::touching) continue;
@@ -415,12 +392,6 @@ protected:
                 if (phase(c) == Phase::touching ||
                     (std::fabs(before.value) <= rounding && std::fabs(before.rate) <= rounding)) {
                     if (after.value > rounding) phase(c) = Phase::open;
-                    if (hard()) {
-                        const real drift = this->velocity_rounding() * trial_[clock];
-                        if (after.value < std::fmin(before.value, 0.0) - rounding - drift)
-                            return stick_pressed(c);
-                        continue;
-                    }
                     if (after.value >= -rounding) continue;
                     const bool faint =
                         after.value >= -4 * rounding ||
@@ -466,7 +437,6 @@ protected:
                                      [&](const real* y) { return y[clock] <= since ? 1 : value(y); });
                             continue;
                         }
-                        if (hard()) return stick_pressed(c);
                         phase(c) = Phase::touching;
                         retry = true;
                         continue;
@@ -513,8 +483,7 @@ protected:
     // Whether all closed contacts have lasted so long that long steps may pay. The explicit steps before keep
     // ordinary impacts as they are.
     bool may_last() const {
-        if (system_.active.empty() || hard() || !released_.empty() || !problem_.coupling.empty())
-            return false;
+        if (system_.active.empty() || !released_.empty() || !problem_.coupling.empty()) return false;
         for (const Active& a : system_.active)
             if (a.steps < a.wait || a.state.phase == ContactState::yielding) return false;
         for (Phase p : phase_)
@@ -757,14 +726,6 @@ protected:
         if (at_event && samples_contacts()) sample_closed(trial_, state_.t + trial_[clock], false);
     }
 
-    // A touching contact is pressed together by the forces; it sticks from the begin of this step.
-    void stick_pressed(int c) {
-        unload_system(y_);
-        std::vector<Closing> pressed(1);
-        pressed[0].contact = c;
-        stick(pressed);
-    }
-
     void handle_event(Event event, int which) {
         if (event != Event::rest_touch) last_jump_ = state_.t;
         switch (event) {
@@ -780,12 +741,6 @@ protected:
             return open_released(which);
         case Event::reengaged:
             return reengage(which);
-        case Event::unstuck: {
-            const int c = system_.stuck[static_cast<std::size_t>(which)];
-            system_.stuck.erase(system_.stuck.begin() + which);
-            phase(c) = Phase::touching;
-            return;
-        }
         }
     }
 

@@ -20,9 +20,10 @@ namespace rattlebox {
 
 class ContactBegin : protected RunState {
     IsolatedContact isolated_contact_, partial_contact_;
-    State partial_state_;        // at a sample within an isolated contact
-    Ledger contact_ledger_;      // of one contact
-    std::vector<int> uncertain_; // contacts that may begin during an isolated one
+    State partial_state_;          // at a sample within an isolated contact
+    Ledger contact_ledger_;        // of one contact
+    std::vector<int> uncertain_;   // contacts that may begin during an isolated one
+    TaylorMotion start_of_motion_; // accelerations after a hard impact
     real rest_speed_ =
         0; // of contacts that close from rest: speed at which contact force and inertia balance
     real largest_impact_speed_ =
@@ -127,7 +128,7 @@ protected:
     // stored in uncertain_.
     bool is_isolated(int c, real speed, real longest) {
         uncertain_.clear();
-        if (!system_.active.empty() || !system_.stuck.empty() || !released_.empty()) return false;
+        if (!system_.active.empty() || !stuck_.empty() || !released_.empty()) return false;
         for (int other = 0; other < problem_.contact_count(); ++other) {
             if (other == c) continue;
             const Damper& damper = problem_.dampers[damper_of(other)];
@@ -135,7 +136,8 @@ protected:
             const Gap g = gap(problem_, contact(other), state_.y.data());
             if (!(g.value > longest * (std::fabs(g.rate) + 4 * speed))) return false;
             // The impulse of the contact is at most about twice that of an elastic one.
-            const real share = std::fabs(system_.coupling(contact(other), contact(c))) * contact(c).mass;
+            const real share =
+                std::fabs(contact_coupling(problem_, contact(other), contact(c))) * contact(c).mass;
             const real change = 4 * share * speed + acceleration_bound(other, longest) * longest;
             if (!(g.value > longest * (std::fabs(g.rate) + change))) uncertain_.push_back(other);
         }
@@ -356,14 +358,8 @@ protected:
 
     // Returns the acceleration of the gap with the current stuck contacts.
     real gap_acceleration(int c) {
-        system_.begin(loads_, state_.t);
-        load_system();
-        trial_.resize(system_.size());
-        system_(y_.data(), trial_.data());
-        const Contact& k = contact(c);
-        const real* dv = velocities(problem_, trial_.data());
-        const real z = cavity(problem_.dampers[damper_of(c)], trial_.data()).p;
-        return (k.above == wall ? z : dv[k.above]) - (k.below == wall ? z : dv[k.below]);
+        start_of_motion_.expand(state_, loads_, stuck_, 0);
+        return start_of_motion_.gap_acceleration(contact(c));
     }
 
     // Returns the shortest period of modes and loads, or 0 if there is none: bounces then become touching
@@ -399,7 +395,7 @@ protected:
     // Opens contacts at rest whose sides move relative to each other after an impact elsewhere.
     void release_moving() {
         const real rounding = this->velocity_rounding();
-        std::erase_if(system_.stuck, [&](int c) {
+        std::erase_if(stuck_, [&](int c) {
             if (std::fabs(system_.approach(state_.y.data(), c)) <= rounding) return false;
             phase(c) = Phase::open;
             return true;
@@ -421,8 +417,7 @@ protected:
                                 [&](const Closing& each) { return each.contact == other; });
         };
         taking_part_.clear();
-        std::copy_if(system_.stuck.begin(), system_.stuck.end(), std::back_inserter(taking_part_),
-                     is_resting);
+        std::copy_if(stuck_.begin(), stuck_.end(), std::back_inserter(taking_part_), is_resting);
         both_signs_.assign(taking_part_.size(), slow);
         for (int other = 0; other < problem_.contact_count() && !rebounds; ++other)
             if (phase(other) == Phase::touching && is_resting(other)) taking_part_.push_back(other);
@@ -436,7 +431,8 @@ protected:
         }
         matrix_.clear();
         for (const int i : taking_part_)
-            for (const int j : taking_part_) matrix_.push_back(-system_.coupling(contact(i), contact(j)));
+            for (const int j : taking_part_)
+                matrix_.push_back(-contact_coupling(problem_, contact(i), contact(j)));
         solve_complementary(matrix_, need_, both_signs_, impulses_);
         for (std::size_t i = 0; i < taking_part_.size(); ++i) impulse(taking_part_[i], impulses_[i]);
         for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].impulse = impulses_[resting + i];
@@ -515,7 +511,7 @@ protected:
         for (const Closing& each : contacts) {
             ledger_.normal[damper_of(each.contact)] += 0.5 * each.impulse * each.change;
             ++result_.counts.sticks;
-            system_.stuck.push_back(each.contact);
+            stuck_.push_back(each.contact);
             phase(each.contact) = Phase::closed;
         }
         release_moving();
@@ -524,7 +520,7 @@ protected:
 public:
     ContactBegin(const Problem& problem, const std::atomic<bool>* stop)
         : RunState(problem, stop), isolated_contact_(problem), partial_contact_(problem),
-          partial_state_(problem), contact_ledger_(problem) {}
+          partial_state_(problem), contact_ledger_(problem), start_of_motion_(problem) {}
 };
 
 } // namespace rattlebox

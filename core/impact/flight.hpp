@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "impact/state.hpp"
+#include "impact/taylor_motion.hpp"
 
 namespace rattlebox {
 
@@ -35,18 +36,19 @@ class Flight {
     bool series_ = false;
     real horizon_ = 0;
     std::vector<FreeMode> free_;
-    std::vector<Series> mode_series_, ball_series_, load_series_, force_series_;
+    TaylorMotion series_motion_;
     std::vector<real> curvature_, jerk_; // by contact: lower bound of g'', bound of |g'''|
     mutable std::vector<real> safe_;     // time before which a contact cannot touch
 
     // Calls add(weight, series) for the series whose sum is the gap.
     template <class Add> void each_part(const Contact& contact, Add&& add) const {
-        if (contact.above != wall) add(1.0, ball_series_[static_cast<std::size_t>(contact.above)]);
-        if (contact.below != wall) add(-1.0, ball_series_[static_cast<std::size_t>(contact.below)]);
+        const std::vector<Series>&balls = series_motion_.balls(), &modes = series_motion_.modes();
+        if (contact.above != wall) add(1.0, balls[static_cast<std::size_t>(contact.above)]);
+        if (contact.below != wall) add(-1.0, balls[static_cast<std::size_t>(contact.below)]);
         if (contact.below != wall && contact.above != wall) return;
         const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
         const real side = contact.below == wall ? 1 : -1;
-        for (std::size_t k = 0; k < damper.shape.size(); ++k) add(-side * damper.shape[k], mode_series_[k]);
+        for (std::size_t k = 0; k < damper.shape.size(); ++k) add(-side * damper.shape[k], modes[k]);
     }
 
     Series gap_series(const Contact& contact) const {
@@ -85,7 +87,7 @@ class Flight {
     void bound_curvatures() {
         for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
             const Contact& contact = problem_.contacts[c];
-            if (contact.below != wall && contact.above != wall) {
+            if (contact.below != wall && contact.above != wall && series_motion_.held().empty()) {
                 curvature_[c] = 0; // both balls have the same acceleration
             } else if (series_) {
                 curvature_[c] = gap_series(contact).min_curvature(horizon_);
@@ -106,50 +108,25 @@ class Flight {
 
 public:
     explicit Flight(const Problem& problem)
-        : problem_(problem), load_series_(problem.loads.size()), curvature_(problem.contacts.size()),
+        : problem_(problem), series_motion_(problem), curvature_(problem.contacts.size()),
           jerk_(problem.contacts.size()), safe_(problem.contacts.size()) {
         for (const Mode& mode : problem.modes) free_.emplace_back(mode);
-        mode_series_.reserve(problem.modes.size());
-        ball_series_.reserve(problem.ball_mass.size());
     }
 
-    // Begins a flight of at most `length` from `start`; `series` forces Taylor series also without load.
-    void begin(const State& start, const Loads& loads, real length, bool series) {
+    // Starts a flight of at most `length` from `start`; `series` forces Taylor series also without load.
+    // Hard contacts in `held` stay closed.
+    void begin(const State& start, const Loads& loads, real length, bool series,
+               const std::vector<int>& held = {}) {
         start_ = &start;
         loads_ = &loads;
-        series_ = series || loads.active() || !problem_.coupling.empty();
+        series_ = series || loads.active() || !problem_.coupling.empty() || !held.empty();
         horizon_ = length;
+        series_motion_.hold(held);
         if (series_) {
             const real rate = std::max(loads.frequency(), fastest_rate(problem_.modes, problem_.coupling));
             // Rounded to a representable time, or the time would drift from the motion with each flight.
             if (rate * horizon_ > 1) horizon_ = start.t + 1 / rate - start.t;
-            Series base;
-            for (std::size_t l = 0; l < loads.size(); ++l) {
-                load_series_[l] = Series{};
-                loads.piece(l).add_taylor(start.t, 1, Series::order, load_series_[l].c);
-                if (loads.load(l).base) base.add(-1, load_series_[l]);
-            }
-            mode_series_.clear();
-            force_series_.assign(problem_.modes.size(), Series{});
-            for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
-                Series& force = force_series_[k];
-                for (std::size_t l = 0; l < loads.size(); ++l)
-                    force.add(loads.load(l).shape[k], load_series_[l]);
-                if (problem_.coupling.empty())
-                    mode_series_.push_back(
-                        forced_mode(problem_.modes[k], {start.y[2 * k], start.y[2 * k + 1]}, force));
-            }
-            if (!problem_.coupling.empty())
-                coupled_series(problem_.modes, problem_.coupling, start.y.data(), force_series_,
-                               mode_series_);
-            ball_series_.clear();
-            for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
-                Series acceleration = base;
-                acceleration.c[0] +=
-                    problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
-                ball_series_.push_back(forced_ball(positions(problem_, start.y.data())[i],
-                                                   velocities(problem_, start.y.data())[i], acceleration));
-            }
+            series_motion_.expand(start, loads, held);
         } else {
             for (std::size_t k = 0; k < problem_.modes.size(); ++k)
                 free_[k].begin({start.y[2 * k], start.y[2 * k + 1]});
@@ -163,9 +140,9 @@ public:
     // Computes the state after time s.
     void at(real s, State& out) const {
         out.t = start_->t + s;
+        if (series_) return series_motion_.at(s, out);
         for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
-            const ModeState mode =
-                series_ ? ModeState{mode_series_[k].value(s), mode_series_[k].slope(s)} : free_[k].at(s);
+            const ModeState mode = free_[k].at(s);
             out.y[2 * k] = mode.q;
             out.y[2 * k + 1] = mode.p;
         }
@@ -174,14 +151,9 @@ public:
         real* position = positions(problem_, out.y.data());
         real* velocity = velocities(problem_, out.y.data());
         for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
-            if (series_) {
-                position[i] = ball_series_[i].value(s);
-                velocity[i] = ball_series_[i].slope(s);
-            } else {
-                const real g = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
-                position[i] = s0[i] + s * (v0[i] + 0.5 * g * s);
-                velocity[i] = v0[i] + g * s;
-            }
+            const real g = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
+            position[i] = s0[i] + s * (v0[i] + 0.5 * g * s);
+            velocity[i] = v0[i] + g * s;
         }
     }
 
@@ -192,14 +164,15 @@ public:
             for (const FreeMode& mode : free_) ledger.viscous += mode.dissipated(s);
             return;
         }
+        const std::vector<Series>&modes = series_motion_.modes(), &balls = series_motion_.balls();
         for (std::size_t k = 0; k < problem_.modes.size(); ++k)
             if (problem_.modes[k].decay != 0)
                 ledger.viscous += 2 * problem_.modes[k].decay *
-                                  integrate(s, [&](real r) { return square(mode_series_[k].slope(r)); });
+                                  integrate(s, [&](real r) { return square(modes[k].slope(r)); });
         if (!problem_.coupling.empty())
             ledger.viscous += integrate(s, [&](real r) {
                 return coupled_power(problem_.coupling, problem_.modes.size(),
-                                     [&](std::size_t k) { return mode_series_[k].slope(r); });
+                                     [&](std::size_t k) { return modes[k].slope(r); });
             });
         for (std::size_t l = 0; l < loads_->size(); ++l) {
             if (loads_->piece(l).is_zero()) continue;
@@ -207,11 +180,11 @@ public:
             const real work = integrate(s, [&](real r) {
                 real speed = 0;
                 for (std::size_t k = 0; k < problem_.modes.size(); ++k)
-                    speed += load.shape[k] * mode_series_[k].slope(r);
+                    speed += load.shape[k] * modes[k].slope(r);
                 if (load.base)
                     for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
-                        speed -= problem_.ball_mass[i] * ball_series_[i].slope(r);
-                return load_series_[l].value(r) * speed;
+                        speed -= problem_.ball_mass[i] * balls[i].slope(r);
+                return series_motion_.loads()[l].value(r) * speed;
             });
             (load.base ? ledger.base_work : ledger.load_work) += work;
         }
@@ -236,15 +209,58 @@ public:
             const real limit = 8192 * scale + 64 * (sizes[n] + turned) * power;
             if (std::fabs(g.c[n]) * power <= epsilon * limit) continue;
             if (g.c[n] < 0) return -1;
+            // The sum from each term on has a lower bound over the horizon. A small first term with a
+            // positive one after it must not shorten the horizon: a ball that a shaken floor lets go has
+            // g'' = 0 there.
             for (;;) {
-                real rest = 0, later = 1;
-                for (int j = n + 1; j <= Series::order; ++j)
-                    rest += std::fmin(g.c[j], 0.0) * (later *= horizon_);
-                if (g.c[n] + rest > 0) return 1;
+                real bound = 0;
+                for (int j = Series::order; j >= n; --j) bound = g.c[j] + std::fmin(bound, 0.0) * horizon_;
+                if (bound > 0) return 1;
                 horizon_ *= 0.5;
             }
         }
         return 0;
+    }
+
+    // Returns the force of the i-th held contact after time s.
+    real held_force(std::size_t i, real s) const { return series_motion_.forces()[i].value(s); }
+
+    // The first of `count` held contacts whose force becomes attractive, and the time of that.
+    FirstTouch first_release(std::size_t count) const {
+        FirstTouch first{horizon_, -1};
+        if (count == 0) return first;
+        const std::vector<Series>& forces = series_motion_.forces();
+        real largest = 0; // size of the forces, whose rounding errors those of all others share
+        for (std::size_t i = 0; i < count; ++i) {
+            real size = 0, power = 1;
+            for (int n = 0; n <= Series::order; ++n, power *= horizon_)
+                size += std::fabs(forces[i].c[n]) * power;
+            largest = std::fmax(largest, size);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const Contact& contact = problem_.contacts[static_cast<std::size_t>(series_motion_.held()[i])];
+            const Series& force = forces[i];
+            // Rounding errors of the accelerations and of the time at which loads are evaluated.
+            real size = std::fabs(force.c[1]) * start_->t;
+            each_part(contact, [&](real weight, const Series& part) {
+                size += 2 * std::fabs(weight * part.c[2]) * contact.mass;
+            });
+            const real rounding = epsilon * (512 * largest + 16 * size);
+            const real bound = force.min_curvature(horizon_);
+            for (real s = 0; s < first.time;) {
+                const real value = force.value(s) + rounding, rate = force.slope(s);
+                const real step = safe_step(std::fmax(value, 0.0), rate, bound);
+                // A force that is attractive at first and grows may be one that starts at zero.
+                const bool is_attractive =
+                    value < 0 ? rate <= 0 || value < -32 * rounding : value == 0 && rate < 0;
+                if (is_attractive || step <= epsilon * s) {
+                    first = {s, static_cast<int>(i)};
+                    break;
+                }
+                s += step;
+            }
+        }
+        return first;
     }
 
     // Returns the rounding error of a gap.
@@ -254,10 +270,10 @@ public:
         return 4 * epsilon * (half + std::fabs(positions(problem_, state.y.data())[ball]));
     }
 
-    // Returns the first touch of the watched contacts within the horizon, and the state there. A contact is
+    // Returns the first touch of the watched contacts before `horizon`, and the state there. A contact is
     // returned only if its own gap at that time is closed to rounding: contacts whose safe times differ by
     // less than the resolution of time are all evaluated there.
-    FirstTouch first_touch(const std::vector<char>& is_watched, State& out) const {
+    FirstTouch first_touch(const std::vector<char>& is_watched, real horizon, State& out) const {
         const auto end = [&](FirstTouch touch) {
             at(touch.time, out);
             return touch;
@@ -290,7 +306,7 @@ public:
                 }
                 next = std::min(next, safe_[c]);
             }
-            if (!(next < horizon_)) return end({horizon_, -1});
+            if (!(next < horizon)) return end({horizon, -1});
             s = next;
             at(s, out);
         }

@@ -23,7 +23,8 @@ protected:
     System system_;
     std::vector<Phase> phase_;
     std::vector<Released> released_;
-    real until_; // time at which the run pauses or ends
+    std::vector<int> stuck_; // hard contacts that have come to rest
+    real until_;             // time at which the run pauses or ends
     std::size_t next_sample_ = 0;
     bool contact_ended_ = false; // at the current time
     Result result_;
@@ -107,7 +108,7 @@ protected:
     // Writes or reads all that the next event needs, in a fixed order.
     template <class Archive> void serialize(Archive& a) {
         a(state_.t, state_.y, ledger_.load_work, ledger_.base_work, ledger_.viscous, ledger_.normal,
-          ledger_.plastic, phase_, released_, system_.active, system_.stuck, contact_ended_, result_.status,
+          ledger_.plastic, phase_, released_, system_.active, stuck_, contact_ended_, result_.status,
           result_.impacts);
     }
 

@@ -3,17 +3,14 @@
 // State y: modes and balls as in impact/state.hpp; time since the start, work of loads, work of the base,
 // viscous loss; then for each soft contact x, with overlap = origin + x^4, and the loss in its dashpot. The
 // independent variable is a transformed time, dt = dtau / sum(1 / x_j^3), which makes Hertz contacts regular
-// at begin and end for any number of simultaneous contacts. Without soft contacts it is time.
-//
-// Stuck contacts (hard impacts that have come to rest) are constraints, whose forces keep the approach rates
-// at zero. The transformation is derived here.
+// at begin and end for any number of simultaneous contacts. Without soft contacts it is time. The
+// transformation is derived here.
 #pragma once
 
 #include <vector>
 
 #include "impact/contact_phase.hpp"
 #include "impact/state.hpp"
-#include "math/linear_system.hpp"
 
 namespace rattlebox {
 
@@ -41,8 +38,7 @@ class System {
     const Loads* loads_ = nullptr;
     real start_ = 0;
     std::vector<real> cavity_rate_, cavity_force_, ball_force_, clock_;
-    std::vector<real> signal_;          // by load
-    std::vector<real> matrix_, forces_; // stuck contacts
+    std::vector<real> signal_; // by load
 
     std::size_t mode_count() const { return problem_.modes.size(); }
     std::size_t ball_count() const { return problem_.ball_mass.size(); }
@@ -99,23 +95,8 @@ class System {
         for (real& f : ball_force_) f = 0;
     }
 
-    // Solves coupling x forces = -(acceleration of approach) for the stuck contacts.
-    void solve_constraints(const real* dy) {
-        const std::size_t n = stuck.size();
-        matrix_.resize(n * n);
-        forces_.resize(n);
-        cavity_rates(dy); // of a derivative, so accelerations
-        for (std::size_t i = 0; i < n; ++i) {
-            const Contact& a = contact(stuck[i]);
-            forces_[i] = -approach_rate(a, velocities(problem_, dy), cavity_rate_.data());
-            for (std::size_t j = 0; j < n; ++j) matrix_[i * n + j] = coupling(a, contact(stuck[j]));
-        }
-        solve_definite(matrix_, forces_);
-    }
-
 public:
     std::vector<Active> active;
-    std::vector<int> stuck;
 
     explicit System(const Problem& problem)
         : problem_(problem), cavity_rate_(problem.dampers.size()), cavity_force_(problem.dampers.size()),
@@ -131,24 +112,6 @@ public:
     std::size_t x_index(std::size_t j) const { return time_index() + 4 + 2 * j; }
     std::size_t size() const { return time_index() + 4 + 2 * active.size(); }
 
-    // d(approach rate of a)/dt per unit of force in b.
-    real coupling(const Contact& a, const Contact& b) const {
-        real sum = 0;
-        const auto side = [](const Contact& c, int ball) {
-            return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
-        };
-        for (int ball : {a.below, a.above})
-            if (ball != wall)
-                sum -= side(a, ball) * side(b, ball) / problem_.ball_mass[static_cast<std::size_t>(ball)];
-        const real wall_a = side(a, wall), wall_b = side(b, wall);
-        if (wall_a != 0 && wall_b != 0) {
-            const auto& shape_a = problem_.dampers[static_cast<std::size_t>(a.damper)].shape;
-            const auto& shape_b = problem_.dampers[static_cast<std::size_t>(b.damper)].shape;
-            for (std::size_t k = 0; k < mode_count(); ++k) sum -= wall_a * wall_b * shape_a[k] * shape_b[k];
-        }
-        return sum;
-    }
-
     real approach(const real* y, int c) const { return -gap(problem_, contact(c), y).rate; }
 
     real force(const real* y, std::size_t j) const {
@@ -157,9 +120,6 @@ public:
         return contact(a.contact).normal.visit(
             [&](const auto& law) { return contact_force(law, a.state, y[x_index(j)], rate).total; });
     }
-
-    // Forces of the stuck contacts at the last evaluation.
-    const std::vector<real>& stuck_forces() const { return forces_; }
 
     void operator()(const real* y, real* dy) {
         const std::size_t m = mode_count(), b = ball_count(), n = active.size();
@@ -206,15 +166,6 @@ public:
                 signal_[l] = loads_->piece(l).value(start_ + y[time_index()]);
         real* dv = velocities(problem_, dy);
         accelerate(y, dy);
-        if (!stuck.empty()) {
-            solve_constraints(dy);
-            clear_forces();
-            for (std::size_t i = 0; i < stuck.size(); ++i) add_force(contact(stuck[i]), forces_[i]);
-            for (std::size_t k = 0; k < m; ++k)
-                for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
-                    dy[2 * k + 1] += problem_.dampers[d].shape[k] * cavity_force_[d];
-            for (std::size_t i = 0; i < b; ++i) dv[i] += ball_force_[i] / problem_.ball_mass[i];
-        }
 
         real viscous = 0, work[2] = {0, 0};
         for (std::size_t k = 0; k < m; ++k) viscous += 2 * problem_.modes[k].decay * square(y[2 * k + 1]);

@@ -11,13 +11,18 @@ namespace rattlebox {
 
 class Trajectory : protected ClosedContacts {
     std::vector<char> is_watched_, is_pressing_;
-    State flight_end_; // state at the end of a flight
+    std::vector<int> held_;    // hard contacts that stay closed in a flight: stuck ones, then others at rest
+    std::vector<int> opening_; // touching contacts that open in a flight
+    State flight_end_;         // state at the end of a flight
+    bool goes_on_ = false;     // whether the last flight ended without any event while contacts were stuck
 
     void sample_flight_at(real t, bool given) {
         sampled_ = ledger_;
         flight_.add_to_ledger(t - state_.t, sampled_);
         flight_.at(t - state_.t, scratch_);
         clear_contact_samples();
+        for (std::size_t i = 0; i < stuck_.size(); ++i)
+            add_wall_force(stuck_[i], flight_.held_force(i, t - state_.t));
         record(t, scratch_, sampled_, given);
     }
 
@@ -51,15 +56,20 @@ class Trajectory : protected ClosedContacts {
         const real stop = next_stop();
         bool any_touching = false;
         for (Phase p : phase_) any_touching = any_touching || p == Phase::touching;
-        flight_.begin(state_, loads_, stop - state_.t, any_touching);
+        goes_on_ = false;
+        flight_.begin(state_, loads_, stop - state_.t, any_touching, stuck_);
         bool pressing = false;
         is_pressing_.assign(phase_.size(), false);
+        held_ = stuck_;
+        opening_.clear();
         for (std::size_t c = 0; c < phase_.size(); ++c) {
-            is_watched_[c] = phase_[c] != Phase::touching;
+            is_watched_[c] = phase_[c] == Phase::open || phase_[c] == Phase::released;
             if (phase_[c] != Phase::touching) continue;
             const int tendency = flight_.tendency(problem_.contacts[c]);
-            if (tendency > 0) phase_[c] = Phase::open;
+            if (tendency > 0 && !hard()) phase_[c] = Phase::open;
+            if (tendency > 0) opening_.push_back(static_cast<int>(c));
             if (tendency < 0) is_pressing_[c] = pressing = true;
+            if (tendency == 0) held_.push_back(static_cast<int>(c));
         }
         if (pressing && hard()) {
             std::vector<Closing> pressed;
@@ -68,7 +78,12 @@ class Trajectory : protected ClosedContacts {
             stick(pressed);
             return;
         }
-        const FirstTouch touch = flight_.first_touch(is_watched_, flight_end_);
+        // Hard contacts at rest that no force presses together would drift by the rounding of their speeds.
+        if (hard() && held_.size() > stuck_.size())
+            flight_.begin(state_, loads_, flight_.horizon(), true, held_);
+        const FirstTouch release = flight_.first_release(stuck_.size());
+        if (release.contact >= 0 && release.time == 0) return release_stuck(release.contact);
+        const FirstTouch touch = flight_.first_touch(is_watched_, release.time, flight_end_);
         real length = touch.time;
         if (pressing) {
             length = rest_flight_length(length);
@@ -81,10 +96,23 @@ class Trajectory : protected ClosedContacts {
         flight_.add_to_ledger(length, ledger_);
         std::swap(flight_end_.y, state_.y);
         state_.t = end;
+        if (length > 0) // several may open at one time: until then all of them touch
+            for (const int c : opening_) phase(c) = Phase::open;
         open_all_released(touch.contact, true);
         if (pressing) begin_contacts_from_rest(begin, is_pressing_);
-        if (touches) begin_contact_at(touch.contact);
+        if (touches)
+            begin_contact_at(touch.contact);
+        else if (release.contact >= 0 && length == release.time)
+            release_stuck(release.contact);
+        else
+            goes_on_ = !stuck_.empty();
         last_jump_ = pressing && !touches ? begin : state_.t;
+    }
+
+    // The force of a stuck contact became attractive: it touches, and the forces decide whether it opens.
+    void release_stuck(int which) {
+        phase(stuck_[static_cast<std::size_t>(which)]) = Phase::touching;
+        stuck_.erase(stuck_.begin() + which);
     }
 
     // Whether every released contact will open because its rate is too large for the accelerations of the
@@ -113,11 +141,13 @@ protected:
     void advance() {
         while (running() && state_.t < until_) {
             if (state_.t >= loads_.next_knot()) loads_.advance(state_.t);
-            if (++result_.counts.events > problem_.settings.max_events)
+            result_.counts.events += !goes_on_;
+            if (result_.counts.events > problem_.settings.max_events ||
+                result_.counts.flights > 200 * problem_.settings.max_events)
                 fail(Status::too_many_events);
             else if (stop_ && stop_->load(std::memory_order_relaxed))
                 fail(Status::interrupted);
-            else if (system_.active.empty() && system_.stuck.empty() && released_contacts_only_open())
+            else if (system_.active.empty() && released_contacts_only_open())
                 fly();
             else
                 integrate_closed();

@@ -38,7 +38,7 @@ class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
         for (const Phase phase : phase_) require(phase >= Phase::open && phase <= Phase::released);
         for (const auto& one : system_.active) check_contact(one.contact), check_impact(one.impact);
         for (const auto& one : released_) check_contact(one.contact), check_impact(one.impact);
-        for (const int contact : system_.stuck) check_contact(contact);
+        for (const int contact : stuck_) check_contact(contact);
         for (const Impact& impact : result_.impacts)
             require(impact.contact >= 0 && impact.contact < static_cast<int>(contacts));
         require(result_.status == Status::finished);
