@@ -224,7 +224,8 @@ def _status_and_message(
     if status == Status.finished:
         ledger = Ledger(arrays)
         end = final_status(ledger, _core.worst_energy_residual, arrays.particle_mass.sum())
-        return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
+        residual = ledger.energy_residual if end else 0.0
+        return describe(end, case.duration, "", residual, case.method.kind, step=step.dt)
     stopped = dem.stopped()
     cavity = stopped.cavity
     number = stopped.particle + sum(damper.contents.radius.size for damper in case.particle_dampers[:cavity])

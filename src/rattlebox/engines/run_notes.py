@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 Damper = TypeVar("Damper", "ImpactDamper", "ParticleDamper")
 
+_MANY_CONTACT_STEPS = 20_000_000
+"""Steps in closed contacts, about ten seconds of processor time, from which a run has a note about them."""
 _CONTACT_GAP = 1e-9
 """Gap over the clearance below which a ball counts as touching."""
 
@@ -228,6 +230,16 @@ def simultaneous_notes(count: int) -> Iterator[str]:
         yield (
             f"note: at {count} instant{'s' * (count > 1)} several hard impacts began at the same time and were resolved "
             "together; a small difference of their times would change the result: compare with EventDriven"
+        )
+
+
+def vibration_notes(steps: int) -> Iterator[str]:
+    """Yield a note about a run most of whose time was spent on vibrations of closed contacts."""
+    if steps > _MANY_CONTACT_STEPS:
+        yield (
+            f"note: {steps / 1e6:.0f} million steps were made in closed contacts; a contact without damping vibrates for "
+            "ever, and each of its vibrations is computed: give it a restitution below 1, or use Newton, whose balls at "
+            "rest cost nothing"
         )
 
 

@@ -15,7 +15,7 @@ from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.responses import structure_arrays
-from rattlebox.engines.run_notes import extrapolation_notes, impact_notes, simultaneous_notes
+from rattlebox.engines.run_notes import extrapolation_notes, impact_notes, simultaneous_notes, vibration_notes
 from rattlebox.engines.status import contact_name, describe, final_status
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
@@ -196,6 +196,7 @@ def run_from_core(case: Case, raw: _core.Result) -> Run:
         notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.impacts)
         notes += tuple(extrapolation_notes(raw.counts.extrapolated))
         notes += tuple(simultaneous_notes(raw.counts.simultaneous_impacts))
+        notes += tuple(vibration_notes(raw.counts.contact_steps))
     return Run(
         arrays,
         case,

@@ -64,7 +64,7 @@ ADVICE: dict[Status, dict[str, str]] = {
         "": "Compare with another method.",
         "event_driven": "Lower the tolerance, and compare with another method.",
         "two_step": "Shorten the time steps dt_flight and dt_contact.",
-        "dem": "Shorten dt, or use a smaller fraction.",
+        "dem": 'Halve the time step: dt = "{half_step:.3g} s" in the method.',
     },
     Status.refused: {"": "Run the variant alone to see the reason."},
     Status.false_contact: {"": "Compare with another method, and report the case."},
@@ -105,7 +105,14 @@ def contact_name(dampers: Sequence[str], counts: Sequence[int], contact: int) ->
 
 
 def describe(
-    status: Status, time: float, contact: str, value: float, method: str, *, softened: bool = False
+    status: Status,
+    time: float,
+    contact: str,
+    value: float,
+    method: str,
+    *,
+    softened: bool = False,
+    step: float = np.nan,
 ) -> tuple[str, str]:
     """Return the name of a status, and a message with what happened and what to try.
 
@@ -115,8 +122,10 @@ def describe(
         Time at which the run stopped [s].
     value
         Approach speed at that contact [m/s], or the energy residual.
+    step
+        Time step of a 3-D run [s].
     """
     happened, advice = MESSAGES[status], ADVICE.get(status, {})
     hint = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))
-    sentences = happened.format(time=time, contact=contact, value=value), hint
+    sentences = happened.format(time=time, contact=contact, value=value), hint.format(half_step=0.5 * step)
     return status.name, " ".join(sentences).strip()

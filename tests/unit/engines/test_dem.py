@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -363,6 +364,29 @@ def test_an_open_ledger_is_a_status() -> None:
     assert 0.01 < long.energy_residual < 0.1
     assert "0.04" in long.message
     assert short.energy_residual < 0.01
+
+
+def test_advice_about_an_open_ledger_helps() -> None:
+    """The time step that the message of an energy error names makes the same run finish.
+
+    The advice was a smaller `fraction`, which changes nothing where `dt` is given or another limit sets the step; no test
+    followed it.
+    """
+    alone = damper(
+        particles=rb.Particles(material="steel", diameter="3.4 mm"),
+        packing=rb.Positions(positions=[[0, 0, 0]], velocities=[[0.13, 0, 0]]),
+        cavity=rb.Box(size=("4.4 mm", "20 mm", "20 mm")),
+        contact=rb.Tsuji(restitution=0.88),
+        friction=None,
+        gravity=(0, 0, 0),
+        softening=1,
+    )
+    run = simulate(alone, structure=rb.Fixed(), duration=0.02, output=rb.Output(), method=rb.Dem(dt="3 us"))
+    assert run.status == "energy_error"
+    advised = re.search(r'Halve the time step: dt = "(.+ s)"', run.message)
+    assert advised
+    again = simulate(alone, structure=rb.Fixed(), duration=0.02, output=rb.Output(), method=rb.Dem(dt=advised[1]))
+    assert again.ok
 
 
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.engines.run_notes import vibration_notes
 
 PULSE = rb.HalfSine(amplitude="5 kN", duration="1 ms")
 
@@ -174,3 +175,13 @@ def test_no_silent_extrapolation_in_three_dimensions() -> None:
         assert run.ok
         result = [note for note in run.notes if "10.0 µm" in note and "extrapolated" in note]
         assert len(result) == count, run.notes
+
+
+def test_many_steps_of_vibrations_are_noted() -> None:
+    """A run of very many steps in closed contacts notes that contacts without damping vibrate for ever.
+
+    Nothing told a user why a ball at rest took a quarter of an hour: all tests of long runs had damping.
+    """
+    (note,) = vibration_notes(300_000_000)
+    assert note.startswith("note: 300 million steps were made in closed contacts; a contact without damping vibrates")
+    assert not list(vibration_notes(1_000_000))
