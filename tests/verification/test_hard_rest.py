@@ -120,3 +120,33 @@ def test_hard_bodies_of_two_thousand_runs_never_overlap() -> None:
     """The same for 2000 runs."""
     for first in range(1000, 2000, 100):
         check_overlaps(range(first, first + 100))
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-12])
+def test_a_graze_grows_like_a_square_root(offset: float) -> None:
+    """Impacts of a ball that the walls of a vibrating cavity just graze grow as the law of the square root says.
+
+    Nobody had looked at an exact graze: its growth from rounding is that of the model, and stated as a limit.
+    """
+    amplitude, e, rate = 0.8e-3, 0.4, 2 * np.pi * 15
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.Shaker(motion=rb.Harmonic(amplitude=amplitude, frequency=15.0, phase="90 deg", unit="m")),
+            damper=rb.ImpactDamper(
+                ball=rb.Sphere(radius=8e-3, material="steel"),
+                gap=amplitude * (1 - offset),
+                start=-1,
+                contact=rb.Tsuji(restitution=0.5),
+            ),
+            duration=0.3,
+            method=rb.Newton(restitution=e),
+        )
+    )
+    assert run.ok
+    speed = run.arrays.impacts.approach_speed
+    grown = speed[(speed > 0) & (speed < 2e-3)]
+    assert 1 <= len(grown) <= 4
+    scale = (1 + e) * amplitude * rate**2 * 2 * np.pi / rate
+    first = int(np.flatnonzero(speed == grown[0])[0])
+    for k in range(first, first + len(grown)):
+        assert speed[k + 1] == pytest.approx(np.sqrt(scale * speed[k]), rel=0.2)
