@@ -133,6 +133,8 @@ GOOD: dict[str, Sample] = {
         "a.csv", table("f (Hz),real (m/s^2/N),imag (m/s^2/N)", 1 + TIMES, VALUES, VALUES), counted=False
     ),
 }  # fmt: skip
+DAMAGED_ELSEWHERE = {f"rattlebox.exchange.read.text_results.read_{name}" for name in ("f06", "punch", "frd")}
+"""Readers whose own tests damage their files."""
 TEXT = {name: good for name, good in GOOD.items() if good.name[-3:] in ("at2", "txt", "csv", "oml", "mtx")}
 
 
@@ -183,7 +185,7 @@ def test_every_reader_has_a_sample(tmp_path: Path) -> None:
             read_file(tmp_path, good, good.content)
         finally:
             sys.setprofile(before)
-    assert reached == set(READERS)
+    assert reached == set(READERS) - DAMAGED_ELSEWHERE
 
 
 @pytest.mark.parametrize("name", GOOD)
@@ -239,8 +241,17 @@ def test_truncated_tables(
 def test_other_encoding(
     tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A text file in UTF-16 is refused."""
-    check_refused(tmp_path, GOOD[name], GOOD[name].content.decode().encode("utf-16"), monkeypatch, capsys)
+    """A text file in UTF-16 is refused, unless it is a table of numbers: these have the same values."""
+    good = GOOD[name]
+    content = good.content.decode().encode("utf-16")
+    if name not in ("one column", "two columns", "positions", "response function"):
+        check_refused(tmp_path, good, content, monkeypatch, capsys)
+        return
+    same = [read_file(tmp_path, good, text) for text in (good.content, content)]
+    if good.case:
+        assert same[0] == same[1]
+    else:
+        assert same[0].equals(same[1])
 
 
 @pytest.mark.parametrize("name", TEXT)

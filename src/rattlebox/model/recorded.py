@@ -22,7 +22,7 @@ from pydantic import (
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.frozen import complete
 from rattlebox.exchange.read import ground_motion, measurement_files, strong_motion, universal  # noqa: F401  (they register)
-from rattlebox.exchange.read.formats import Format, read_no_signals, record_reader, signals_in
+from rattlebox.exchange.read.formats import Format, no_signals, record_reader, signals_in
 
 from .base import FilePart
 from .elementwise import Vector
@@ -107,7 +107,7 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
 
 def is_table(form: Format[Callable[..., Any]]) -> bool:
     """Return whether a format is a table of numbers, whose columns the model reads."""
-    return form.read is read_no_signals
+    return form.read is no_signals
 
 
 def _signal_format(path: str, *, is_table: bool = False) -> Format[Callable[..., Any]] | None:
@@ -116,7 +116,7 @@ def _signal_format(path: str, *, is_table: bool = False) -> Format[Callable[...,
     `is_table` says that the fields of a record are those of a table, so that the content of a text decides nothing.
     """
     form = record_reader.of(path, has_content=not is_table)
-    return None if form is None or form.read is read_no_signals else form
+    return None if form is None or form.read is no_signals else form
 
 
 def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: Any) -> Columns:

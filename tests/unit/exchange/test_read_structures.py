@@ -449,7 +449,7 @@ def test_a_child_process_with_limits(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(guarded, "MEMORY_PER_BYTE", 0)
     with pytest.raises(rb.DataError, match="try: the complete file"):
         guarded.arrays_from_child(RST, "rst")
-    assert set(guarded.IN_CHILD) == {"rst", "full"}
+    assert set(guarded.IN_CHILD) == {"rst", "full", "mat"}
 
 
 @pytest.mark.parametrize("replaced", [True, False])

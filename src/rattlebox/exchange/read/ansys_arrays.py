@@ -23,9 +23,11 @@ _READERS = ("ansys.mapdl.reader", *(f"ansys.mapdl.reader.{name}" for name in ("f
 
 
 class _Anything(type):
-    """Metaclass of a class that has every attribute: the class itself."""
+    """Metaclass of a class that has every attribute, the class itself, but none that Python looks for."""
 
     def __getattr__(cls, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
         return cls
 
 

@@ -123,7 +123,7 @@ class Formats(Generic[Read]):
         load_plugins()
         path = Path(path)
         known = self._endings.get(path.suffix.lower())
-        is_of_tables = known is not None and known.read is read_no_signals
+        is_of_tables = known is not None and known.read is no_signals
         if known is not None and (path.suffix.lower() in BINARY_TABLES or not is_of_tables):
             return known
         if not self._starts and not self._contents:
@@ -154,7 +154,7 @@ record_reader: Formats[Callable[[Path], Iterable[SignalInFile]]] = Formats("reco
 
 
 @record_reader(".csv", ".txt", ".tsv", *BINARY_TABLES)
-def read_no_signals(path: Path) -> list[SignalInFile]:
+def no_signals(path: Path) -> list[SignalInFile]:
     """Return nothing: tables of numbers have columns, which the model reads (`rattlebox.model.records`)."""
     return []
 

@@ -8,13 +8,13 @@ from typing import Any
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 
-from .formats import read_no_signals, record_reader
+from .formats import no_signals, record_reader
 from .guarded import errors_of
 
 SHEETS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 """Endings of spreadsheets."""
 
-record_reader(*SHEETS)(read_no_signals)
+record_reader(*SHEETS)(no_signals)
 
 
 def sheet_lines(path: Path) -> list[str]:
