@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "dem/contact_begin.hpp"
 #include "dem/contact_list.hpp"
+#include "dem/contact_start.hpp"
 #include "dem/diagnostics.hpp"
 #include "dem/problem.hpp"
 #include "dem/structure.hpp"

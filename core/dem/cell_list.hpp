@@ -46,7 +46,7 @@ struct CellLevel {
         for (int m = 0; m < members; ++m) ++at(begin, cell_of(m) + 1);
         for (std::size_t c = 1; c < begin.size(); ++c) begin[c] += begin[c - 1];
         for (int m = 0; m < members; ++m) put(m, at(begin, cell_of(m))++);
-        // Each entry has advanced to the begin of the next cell; the shift restores it without a second
+        // Each entry has advanced to the start of the next cell; the shift restores it without a second
         // array.
         for (std::size_t c = begin.size() - 1; c > 0; --c) begin[c] = begin[c - 1];
         begin[0] = 0;

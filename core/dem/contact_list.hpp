@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dem/contact_begin.hpp"
+#include "dem/contact_start.hpp"
 
 namespace rattlebox::dem {
 

@@ -25,7 +25,7 @@ inline Losses losses(const Bed& bed) {
 
 // Sums over a cavity at a sample.
 struct Totals {
-    Losses before, now; // at the begin and the end of the step
+    Losses before, now; // at the start and the end of the step
     real kinetic = 0, rotation = 0, stored = 0, mass = 0;
     real sliding_correction[2] = {},
          rolling_correction[2] = {}; // loss by the sample less half of the loss of the step

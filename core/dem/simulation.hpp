@@ -582,7 +582,7 @@ public:
     }
 
     // Reads the state at the last sample of a run with the same particles and structure, but another time
-    // step or other signals, and makes that sample the begin of this run: time, work and extremes count from
+    // step or other signals, and makes that sample the start of this run: time, work and extremes count from
     // there. Losses continue.
     template <class Reader> void continue_from(Reader& reader, real dt_before) {
         read(reader, restart_check());

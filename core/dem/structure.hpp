@@ -23,8 +23,8 @@ struct ModeTransition {
 
 inline ModeTransition mode_transition(const Mode& mode, real dt) {
     FreeMode of_q(mode), of_p(mode);
-    of_q.begin({1, 0});
-    of_p.begin({0, 1});
+    of_q.start({1, 0});
+    of_p.start({0, 1});
     return {of_q.at(dt), of_p.at(dt)};
 }
 

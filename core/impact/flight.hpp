@@ -113,11 +113,11 @@ public:
         for (const Mode& mode : problem.modes) free_.emplace_back(mode);
     }
 
-    // Starts a flight of at most `length` from `start`; `series` forces Taylor series also without load.
+    // Starts a flight of at most `length` from `state`; `series` forces Taylor series also without load.
     // Hard contacts in `held` stay closed.
-    void begin(const State& start, const Loads& loads, real length, bool series,
+    void start(const State& state, const Loads& loads, real length, bool series,
                const std::vector<int>& held = {}) {
-        start_ = &start;
+        start_ = &state;
         loads_ = &loads;
         series_ = series || loads.active() || !problem_.coupling.empty() || !held.empty();
         horizon_ = length;
@@ -125,11 +125,11 @@ public:
         if (series_) {
             const real rate = std::max(loads.frequency(), fastest_rate(problem_.modes, problem_.coupling));
             // Rounded to a representable time, or the time would drift from the motion with each flight.
-            if (rate * horizon_ > 1) horizon_ = start.t + 1 / rate - start.t;
-            series_motion_.expand(start, loads, held);
+            if (rate * horizon_ > 1) horizon_ = state.t + 1 / rate - state.t;
+            series_motion_.expand(state, loads, held);
         } else {
             for (std::size_t k = 0; k < problem_.modes.size(); ++k)
-                free_[k].begin({start.y[2 * k], start.y[2 * k + 1]});
+                free_[k].start({state.y[2 * k], state.y[2 * k + 1]});
         }
         bound_curvatures();
     }
@@ -206,7 +206,7 @@ public:
             power *= horizon_;
             // Rounding errors of the forces, and of the time at which loads are evaluated.
             const real turned = n < Series::order ? (n + 1) * std::fabs(g.c[n + 1]) * start_->t : 0;
-            const real limit = 8192 * scale + 64 * (sizes[n] + turned) * power;
+            const real limit = tendency_of_gap * scale + tendency_of_terms * (sizes[n] + turned) * power;
             if (std::fabs(g.c[n]) * power <= epsilon * limit) continue;
             if (g.c[n] < 0) return -1;
             // The sum from each term on has a lower bound over the horizon. A small first term with a
@@ -245,14 +245,14 @@ public:
             each_part(contact, [&](real weight, const Series& part) {
                 size += 2 * std::fabs(weight * part.c[2]) * contact.mass;
             });
-            const real rounding = epsilon * (512 * largest + 16 * size);
+            const real rounding = epsilon * (force_of_all * largest + force_of_terms * size);
             const real bound = force.min_curvature(horizon_);
             for (real s = 0; s < first.time;) {
                 const real value = force.value(s) + rounding, rate = force.slope(s);
                 const real step = safe_step(std::fmax(value, 0.0), rate, bound);
                 // A force that is attractive at first and grows may be one that starts at zero.
                 const bool is_attractive =
-                    value < 0 ? rate <= 0 || value < -32 * rounding : value == 0 && rate < 0;
+                    value < 0 ? rate <= 0 || value < -force_that_grows * rounding : value == 0 && rate < 0;
                 if (is_attractive || step <= epsilon * s) {
                     first = {s, static_cast<int>(i)};
                     break;
@@ -267,7 +267,7 @@ public:
     real gap_rounding(const Contact& contact, const State& state) const {
         const real half = 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
         const int ball = contact.below == wall ? contact.above : contact.below;
-        return 4 * epsilon * (half + std::fabs(positions(problem_, state.y.data())[ball]));
+        return flight_gap_rounding * (half + std::fabs(positions(problem_, state.y.data())[ball]));
     }
 
     // Returns the first touch of the watched contacts before `horizon`, and the state there. A contact is

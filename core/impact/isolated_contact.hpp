@@ -18,7 +18,7 @@
 // V)^2.
 //
 // The result is accepted only if the energy balance holds, which the sweeps do not use. Otherwise, or if the
-// contact is slow, strongly damped or not isolated, impact/closed_contacts.hpp integrates it step by step.
+// contact is slow, strongly damped or not isolated, impact/contact_solver.hpp integrates it step by step.
 //
 // The equations are derived here. Fixed-point sweeps over nodes: C. W. Clenshaw, H. J. Norton, Computer J. 6
 // (1963) 88, doi:10.1093/comjnl/6.1.88.

@@ -75,7 +75,7 @@ public:
         return base;
     }
 
-    // Acceleration of the point at the begin and the end of the step before sample i. Springs, dashpots,
+    // Acceleration of the point at the start and the end of the step before sample i. Springs, dashpots,
     // harmonic loads and the base act with their values at these times. Contacts and other loads, whose
     // pulses may be shorter than the step, act with their mean over the step. A mean of the whole, the
     // difference of the velocities, would lack (pi f dt)^2 / 6 of a motion of frequency f.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact/laws.hpp"
+#include "impact/tolerances.hpp"
 #include "math/real.hpp"
 #include "structure/coupled_modes.hpp"
 #include "structure/loads.hpp"
@@ -32,14 +33,6 @@ struct Contact {
     RestitutionLaw restitution;
 };
 
-// Largest energy residual over the energy supplied for which a run counts as finished, for every method.
-inline constexpr real worst_energy_residual = 0.01;
-// Balls below this speed [m/s] count as at rest: an energy residual below their kinetic energy is rounding.
-inline constexpr real speed_at_rest = 1e-9;
-
-// Rounding errors of the energies at one time, as part of the largest energy of a run.
-inline constexpr real energy_rounding = 64 * epsilon;
-
 enum class Method : int { event_driven = 0, newton = 1, two_step = 2 };
 
 struct Settings {
@@ -52,7 +45,7 @@ struct Settings {
     bool adaptive_inner = false;              // two_step: Dormand-Prince instead of classical Runge-Kutta
     bool collocation = true;                  // event_driven: isolated Hertz contacts by collocation
 
-    // Number of events up to which samples are also taken at begin, deepest overlap and end of contacts and
+    // Number of events up to which samples are also taken at start, deepest overlap and end of contacts and
     // in the middle of flights; 0 for none.
     long contact_samples = 0;
 

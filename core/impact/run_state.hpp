@@ -1,123 +1,107 @@
-// The data of a run that its parts share: state, ledger, phases of the contacts, and the result so far.
+// The state of a run: bodies, contacts, energies, and the result so far. The parts of the engine share it.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 
-#include "impact/flight.hpp"
 #include "impact/result.hpp"
 #include "impact/system.hpp"
 
 namespace rattlebox {
 
-class RunState {
-protected:
+struct RunState {
     enum class Phase : char { open, touching, closed, released };
 
-    const Problem& problem_;
-    const std::atomic<bool>* stop_;
-    Loads loads_;
-    State state_, scratch_;
-    Ledger ledger_, sampled_; // at the current time, and at a sample
-    Flight flight_;
-    System system_;
-    std::vector<Phase> phase_;
-    std::vector<Released> released_;
-    std::vector<int> stuck_; // hard contacts that have come to rest
-    real until_;             // time at which the run pauses or ends
-    std::size_t next_sample_ = 0;
-    bool contact_ended_ = false; // at the current time
-    Result result_;
-    std::vector<real> y_, trial_, stored_, force_;
+    const Problem& problem;
+    const std::atomic<bool>* stop;
+    Loads loads;
+    State state;
+    Ledger ledger;
+    System system; // with the closed soft contacts
+    std::vector<Phase> phases;
+    std::vector<Released> released;
+    std::vector<int> stuck;     // hard contacts that have come to rest
+    real until;                 // time at which the run pauses or ends
+    bool contact_ended = false; // at the current time
+    real last_jump = 0; // time of the last jump of a force or its rate, except by contacts that began at rest
+    real largest_overlap = 0; // so far, expected from the approach speeds
+    Result result;
 
-    const Contact& contact(int c) const { return problem_.contacts[static_cast<std::size_t>(c)]; }
+    RunState(const Problem& problem_to_run, const std::atomic<bool>* stop_flag)
+        : problem(problem_to_run), stop(stop_flag), loads(problem.loads), state(problem), ledger(problem),
+          system(problem), phases(problem.contacts.size(), Phase::open), until(problem.settings.duration),
+          result(problem) {}
+
+    const Contact& contact(int c) const { return problem.contacts[static_cast<std::size_t>(c)]; }
     std::size_t damper_of(int c) const { return static_cast<std::size_t>(contact(c).damper); }
-    Phase& phase(int c) { return phase_[static_cast<std::size_t>(c)]; }
-    bool hard() const { return problem_.settings.method == Method::newton; }
-    bool running() const { return result_.status == Status::finished; }
+    Phase& phase(int c) { return phases[static_cast<std::size_t>(c)]; }
+    Phase phase(int c) const { return phases[static_cast<std::size_t>(c)]; }
+    bool hard() const { return problem.settings.method == Method::newton; }
+    bool running() const { return result.status == Status::finished; }
+    bool is_stopped() const { return stop && stop->load(std::memory_order_relaxed); }
     // The tolerance, at least the rounding error of a step.
-    real resolution() const { return std::fmax(problem_.settings.tolerance, 64 * epsilon); }
-    real next_stop() const { return std::min(loads_.next_knot(), until_); }
+    real resolution() const { return std::fmax(problem.settings.tolerance, step_rounding); }
+    real next_stop() const { return std::min(loads.next_knot(), until); }
 
     void fail(Status status, int c = -1, real value = 0) {
-        result_.status = status;
-        result_.stopped_contact = c;
-        result_.stopped_value = value;
+        result.status = status;
+        result.stopped_contact = c;
+        result.stopped_value = value;
     }
 
-    // ---- recording
+    // Returns the sum of the magnitudes of the terms of a gap.
+    real gap_terms(int c) const {
+        const Damper& damper = problem.dampers[damper_of(c)];
+        const real* y = state.y.data();
+        real sum = damper.clearance;
+        for (const int side : {contact(c).below, contact(c).above}) {
+            if (side != wall) {
+                sum += std::fabs(positions(problem, y)[side]);
+                continue;
+            }
+            for (std::size_t m = 0; m < damper.shape.size(); ++m)
+                sum += std::fabs(damper.shape[m] * y[2 * m]);
+        }
+        return sum;
+    }
 
     // Stored energy of a released contact that still overlaps in state y.
     real recoverable_energy(const Released& r, const real* y) const {
-        const real overlap = -gap(problem_, contact(r.contact), y).value - r.state.origin();
+        const real overlap = -gap(problem, contact(r.contact), y).value - r.state.origin();
         if (overlap <= 0) return 0;
         const real x = std::sqrt(std::sqrt(overlap));
         return contact(r.contact).normal.visit(
             [&](const auto& law) { return stored_energy(law, r.state, x); });
     }
 
-    // Whether samples are taken at begin and end of contacts.
-    bool samples_contacts() const { return result_.counts.events <= problem_.settings.contact_samples; }
-
-    // Adds a sample. `ledger` is that of the sample without the losses of released contacts, which are added
-    // here.
-    void record(real t, const State& state, Ledger& ledger, bool given = true) {
-        for (const Released& r : released_) {
-            const real left = recoverable_energy(r, state.y.data());
-            stored_[damper_of(r.contact)] += left;
-            ledger.normal[damper_of(r.contact)] += r.energy - left;
-        }
-        result_.record(t, state, ledger, stored_, force_, given);
-    }
-
-    void clear_contact_samples() {
-        std::fill(stored_.begin(), stored_.end(), 0.0);
-        std::fill(force_.begin(), force_.end(), 0.0);
-    }
-
-    bool sample_due(real until) const {
-        return next_sample_ < problem_.sample_times.size() && problem_.sample_times[next_sample_] <= until;
-    }
-
     // Ends the recovery of released contacts that have opened. Their stored energy is lost. In a flight they
     // only open, so that one that approaches after it has been open, even if it has just closed again.
     void open_all_released(int touched, bool after_flight = false) {
-        for (std::size_t i = released_.size(); i-- > 0;) {
-            const int c = released_[i].contact;
-            const real rounding = 8 * epsilon * problem_.dampers[damper_of(c)].clearance;
-            const Gap g = gap(problem_, contact(c), state_.y.data());
+        for (std::size_t i = released.size(); i-- > 0;) {
+            const int c = released[i].contact;
+            const real rounding = contact_gap_rounding * problem.dampers[damper_of(c)].clearance;
+            const Gap g = gap(problem, contact(c), state.y.data());
             const bool is_recovering = g.value < -rounding && !(after_flight && g.rate < 0);
             if (c != touched && is_recovering) continue;
-            ledger_.normal[damper_of(released_[i].contact)] += released_[i].energy;
-            phase(released_[i].contact) = Phase::open;
-            released_.erase(released_.begin() + static_cast<std::ptrdiff_t>(i));
+            ledger.normal[damper_of(released[i].contact)] += released[i].energy;
+            phase(released[i].contact) = Phase::open;
+            released.erase(released.begin() + static_cast<std::ptrdiff_t>(i));
         }
     }
 
-    void load_system() {
-        y_.assign(system_.size(), 0.0);
-        std::copy(state_.y.begin(), state_.y.end(), y_.begin());
-        for (std::size_t j = 0; j < system_.active.size(); ++j) y_[system_.x_index(j)] = system_.active[j].x;
-    }
-
-    void add_wall_force(int c, real force) {
-        if (contact(c).above == wall) force_[damper_of(c)] += force;
-        if (contact(c).below == wall) force_[damper_of(c)] -= force;
+    // Finds the contacts that touch at the start.
+    void find_touching() {
+        for (int c = 0; c < problem.contact_count(); ++c) {
+            const Gap g = gap(problem, contact(c), state.y.data());
+            if (g.value <= 0 && g.rate == 0) phase(c) = Phase::touching;
+        }
     }
 
     // Writes or reads all that the next event needs, in a fixed order.
     template <class Archive> void serialize(Archive& a) {
-        a(state_.t, state_.y, ledger_.load_work, ledger_.base_work, ledger_.viscous, ledger_.normal,
-          ledger_.plastic, phase_, released_, system_.active, stuck_, contact_ended_, result_.status,
-          result_.impacts);
+        a(state.t, state.y, ledger.load_work, ledger.base_work, ledger.viscous, ledger.normal, ledger.plastic,
+          phases, released, system.active, stuck, contact_ended, result.status, result.impacts);
     }
-
-public:
-    RunState(const Problem& problem, const std::atomic<bool>* stop)
-        : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem),
-          ledger_(problem), sampled_(problem), flight_(problem), system_(problem),
-          phase_(problem.contacts.size(), Phase::open), until_(problem.settings.duration), result_(problem),
-          stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
 };
 
 } // namespace rattlebox

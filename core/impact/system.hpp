@@ -3,7 +3,7 @@
 // State y: modes and balls as in impact/state.hpp; time since the start, work of loads, work of the base,
 // viscous loss; then for each soft contact x, with overlap = origin + x^4, and the loss in its dashpot. The
 // independent variable is a transformed time, dt = dtau / sum(1 / x_j^3), which makes Hertz contacts regular
-// at begin and end for any number of simultaneous contacts. Without soft contacts it is time. The
+// at the start and the end for any number of simultaneous contacts. Without soft contacts it is time. The
 // transformation is derived here.
 #pragma once
 
@@ -102,9 +102,9 @@ public:
         : problem_(problem), cavity_rate_(problem.dampers.size()), cavity_force_(problem.dampers.size()),
           ball_force_(problem.ball_mass.size()), signal_(problem.loads.size()) {}
 
-    void begin(const Loads& loads, real start) {
+    void start(const Loads& loads, real time) {
         loads_ = &loads;
-        start_ = start;
+        start_ = time;
         clock_.resize(active.size());
     }
 

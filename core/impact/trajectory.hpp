@@ -1,174 +1,206 @@
 // The event-driven 1-D engine: flights and contacts in turn, with samples.
 //
-// Soft contacts are integrated (impact/closed_contacts.hpp). With Method::newton impacts are instantaneous,
-// and a contact whose bounces become shorter than a given fraction of the shortest period of modes and loads,
-// or slower than that fraction of the largest speed, sticks until its force would become attractive.
+// Soft contacts are integrated (impact/contact_solver.hpp). With Method::newton impacts are instantaneous
+// (impact/hard_contacts.hpp), and a contact whose bounces become shorter than a given fraction of the
+// shortest period of modes and loads, or slower than that fraction of the largest speed, sticks until its
+// force would become attractive.
 #pragma once
 
-#include "impact/closed_contacts.hpp"
+#include "impact/contact_solver.hpp"
 
 namespace rattlebox {
 
-class Trajectory : protected ClosedContacts {
+class Trajectory {
+    using Phase = RunState::Phase;
+
+    RunState run_;
+    const Problem& problem_;
+    Output output_;
+    Flight flight_;
+    HardContacts hard_;
+    ContactStarter starter_;
+    ContactSolver solver_;
+    State sample_, flight_end_; // within a flight, and at its end
+    // Contacts of a flight: whether their touches are sought, and whether forces press them together.
     std::vector<char> is_watched_, is_pressing_;
-    std::vector<int> held_;    // hard contacts that stay closed in a flight: stuck ones, then others at rest
-    std::vector<int> opening_; // touching contacts that open in a flight
-    State flight_end_;         // state at the end of a flight
+    std::vector<int> opening_; // touching contacts that open
+    std::vector<int> held_;    // hard contacts that stay closed: stuck ones, then others at rest
     bool goes_on_ = false;     // whether the last flight ended without any event while contacts were stuck
 
     void sample_flight_at(real t, bool given) {
-        sampled_ = ledger_;
-        flight_.add_to_ledger(t - state_.t, sampled_);
-        flight_.at(t - state_.t, scratch_);
-        clear_contact_samples();
-        for (std::size_t i = 0; i < stuck_.size(); ++i)
-            add_wall_force(stuck_[i], flight_.held_force(i, t - state_.t));
-        record(t, scratch_, sampled_, given);
+        output_.ledger = run_.ledger;
+        flight_.add_to_ledger(t - run_.state.t, output_.ledger);
+        flight_.at(t - run_.state.t, sample_);
+        output_.clear();
+        for (std::size_t i = 0; i < run_.stuck.size(); ++i)
+            output_.add_wall_force(run_.stuck[i], flight_.held_force(i, t - run_.state.t));
+        output_.record(t, sample_, given);
     }
 
     // Takes the samples up to `until`, and those at a contact that has just ended or begins at `until`. The
     // end is sampled at the next floating-point time, so that hard impacts have samples of the velocities
     // before and after.
     void sample_flight(real until, bool at_touch) {
-        const real begin = state_.t;
+        const real start = run_.state.t;
         const auto sample_up_to = [&](real t) {
-            while (sample_due(t)) sample_flight_at(problem_.sample_times[next_sample_++], true);
+            while (output_.is_due(t)) sample_flight_at(output_.next_time(), true);
         };
-        if (samples_contacts() && (contact_ended_ || at_touch)) {
-            const real just_after = std::nextafter(begin, infinity), middle = 0.5 * (begin + until);
-            if (contact_ended_ && just_after < until) {
-                sample_up_to(begin);
+        if (output_.samples_contacts() && (run_.contact_ended || at_touch)) {
+            const real just_after = std::nextafter(start, infinity), middle = 0.5 * (start + until);
+            if (run_.contact_ended && just_after < until) {
+                sample_up_to(start);
                 sample_flight_at(just_after, false);
             }
             sample_up_to(middle);
-            if (middle > begin) sample_flight_at(middle, false);
+            if (middle > start) sample_flight_at(middle, false);
             sample_up_to(until);
             if (at_touch) sample_flight_at(until, false);
         }
         sample_up_to(until);
-        contact_ended_ = false;
+        run_.contact_ended = false;
     }
 
-    // ---- flights
+    // Asks the forces how the touching contacts go on; returns whether some are pressed together.
+    bool sort_touching() {
+        bool is_any_pressing = false;
+        is_pressing_.assign(run_.phases.size(), false);
+        held_ = run_.stuck;
+        opening_.clear();
+        for (int c = 0; c < problem_.contact_count(); ++c) {
+            const auto at = static_cast<std::size_t>(c);
+            is_watched_[at] = run_.phase(c) == Phase::open || run_.phase(c) == Phase::released;
+            if (run_.phase(c) != Phase::touching) continue;
+            const int tendency = flight_.tendency(run_.contact(c));
+            if (tendency > 0 && !run_.hard()) run_.phase(c) = Phase::open;
+            if (tendency > 0) opening_.push_back(c);
+            if (tendency < 0) is_pressing_[at] = is_any_pressing = true;
+            if (tendency == 0) held_.push_back(c);
+        }
+        return is_any_pressing;
+    }
+
+    void stick_pressing() {
+        std::vector<Closing> pressed;
+        for (std::size_t c = 0; c < is_pressing_.size(); ++c)
+            if (is_pressing_[c]) pressed.emplace_back().contact = static_cast<int>(c);
+        hard_.stick(pressed);
+    }
+
+    // Moves to the end of the flight, with samples and the energies of the way there.
+    void land(real length, real end, bool at_touch) {
+        sample_flight(end, at_touch);
+        flight_.add_to_ledger(length, run_.ledger);
+        std::swap(flight_end_.y, run_.state.y);
+        run_.state.t = end;
+    }
 
     void fly() {
-        ++result_.counts.flights;
-        const real stop = next_stop();
-        bool any_touching = false;
-        for (Phase p : phase_) any_touching = any_touching || p == Phase::touching;
+        ++run_.result.counts.flights;
         goes_on_ = false;
-        flight_.begin(state_, loads_, stop - state_.t, any_touching, stuck_);
-        bool pressing = false;
-        is_pressing_.assign(phase_.size(), false);
-        held_ = stuck_;
-        opening_.clear();
-        for (std::size_t c = 0; c < phase_.size(); ++c) {
-            is_watched_[c] = phase_[c] == Phase::open || phase_[c] == Phase::released;
-            if (phase_[c] != Phase::touching) continue;
-            const int tendency = flight_.tendency(problem_.contacts[c]);
-            if (tendency > 0 && !hard()) phase_[c] = Phase::open;
-            if (tendency > 0) opening_.push_back(static_cast<int>(c));
-            if (tendency < 0) is_pressing_[c] = pressing = true;
-            if (tendency == 0) held_.push_back(static_cast<int>(c));
-        }
-        if (pressing && hard()) {
-            std::vector<Closing> pressed;
-            for (std::size_t c = 0; c < phase_.size(); ++c)
-                if (is_pressing_[c]) pressed.emplace_back().contact = static_cast<int>(c);
-            stick(pressed);
-            return;
-        }
+        const real stop = run_.next_stop(), take_off = run_.state.t;
+        const bool any_touching =
+            std::find(run_.phases.begin(), run_.phases.end(), Phase::touching) != run_.phases.end();
+        flight_.start(run_.state, run_.loads, stop - take_off, any_touching, run_.stuck);
+
+        // Contacts that touch: hard ones stick if a force presses them, soft ones close from rest.
+        const bool pressing = sort_touching();
+        if (pressing && run_.hard()) return stick_pressing();
         // Hard contacts at rest that no force presses together would drift by the rounding of their speeds.
-        if (hard() && held_.size() > stuck_.size())
-            flight_.begin(state_, loads_, flight_.horizon(), true, held_);
-        const FirstTouch release = flight_.first_release(stuck_.size());
-        if (release.contact >= 0 && release.time == 0) return release_stuck(release.contact);
+        if (run_.hard() && held_.size() > run_.stuck.size())
+            flight_.start(run_.state, run_.loads, flight_.horizon(), true, held_);
+
+        // The earliest event: a stuck contact is released, a contact touches, or the flight ends.
+        const FirstTouch release = flight_.first_release(run_.stuck.size());
+        if (release.contact >= 0 && release.time == 0) return hard_.release(release.contact);
         const FirstTouch touch = flight_.first_touch(is_watched_, release.time, flight_end_);
         real length = touch.time;
         if (pressing) {
-            length = rest_flight_length(length);
+            length = starter_.rest_flight_length(flight_, length);
             flight_.at(length, flight_end_);
         }
-        const bool to_stop = touch.contact < 0 && length == stop - state_.t;
-        const real begin = state_.t, end = to_stop ? stop : begin + length;
+        const bool to_stop = touch.contact < 0 && length == stop - take_off;
         const bool touches = touch.contact >= 0 && length == touch.time;
-        sample_flight(end, touches || pressing);
-        flight_.add_to_ledger(length, ledger_);
-        std::swap(flight_end_.y, state_.y);
-        state_.t = end;
-        if (length > 0) // several may open at one time: until then all of them touch
-            for (const int c : opening_) phase(c) = Phase::open;
-        open_all_released(touch.contact, true);
-        if (pressing) begin_contacts_from_rest(begin, is_pressing_);
-        if (touches)
-            begin_contact_at(touch.contact);
-        else if (release.contact >= 0 && length == release.time)
-            release_stuck(release.contact);
-        else
-            goes_on_ = !stuck_.empty();
-        last_jump_ = pressing && !touches ? begin : state_.t;
-    }
+        land(length, to_stop ? stop : take_off + length, touches || pressing);
 
-    // The force of a stuck contact became attractive: it touches, and the forces decide whether it opens.
-    void release_stuck(int which) {
-        phase(stuck_[static_cast<std::size_t>(which)]) = Phase::touching;
-        stuck_.erase(stuck_.begin() + which);
+        // What happens there. Several contacts may open at one time: until then all of them touch.
+        if (length > 0)
+            for (const int c : opening_) run_.phase(c) = Phase::open;
+        run_.open_all_released(touch.contact, true);
+        if (pressing) starter_.start_from_rest(take_off, is_pressing_);
+        if (touches)
+            starter_.start_at(touch.contact);
+        else if (release.contact >= 0 && length == release.time)
+            hard_.release(release.contact);
+        else
+            goes_on_ = !run_.stuck.empty();
+        run_.last_jump = pressing && !touches ? take_off : run_.state.t;
     }
 
     // Whether every released contact will open because its rate is too large for the accelerations of the
     // flight.
     bool released_contacts_only_open() {
-        if (released_.empty()) return true;
-        flight_.begin(state_, loads_, next_stop() - state_.t, false);
-        for (const Released& r : released_) {
-            const Gap g = gap(problem_, contact(r.contact), state_.y.data());
+        if (run_.released.empty()) return true;
+        flight_.start(run_.state, run_.loads, run_.next_stop() - run_.state.t, false);
+        for (const Released& r : run_.released) {
+            const Gap g = gap(problem_, run_.contact(r.contact), run_.state.y.data());
             const real bound = std::fabs(flight_.curvature(static_cast<std::size_t>(r.contact)));
             if (!(g.rate > 0 && square(g.rate) > 8 * bound * std::fabs(g.value))) return false;
         }
         return true;
     }
 
-protected:
-    // Finds the contacts that touch at the start.
-    void find_touching() {
-        for (int c = 0; c < problem_.contact_count(); ++c) {
-            const Gap g = gap(problem_, contact(c), state_.y.data());
-            if (g.value <= 0 && g.rate == 0) phase(c) = Phase::touching;
-        }
-    }
-
-    // Continues until the time `until_`, or until the run stops early.
-    void advance() {
-        while (running() && state_.t < until_) {
-            if (state_.t >= loads_.next_knot()) loads_.advance(state_.t);
-            result_.counts.events += !goes_on_;
-            if (result_.counts.events > problem_.settings.max_events ||
-                result_.counts.flights > 200 * problem_.settings.max_events)
-                fail(Status::too_many_events);
-            else if (stop_ && stop_->load(std::memory_order_relaxed))
-                fail(Status::interrupted);
-            else if (system_.active.empty() && released_contacts_only_open())
-                fly();
-            else
-                integrate_closed();
-        }
-        result_.stopped_at = state_.t;
+    bool may_go_on() {
+        const Counts& counts = run_.result.counts;
+        const long most = problem_.settings.max_events;
+        if (counts.events > most || counts.flights > steps_per_event * most)
+            run_.fail(Status::too_many_events);
+        else if (run_.is_stopped())
+            run_.fail(Status::interrupted);
+        return run_.running();
     }
 
 public:
-    Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
-        : ClosedContacts(problem, stop), is_watched_(problem.contacts.size()), flight_end_(problem) {}
+    explicit Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
+        : run_(problem, stop), problem_(problem), output_(run_), flight_(problem), hard_(run_),
+          starter_(run_, output_, hard_), solver_(run_, output_, starter_), sample_(problem),
+          flight_end_(problem), is_watched_(problem.contacts.size()) {}
+    Trajectory(const Trajectory&) = delete; // its parts refer to each other
+    Trajectory& operator=(const Trajectory&) = delete;
+
+    RunState& run_state() { return run_; }
+    const RunState& run_state() const { return run_; }
+    Output& output() { return output_; }
+    ContactStarter& contact_starter() { return starter_; }
+
+    // Continues until the time `until`, or until the run stops early.
+    void advance() {
+        while (run_.running() && run_.state.t < run_.until) {
+            if (run_.state.t >= run_.loads.next_knot()) run_.loads.advance(run_.state.t);
+            run_.result.counts.events += !goes_on_;
+            if (!may_go_on()) break;
+            if (run_.system.active.empty() && released_contacts_only_open())
+                fly();
+            else
+                solver_.advance();
+        }
+        run_.result.stopped_at = run_.state.t;
+    }
 
     Result run() {
-        find_touching();
-        if (sample_due(0)) {
-            ++next_sample_;
-            clear_contact_samples();
-            sampled_ = ledger_;
-            record(0, state_, sampled_);
+        run_.find_touching();
+        if (output_.is_due(0)) {
+            output_.next_time();
+            output_.record_now();
         }
         advance();
-        return std::move(result_);
+        return std::move(run_.result);
+    }
+
+    template <class Archive> void serialize(Archive& a) {
+        run_.serialize(a);
+        starter_.serialize(a);
+        hard_.serialize(a);
+        a(run_.last_jump, run_.largest_overlap);
     }
 };
 

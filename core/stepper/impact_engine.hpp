@@ -7,7 +7,9 @@
 namespace rattlebox {
 
 // The problem is a base so that it exists before the trajectory, which refers to it.
-class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
+class ImpactEngine : PackedCase<Problem>, public StepEngine {
+    Trajectory trajectory_;
+    RunState& run_;
     Extremes extremes_;
 
     // Throws unless every index and size in a restored state can be one of this case.
@@ -21,7 +23,7 @@ class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
                                [](real value) { return std::fabs(value) < infinity; });
         };
         const auto check_impact = [&](int impact) {
-            require(impact >= -1 && impact < static_cast<int>(result_.impacts.size()));
+            require(impact >= -1 && impact < static_cast<int>(run_.result.impacts.size()));
         };
         // A contact is in one of the lists at most.
         std::vector<char> is_listed(contacts, false);
@@ -31,24 +33,25 @@ class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
             require(!listed);
             listed = true;
         };
-        require(state_.t >= 0 && state_.t < infinity && is_finite(state_.y));
-        require(state_.y.size() == 2 * (problem.modes.size() + problem.ball_mass.size()));
-        require(ledger_.normal.size() == dampers && ledger_.plastic.size() == dampers);
-        require(phase_.size() == contacts);
-        for (const Phase phase : phase_) require(phase >= Phase::open && phase <= Phase::released);
-        for (const auto& one : system_.active) check_contact(one.contact), check_impact(one.impact);
-        for (const auto& one : released_) check_contact(one.contact), check_impact(one.impact);
-        for (const int contact : stuck_) check_contact(contact);
-        for (const Impact& impact : result_.impacts)
+        require(run_.state.t >= 0 && run_.state.t < infinity && is_finite(run_.state.y));
+        require(run_.state.y.size() == 2 * (problem.modes.size() + problem.ball_mass.size()));
+        require(run_.ledger.normal.size() == dampers && run_.ledger.plastic.size() == dampers);
+        require(run_.phases.size() == contacts);
+        for (const RunState::Phase phase : run_.phases)
+            require(phase >= RunState::Phase::open && phase <= RunState::Phase::released);
+        for (const auto& one : run_.system.active) check_contact(one.contact), check_impact(one.impact);
+        for (const auto& one : run_.released) check_contact(one.contact), check_impact(one.impact);
+        for (const int contact : run_.stuck) check_contact(contact);
+        for (const Impact& impact : run_.result.impacts)
             require(impact.contact >= 0 && impact.contact < static_cast<int>(contacts));
-        require(result_.status == Status::finished);
+        require(run_.result.status == Status::finished);
         require(extremes_.overlap.size() == contacts && extremes_.speed.size() == contacts);
         for (const Damper& damper : problem.dampers) require(std::fabs(damper.gravity) < infinity);
     }
 
     // Keeps the impacts in the log that are not complete.
     void forget_impacts() {
-        for (const Impact& impact : result_.impacts) {
+        for (const Impact& impact : run_.result.impacts) {
             const auto c = static_cast<std::size_t>(impact.contact);
             extremes_.overlap[c] = std::fmax(extremes_.overlap[c], impact.peak_overlap);
             extremes_.speed[c] = std::fmax(extremes_.speed[c], impact.approach_speed);
@@ -56,29 +59,28 @@ class ImpactEngine : PackedCase<Problem>, Trajectory, public StepEngine {
         std::vector<Impact> kept;
         const auto keep = [&](int& index) {
             if (index < 0) return;
-            kept.push_back(result_.impacts[static_cast<std::size_t>(index)]);
+            kept.push_back(run_.result.impacts[static_cast<std::size_t>(index)]);
             index = static_cast<int>(kept.size()) - 1;
         };
-        for (Active& a : system_.active) keep(a.impact);
-        for (Released& r : released_) keep(r.impact);
-        result_.impacts = std::move(kept);
+        for (Active& a : run_.system.active) keep(a.impact);
+        for (Released& r : run_.released) keep(r.impact);
+        run_.result.impacts = std::move(kept);
     }
 
     void sample(real until) {
         problem.sample_times.assign(1, until);
-        next_sample_ = 0;
-        result_.samples = Samples{};
+        trajectory_.output().rewind();
+        run_.result.samples = Samples{};
     }
 
 public:
     explicit ImpactEngine(PackedCase<Problem>&& packed)
-        : PackedCase<Problem>(std::move(packed)), Trajectory(problem) {
+        : PackedCase<Problem>(std::move(packed)), trajectory_(problem), run_(trajectory_.run_state()) {
         extremes_.overlap.assign(problem.contacts.size(), 0), extremes_.speed = extremes_.overlap;
-        until_ = 0;
+        run_.until = 0;
         sample(0);
-        find_touching();
-        clear_contact_samples();
-        record(0, state_, sampled_);
+        run_.find_touching();
+        trajectory_.output().record_now();
     }
 
     const Component& component() const override { return PackedCase<Problem>::component; }
@@ -100,16 +102,16 @@ public:
 
     Status advance(real length, const real* inputs, const std::atomic<bool>& stop) override {
         for (std::size_t l = 0; l < problem.loads.size(); ++l) problem.loads[l].signal.amplitude = inputs[l];
-        loads_.advance(state_.t);
-        until_ = state_.t + length;
-        sample(until_);
-        result_.counts = Counts{};
-        stop_ = &stop;
-        Trajectory::advance();
-        stop_ = nullptr;
+        run_.loads.advance(run_.state.t);
+        run_.until = run_.state.t + length;
+        sample(run_.until);
+        run_.result.counts = Counts{};
+        run_.stop = &stop;
+        trajectory_.advance();
+        run_.stop = nullptr;
         forget_impacts();
-        if (running() && result_.samples.time.empty()) fail(Status::not_finite);
-        return result_.status;
+        if (run_.running() && run_.result.samples.time.empty()) run_.fail(Status::not_finite);
+        return run_.result.status;
     }
 
     real computing_time(real length) const override {
@@ -118,18 +120,18 @@ public:
     }
 
     Stop stop() const override {
-        if (result_.stopped_contact < 0) return {};
-        const int damper = contact(result_.stopped_contact).damper;
+        if (run_.result.stopped_contact < 0) return {};
+        const int damper = run_.contact(run_.result.stopped_contact).damper;
         return {damper,
-                result_.stopped_contact - problem.dampers[static_cast<std::size_t>(damper)].first_contact,
-                result_.stopped_value};
+                run_.result.stopped_contact - problem.dampers[static_cast<std::size_t>(damper)].first_contact,
+                run_.result.stopped_value};
     }
 
     Extremes extremes() const override { return extremes_; }
 
     StepEnd end() const override {
         StepEnd e;
-        const Samples& s = result_.samples;
+        const Samples& s = run_.result.samples;
         const real* y = s.state.data();
         for (std::size_t k = 0; k < problem.modes.size(); ++k) {
             const ModeState mode{y[2 * k], y[2 * k + 1]};
@@ -154,7 +156,7 @@ public:
     }
 
     template <class Archive> void serialize(Archive& archive) {
-        Trajectory::serialize(archive);
+        trajectory_.serialize(archive);
         for (Damper& damper : problem.dampers) archive(damper.gravity);
         archive(extremes_.overlap, extremes_.speed);
     }

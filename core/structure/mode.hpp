@@ -57,7 +57,7 @@ public:
         root_ = std::sqrt(std::fabs(square_of_root));
     }
 
-    void begin(const ModeState& start) {
+    void start(const ModeState& start) {
         start_ = start;
         q_slope_ = start.p + mode_.decay * start.q;
         p_slope_ = -(mode_.stiffness * start.q + mode_.decay * start.p);

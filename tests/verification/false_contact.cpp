@@ -9,15 +9,6 @@ namespace {
 
 using namespace rattlebox;
 
-// A trajectory whose contacts begin when the test asks for it.
-struct Probe : Trajectory {
-    using Trajectory::Trajectory;
-    void begin() {
-        begin_contact_at(1); // at the leading wall
-        std::printf("%d %zu\n", static_cast<int>(result_.status), result_.impacts.size());
-    }
-};
-
 void begin(Method method, real gap, real approach) {
     Problem p;
     Damper& damper = p.dampers.emplace_back();
@@ -39,7 +30,10 @@ void begin(Method method, real gap, real approach) {
     p.ball_damper = {0};
     p.settings.method = method;
     p.settings.duration = 1;
-    Probe(p).begin();
+    Trajectory trajectory(p);
+    trajectory.contact_starter().start_at(1); // at the leading wall
+    const Result& result = trajectory.run_state().result;
+    std::printf("%d %zu\n", static_cast<int>(result.status), result.impacts.size());
 }
 
 } // namespace

@@ -104,7 +104,7 @@ struct Thornton {
         return yield_overlap(k) + speed * std::sqrt(mass / k.second);
     }
     // Duration for a Hertz contact with the largest slope of the force in the impact, at the yield overlap or
-    // at the begin of unloading.
+    // at the start of unloading.
     real contact_time(real speed) const {
         const Coefficients<real> k = coefficients(0, 0);
         const real yield = yield_overlap(k), yield_force = 2.0 / 3.0 * k.second * yield;
