@@ -27,7 +27,7 @@ from rattlebox.exchange.read.formats import Format, no_signals, record_reader, s
 from .base import FilePart
 from .elementwise import Vector
 from .errors import Hint, at, several
-from .files import absolute, existing
+from .files import absolute, check_finite, existing
 from .records import Column, Columns, as_columns, read_columns
 from .signals import UNIT_NAMES, UNITS, Sampled, Unit
 from .units import SI, STANDARD_GRAVITY, Number, PositiveTime, factor_of, numbers, parse
@@ -138,7 +138,7 @@ def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: An
         raise DataError(f"{path} states no unit", 'unit = "g"')
     headings = [f"values ({signal.unit[:_SHOWN]})"] if signal.unit else []
     times, values = np.asarray(signal.times, dtype=float), np.asarray(signal.values, dtype=float)
-    return Columns(times, values, ([], headings), signal.lines, signal.notes)
+    return Columns(times, check_finite(values, f"{path}: the values"), ([], headings), signal.lines, signal.notes)
 
 
 def _words_on_text(columns: Columns) -> str:

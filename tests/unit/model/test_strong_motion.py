@@ -228,3 +228,22 @@ def test_a_velocity_is_no_length(tmp_path: Path) -> None:
     path = write(tmp_path, "a.csv", "t (s),a (cm/s)\n0,0\n0.1,1\n0.2,0\n")
     with pytest.raises(rb.RattleboxError, match="'cm/s', written above the column"):
         rb.Record.from_file(path)
+
+
+@pytest.mark.parametrize("name", ["a.dat", "a.smc", "a.V2", "a.ASC"])
+def test_long_rows_of_digits(tmp_path: Path, name: str) -> None:
+    """Thousands of digits before a letter are refused at once: 300 mutants had none, and the pattern took cubic time."""
+    lines = FILES[name][0].splitlines()
+    for text in ("9" * 100_000 + "x", "1" * 50_000 + "-" + "." * 50_000, "-1E" * 30_000):
+        path = write(tmp_path, name, "\n".join([*lines[:-2], text, lines[-1]]))
+        start = time.process_time()
+        with pytest.raises(rb.RattleboxError, match="try: "):
+            rb.Record.from_file(path)
+        assert time.process_time() - start < 2
+
+
+def test_samples_beyond_all_measurements_name_the_file(tmp_path: Path) -> None:
+    """A sample of 1e38 is refused with the name of the file, which the message of the fields did not have."""
+    path = write(tmp_path, "a.smc", SMC.replace(short(SAMPLES[1]), "   1.7E+38"))
+    with pytest.raises(rb.RattleboxError, match=r"a\.smc.*1\.7e\+38"):
+        rb.Record.from_file(path)

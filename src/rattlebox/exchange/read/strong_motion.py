@@ -15,7 +15,8 @@ from rattlebox._util.exceptions import DataError
 from .formats import SignalInFile, record_reader
 from .guarded import errors_of
 
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d{1,3})?(?=[-+\s]|$)")
+# Possessive, and never from within a number: thousands of digits before a letter would take cubic time.
+_NUMBER = re.compile(r"(?:[-+]|(?<![\d.]))(?:\d++\.?+\d*+|\.\d++)(?:[EeDd][-+]?\d{1,3}+)?+(?=[-+\s]|$)")
 _FORMAT = re.compile(r"\(\s*\d*\(?(?:1p,?)?\s*\d*[fe](\d+)\.", re.I)
 _WHOLE = "the complete file, as it was downloaded"
 _SHOWN = 60  # characters of a line in a message
