@@ -22,7 +22,7 @@ import rattlebox as rb
 
 FILLS, NUMBERS = [0.2, 0.3, 0.4], [1, 2, 3, 4]
 AMPLITUDES = ["25 um", "32 um", "40 um", "50 um", "63 um", "80 um", "100 um"]
-CYCLES = (10, 20)  # to skip, and to evaluate
+CYCLES = (80, 40)  # to skip, and to evaluate; after fewer, some beds still sink
 HEAVIEST = 0.25  # kg
 
 
