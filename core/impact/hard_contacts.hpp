@@ -155,7 +155,8 @@ public:
     // Newton's law holds for each: with the approach rates v before and v' after the impact and the impulses
     // p, p >= 0, -v' >= e v, and one of both is an equality. Each contact loses p (1 - e) v / 2.
     void impact(int first) {
-        // Impacts that become slow without a closing force (inelastic collapse) end in the same way.
+        // What closes now. Slow impacts do not rebound: those without a closing force (inelastic collapse)
+        // would never end otherwise.
         largest_impact_speed_ = std::fmax(largest_impact_speed_, largest_speed());
         const real slowest = std::fmax(problem_.settings.stick * largest_impact_speed_, velocity_rounding());
         bool rebounds = false, slow = true;
@@ -173,6 +174,7 @@ public:
             rebounds = rebounds || each.restitution > 0;
             slow = slow && each.speed < slowest;
         }
+        // All impulses at once, so that the order of the contacts does not matter.
         reduce_approaches(closing_, rebounds, slow);
         run_.contact_ended = true;
         std::erase_if(closing_, [](const Closing& each) { return !(each.impulse > 0); }); // opened by others
@@ -191,6 +193,7 @@ public:
             each.number = static_cast<std::size_t>(run_.result.add_impact(impact));
         }
         run_.result.counts.simultaneous += closing_.size() > 1;
+        // Contacts at rest that the impact has set in motion are open before the accelerations are asked.
         release_moving();
         // All decisions before any contact sticks, so that their order does not matter.
         std::vector<Closing> sticking;
@@ -205,6 +208,7 @@ public:
                 run_.phase(c) = Phase::touching;
         }
         if (sticking.empty()) return;
+        // What is left of the approach rates is lost, too, and belongs to the same impacts.
         stick(sticking);
         for (const Closing& each : sticking)
             run_.result.impacts[each.number].energy_lost += 0.5 * each.impulse * each.change;

@@ -126,9 +126,12 @@ public:
                               run_.next_stop() - run_.state.t))
             return false;
         if (!is_isolated(c, speed, contact_.longest_time()) || !contact_.solve()) return false;
+        // Contacts that a bound of the motion could not exclude are excluded by the motion itself.
         for (const int other : uncertain_)
             if (!(contact_.smallest_gap(run_.contact(other)) > 0)) return false;
-        ledger_.clear(); // a separate ledger, because the sums of a long run have larger rounding errors
+        // The sweeps do not use the energy balance, so that it tells whether they have converged. It has a
+        // ledger of its own, because the sums of a long run have larger rounding errors.
+        ledger_.clear();
         const IsolatedContact::Instant end = contact_.end();
         contact_.store_end(end, end_, ledger_);
         const ContactState contact_state = initial_state(*law, e, speed);
@@ -156,6 +159,7 @@ public:
         impact.complete = true;
         const int number = run_.result.add_impact(impact);
         ++run_.result.counts.collocated;
+        // Samples within need the state at the start, which the end replaces.
         if (output_.samples_contacts()) {
             const real deepest = run_.state.t + contact_.time_at(contact_.deepest_position());
             while (output_.is_due(deepest)) sample_isolated(c, *law, speed, zeta);
@@ -166,6 +170,7 @@ public:
         std::swap(run_.state.y, end_.y);
         run_.state.t += end.time;
         run_.ledger.add(ledger_);
+        // A force that ends before the overlap leaves the bodies to recover in flight.
         if (stored > 0) {
             run_.released.push_back({c, contact_state, number, stored});
             run_.phase(c) = RunState::Phase::released;

@@ -125,6 +125,7 @@ class TaylorMotion {
         right_.resize(held);
         for (int n = 0; n <= order; ++n) {
             const real both = (n + 1) * (n + 2);
+            // Accelerations of this order as if no contact were held.
             for (std::size_t k = 0; k < m; ++k) {
                 const Mode& mode = problem_.modes[k];
                 real a = mode_forces_[k].c[n] - 2 * mode.decay * (n + 1) * modes_[k].c[n + 1] -
@@ -135,6 +136,7 @@ class TaylorMotion {
                 modes_[k].c[n + 2] = a;
             }
             for (std::size_t b = 0; b < balls; ++b) balls_[b].c[n + 2] = accelerations_[b].c[n];
+            // The forces that make the approach accelerations zero.
             for (std::size_t i = 0; i < held; ++i) {
                 const Contact& c = contact(held_[i]);
                 const Damper& damper = damper_of(c);
@@ -159,6 +161,7 @@ class TaylorMotion {
                 on(c.below) -= right_[i];
                 on(c.above) += right_[i];
             }
+            // What they add, and the next coefficients of the motion.
             for (std::size_t k = 0; k < m; ++k) {
                 real force = 0;
                 for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
