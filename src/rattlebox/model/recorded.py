@@ -387,9 +387,10 @@ class Record(FilePart, Sampled):
         before = int(np.searchsorted(self.times, zero))
         if before:
             unused = abs(self.scale) * float(np.abs(self.values[:before]).max())
+            unit = f" {self.unit}" if self.unit else ""
             yield (
                 f"the record begins at {first:.6g} s; its {several(before, 'point')} before {zero:.6g} s, with a peak of "
-                f"{unused:.4g} {self.unit}, are not used (time_zero sets where the run begins)"
+                f"{unused:.4g}{unit}, are not used (time_zero sets where the run begins)"
             )
         elif zero:
             yield f"the record begins at {first:.6g} s and is shifted: its time {zero:.6g} s is 0 s of the run (time_zero)"

@@ -278,6 +278,15 @@ def test_columns_that_number_the_modes_are_left_out(tmp_path: Path, name: str) -
     np.testing.assert_array_equal(numbered.participation, plain.participation)
 
 
+def test_headings_with_underscores(tmp_path: Path) -> None:
+    """A column damping_ratio or modal_mass is a quantity, not a point; tests had headings with blanks only."""
+    (tmp_path / "modes.csv").write_text("frequency (Hz),damping_ratio (%),modal_mass (kg),tip\n12,3,4,2\n")
+    modal = rb.Modal.from_file(tmp_path / "modes.csv")
+    assert list(modal.shapes) == ["tip"]
+    np.testing.assert_allclose(modal.damping_ratios, [0.03])
+    np.testing.assert_allclose(modal.shapes["tip"], [1.0])
+
+
 def set_55(kind: int, frequency: float, *, number: int = 3) -> str:
     """Return a set 55 of a normal mode at two nodes, with data of this kind."""
     cells = "".join(f"{x:13.5E}" for x in (1.2, -0.4, 0.9)[:number])

@@ -51,7 +51,7 @@ def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
             raise DataError(
                 f"{path}, line {rows[0][0]}: the name {bad!r} contains a control character", "printable names"
             )
-        if "frequency" not in {_QUANTITIES.get(name.lower()) for name in names}:
+        if "frequency" not in {_QUANTITIES.get(_words(name)) for name in names}:
             raise DataError(
                 f"{path}, line {rows[0][0]}: no column is called frequency; the columns are {', '.join(map(repr, names))}",
                 "frequency (Hz), damping (%), tip",
@@ -96,6 +96,11 @@ def _name_and_unit(heading: str) -> tuple[str, str]:
     return (text[:bracket].rstrip(), text[bracket + 1 : -1]) if bracket >= 0 else (text, "")
 
 
+def _words(name: str) -> str:
+    """Return a heading in small letters, with blanks in place of underscores."""
+    return " ".join(name.lower().replace("_", " ").split())
+
+
 def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: FloatArray) -> ModesInFile:
     """Return the modes in a table of columns with these names and units."""
 
@@ -114,11 +119,10 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
     columns: dict[str, list[int]] = {}  # by quantity
     points: dict[str, dict[int, int]] = {}  # column of each axis, -1 for a shape without components
     for column, name in enumerate(names):
-        if name.lower() in _NUMBERING:
+        words = _words(name)
+        if words in _NUMBERING:
             continue
-        quantity = _QUANTITIES.get(name.lower()) or (
-            "participation" if name.lower().startswith("participation ") else ""
-        )
+        quantity = _QUANTITIES.get(words) or ("participation" if words.startswith("participation ") else "")
         if quantity:
             columns.setdefault(quantity, []).append(column)
             continue
