@@ -128,6 +128,8 @@ class Formats(Generic[Read]):
             return known
         if not self._starts and not self._contents:
             return known
+        if not path.is_file():  # a pipe would wait for a writer; the reader of tables of numbers has the message
+            return known
         try:
             with path.open("rb") as file:
                 start = file.read(_START)
