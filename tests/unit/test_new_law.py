@@ -133,6 +133,32 @@ contact = { kind = "quarry", loss = 0.2 } }
     assert done.returncode == 2 and "did you mean 'loss'?" in done.stderr, done.stderr
 
 
+SWEEP = """
+import rattlebox as rb
+
+case = rb.Case.from_file("case.toml")
+rb.sweep(case, {"damper.gap": ["1 mm", "2 mm"]}, ["impact_share"], store="changed.zarr", progress=False)
+"""
+
+
+def test_a_store_is_not_resumed_with_a_changed_law(folder: Path) -> None:
+    """A study refuses to go on after the module or the library of a law of another package has changed.
+
+    The case file says the same in both: no test saw that results of two laws could stand in one store.
+    """
+    site = folder / "site"
+    done = run(folder, sys.executable, "-c", SWEEP, PYTHONPATH=str(site))
+    assert done.returncode == 0, done.stderr
+    done = run(folder, sys.executable, "-c", SWEEP, PYTHONPATH=str(site))
+    assert done.returncode == 0, done.stderr
+    changed = shutil.copytree(site, folder / "changed")
+    (library,) = changed.glob(f"{NAME}/law.so")
+    with library.open("ab") as file:
+        file.write(b"\0")
+    done = run(folder, sys.executable, "-c", SWEEP, PYTHONPATH=str(changed))
+    assert done.returncode != 0 and f"code.{NAME}" in done.stderr, done.stderr
+
+
 @pytest.mark.parametrize(
     ("part", "instead", "message"),
     [

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import os
+from hashlib import sha256
+from pathlib import Path
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.plugins import Registry
@@ -11,6 +13,7 @@ from rattlebox.core import _core
 
 _LAWS: Registry[ctypes.CDLL] = Registry("normal law")
 """Loaded libraries by the name of their law; they stay in the process, because the core calls them."""
+_digests: dict[str, str] = {}
 
 
 def load_law(path: str | os.PathLike[str]) -> str:
@@ -63,4 +66,10 @@ def load_law(path: str | os.PathLike[str]) -> str:
     for own in _core.normal_law_names():
         _LAWS.reserve(own, "rattlebox")
     _LAWS.add(name, library, file)
+    _digests[name] = sha256(Path(file).read_bytes()).hexdigest()[:12]
     return name
+
+
+def law_digests() -> dict[str, str]:
+    """Return digests of the libraries of all loaded laws, by the names of the laws."""
+    return dict(sorted(_digests.items()))

@@ -33,6 +33,7 @@ from rattlebox._util.own_files import register_format
 from rattlebox.core import _core
 from rattlebox.core.choose import instructions
 from rattlebox.model.differences import differences
+from rattlebox.model.foreign_code import foreign_code
 from rattlebox.results.provenance import Provenance
 
 if TYPE_CHECKING:
@@ -121,7 +122,12 @@ class Checkpoint:
         self.path = Path(path)
         self.time: float | None = None  # simulated time of the state in the file [s]
         self._numbers = ""
-        self._about = {"case": comparable_toml(case), "version": Provenance.now().version, "core": instructions()}
+        self._about = {
+            "case": comparable_toml(case),
+            "version": Provenance.now().version,
+            "core": instructions(),
+            "code": foreign_code(case),
+        }
 
     @contextmanager
     def lock(self) -> Iterator[None]:
@@ -215,7 +221,8 @@ class Checkpoint:
         return self._numbers
 
     def _compare(self, about: Mapping[str, Any]) -> None:
-        stored = {name: about[name] for name in self._about}
+        stored = {"code": {}, **about}  # older files state no code
+        stored = {name: stored[name] for name in self._about}
         if lines := differences(stored, self._about):
             hint = _OTHER_FILE
             if len(lines) == 1 and stored["core"] != self._about["core"]:

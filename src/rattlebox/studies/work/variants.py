@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from rattlebox.core import _core
 from rattlebox.model.base import Part, full_text
 from rattlebox.model.errors import Hint, nearest
+from rattlebox.model.foreign_code import foreign_code
 from rattlebox.model.modes import ModalModel
 from rattlebox.model.paths import all_paths, get
 from rattlebox.studies.grid.grid import Grid
@@ -132,7 +133,7 @@ _LENGTH = 12
 
 
 def describe_case(case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a case in JSON types, with digests of the files that it or its variants name."""
+    """Return a case in JSON types, with digests of the files that it or its variants name, and of code of other packages."""
     files = {path: _digest_of_numbers(part) for path, part in _parts_from_files(case)}
     for path, values in columns.items():
         holder, _, name = path.rpartition(".")
@@ -140,7 +141,8 @@ def describe_case(case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
             files |= {f"{path} = {file}": _digest_of_file(file) for file in sorted(set(np.ravel(values).tolist()))}
         elif name == "columns" and (file := getattr(get(case, holder), "file", None)):
             files[f"{holder}.file"] = _digest_of_file(file)
-    return {"case": case.to_toml(), **({"files": files} if files else {})}
+    code = foreign_code(case)
+    return {"case": case.to_toml(), **({"files": files} if files else {}), **({"code": code} if code else {})}
 
 
 def _parts_from_files(case: Case) -> Iterator[tuple[str, Part]]:
