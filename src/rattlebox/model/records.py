@@ -24,7 +24,7 @@ from rattlebox.exchange.read.sheets import SHEETS, sheet_lines
 
 from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
-from .text_tables import Dialect, comma_is_both, decode, dialect_of, has_point
+from .text_tables import Dialect, comma_is_both, decode, dialect_of, has_point, may_separate_thousands
 from .units_in_text import Line
 
 Column = int | str
@@ -599,7 +599,7 @@ def _layout(
     known: Sequence[str],
     requested: Sequence[str],
 ) -> _Text | None:
-    """Return the table in the lines of a file, with the numbers of the rows below; None if there is no line of data."""
+    """Return the table in the lines of a file, with the numbers of the rows below; None if the lines do not suffice."""
     # Where the rows begin.
     start = _first_data_line(lines)
     if start is None:
@@ -617,6 +617,15 @@ def _layout(
             "semicolons between the columns, or decimal points",
         )
     rows = _Rows(head, below, last)
+    # One row with another number of digits tells; a factor of a thousand is not a matter of a note.
+    if dialect.has_comma and may_separate_thousands(row.content for row in rows):
+        if below.size:
+            return None  # a row that is not here as text may tell
+        raise DataError(
+            f"{file}, line {head[0].number}: the commas are decimal marks or separate thousands, which rows such as"
+            f" {head[0].content.strip()[:60]!r} do not tell",
+            "decimal points, or numbers without commas",
+        )
     # What the lines above and the first row state about the sampling.
     step: float | None = None
     notes: tuple[str, ...] = ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 _REAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -14,6 +14,7 @@ _FORTRAN = re.compile(r"([-+]?(?:\d+[.,]\d*|\.\d+))[dD]([-+]?\d{1,3})|([-+]?\d+)
 _COMPLEX = re.compile(rf"\(?(?<![\w.])({_REAL})([-+])(?=[-+]?[\d.])({_REAL})[ij]\)?(?![\w.])")
 """Complex numbers of numpy.savetxt, "(1.5e+00+-2.0e-01j)", and of others, "1.5-0.2i"."""
 _CONTROLS = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f]")
+_PAIR = re.compile(r"(\d*),(\d+)")
 _LINES = 3  # last lines of data that show delimiter and decimal mark; the very last may be cut short
 
 
@@ -129,6 +130,12 @@ def _split(line: str, dialect: Dialect) -> list[str]:
 def has_point(cells: Sequence[str]) -> bool:
     """Return whether one of the cells is a number with a decimal point."""
     return any(len(cell) > 1 and _POINT.fullmatch(cell) for cell in cells)
+
+
+def may_separate_thousands(lines: Iterable[str]) -> bool:
+    """Return whether the commas in rows of numbers may separate thousands, as in "1,250", instead of decimals."""
+    pairs = (pair for line in lines for pair in _PAIR.findall(line))
+    return all(len(end) == 3 and 0 < len(start) < 4 and start[0] != "0" for start, end in pairs)
 
 
 def comma_is_both(rows: Sequence[Sequence[str]], headings: Sequence[Sequence[str]]) -> bool:

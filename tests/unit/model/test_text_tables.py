@@ -212,3 +212,18 @@ def test_damaged_files_of_version_7_3(tmp_path: Path) -> None:
         (tmp_path / "a.mat").write_bytes(content[:128] + damaged[128:])
         with suppress(rb.RattleboxError):
             rb.Record.from_file(tmp_path / "a.mat", columns="ch", unit="N")
+
+
+@pytest.mark.parametrize("row", ["{};{},250\n", "{}\t{},250\n"])
+def test_commas_of_thousands_are_not_taken_for_decimal_marks(tmp_path: Path, row: str) -> None:
+    """Numbers such as 1,250 in each row may be a thousand times as large: they are refused; one 0,250 among them tells.
+
+    No test saw that a note was all: each table of decimal commas had numbers below one.
+    """
+    for count in (20, 20_000):  # read line by line, and quickly
+        text = "t (s);F (N)\n".replace(";", row[2]) + "".join(row.format(k, 1 + k % 7) for k in range(count))
+        (tmp_path / "a.txt").write_text(text)
+        with pytest.raises(rb.DataError, match="decimal marks or separate thousands"):
+            rb.Record.from_file(tmp_path / "a.txt")
+        (tmp_path / "a.txt").write_text(text + row.format(count, 0))
+        np.testing.assert_allclose(rb.Record.from_file(tmp_path / "a.txt").values[:3], [1.25, 2.25, 3.25])
