@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,11 @@ import numpy as np
 from rattlebox._util.exceptions import DataError, RattleboxError
 from rattlebox.exchange.read.formats import modes_reader, record_reader, signals_in
 from rattlebox.exchange.read.guarded import errors_of
+from rattlebox.exchange.read.modes_in_file import ModesInFile
 
+from .errors import several
 from .files import BINARY, existing, read_arrays
+from .modal_files import MOST_POINTS, read_modes
 from .recorded import Record, is_table
 from .records import columns_of_arrays, columns_of_text
 from .structures import Modal
@@ -179,7 +183,7 @@ def _described(record: Record) -> str:
     steps = np.diff(record.times)
     step = float(steps.mean())
     is_even = float(np.ptp(steps)) <= _EVEN * step
-    sampling = f"every {step:.6g} s ({1 / step:.6g} Hz)" if is_even else f"at uneven steps of {step:.4g} s in the mean"
+    sampling = f"every {step:.6g} s ({1 / step:.6g} Hz)" if is_even else f"at uneven steps of {step:.4g} s on average"
     peak = f"{record.peak:.4g} {record.unit}"
     if record.unit == "m/s^2":
         peak += f" = {record.peak / STANDARD_GRAVITY:.4g} g"
@@ -191,25 +195,17 @@ def _described(record: Record) -> str:
 def _modes(path: Path, given: str) -> FileContents | None:
     if modes_reader.of(path) is None:
         return None
-    options: dict[str, Any] = {}
-    assumed = []
-    try:
-        modal = Modal.from_file(str(path))
-    except RattleboxError as error:
-        if "states no damping" not in str(error):
-            raise
-        options = {"damping_ratio": _ASSUMED_DAMPING}
-        assumed.append(f"assumed: damping_ratio = {_ASSUMED_DAMPING}, since the file states no damping")
-        modal = Modal.from_file(str(path), **options)
+    options, assumed = _options_of_modes(read_modes(str(path), None))
+    modal = Modal.from_file(str(path), **options)
     frequencies = ", ".join(f"{frequency:.5g}" for frequency in modal.frequencies[:_LISTED])
     points = list(modal.shapes)
     lines = [
-        f"{len(modal.frequencies)} modes: {frequencies}{', ...' if len(modal.frequencies) > _LISTED else ''} Hz",
-        f"{len(points)} points: {', '.join(points[:_LISTED])}{', ...' if len(points) > _LISTED else ''}",
+        f"{several(len(modal.frequencies), 'mode')}: {frequencies}{', ...' if len(modal.frequencies) > _LISTED else ''} Hz",
+        f"{several(len(points), 'point')}: {', '.join(points[:_LISTED])}{', ...' if len(points) > _LISTED else ''}",
     ]
     fields = {"file": given, **options}
     toml = ["[structure]", 'kind = "modal"', *(f"{key} = {_toml(value)}" for key, value in fields.items())]
-    python = "".join(f", {key}={value!r}" for key, value in options.items())
+    python = "".join(f", {key}={_python(value)}" for key, value in options.items())
     return FileContents(
         given,
         "modes of a structure",
@@ -220,11 +216,35 @@ def _modes(path: Path, given: str) -> FileContents | None:
     )
 
 
+def _options_of_modes(modes: ModesInFile | Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Return what a user must state beside the file, and notes of what is assumed in its place."""
+    options: dict[str, Any] = {}
+    assumed: list[str] = []
+    table = modes if isinstance(modes, Mapping) else vars(modes)  # a TOML file has names of the same meaning
+    if table.get("damping_ratios") is None:
+        options["damping_ratio"] = _ASSUMED_DAMPING
+        assumed.append(f"assumed: damping_ratio = {_ASSUMED_DAMPING}, since the file states no damping")
+    if unfit := table.get("unfit"):
+        count = len(table["frequencies"])
+        options["mode_numbers"] = tuple(number for number in range(1, count + 1) if number not in unfit)
+        assumed.append(f"modes are left out: {'; '.join(f'{number}: {reason}' for number, reason in unfit.items())}")
+    shapes = table["shapes"]
+    if len(shapes) > MOST_POINTS and not isinstance(modes, Mapping):
+        point = max(shapes, key=lambda label: float(np.abs(shapes[label][0]).max()))
+        options["points"] = {f"point {point}": point}
+        assumed.append(
+            f"assumed: the one of {len(shapes)} points that moves most in the first mode; set those you need"
+        )
+    return options, assumed
+
+
 def _toml(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{json.dumps(key)} = {_toml(item)}" for key, item in value.items()) + " }"
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
 
 
 def _python(value: Any) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(_toml(item) for item in value)}{',' if len(value) == 1 else ''})"
-    return _toml(value)
+    return repr(value) if isinstance(value, dict) else _toml(value)

@@ -23,7 +23,7 @@ from .space import AXES
 from .units import numbers, parse, whole_number
 
 _TOML_FIELDS = ("frequencies", "damping_ratios", "modal_masses", "shapes", "participation")
-_MOST_POINTS = 8  # largest number of points that are all read if none is named
+MOST_POINTS = 8  # largest number of points that are all read if none is named
 _SHOWN = 200  # characters of a name or a value in a message
 _SAME_UNIT = 1e-2  # relative difference of units that are the same
 _SMALLEST_SHAPE = 1e-12  # kg^-1/2
@@ -249,9 +249,9 @@ def _select_points(modes: ModesInFile, given: Mapping[str, Any], name: str) -> d
     requested = given.get("points")
     labels = list(modes.shapes)
     if requested is None:
-        if len(labels) > _MOST_POINTS:
+        if len(labels) > MOST_POINTS:
             raise Hint(
-                f"{name} has {len(labels)} points; a selection is needed of more than {_MOST_POINTS}",
+                f"{name} has {len(labels)} points; a selection is needed of more than {MOST_POINTS}",
                 f'points = {{ tip = "{labels[0]}" }}, or "{labels[0]} z" for one direction',
                 ["points"],
             )

@@ -83,3 +83,20 @@ def test_files_without_numbers(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_bytes(content)
     with pytest.raises(rb.DataError, match=r"(?s)a\.csv.*try:"):
         rb.inspect(tmp_path / "a.csv")
+
+
+def test_a_preview_of_modes_with_many_points(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a file with hundreds of points, the one that moves most in the first mode is in the lines, which can be used.
+
+    No test saw that such a file was refused: all had few points.
+    """
+    monkeypatch.chdir(tmp_path)
+    names = ",".join(f"p{k}" for k in range(30))
+    rows = "".join(f"{f},{','.join(str(np.sin(f * k)) for k in range(30))}\n" for f in (0.3, 2.0))
+    Path("modes.csv").write_text(f"frequency (Hz),{names}\n{rows}")
+    contents = rb.inspect("modes.csv")
+    most = np.abs(np.sin(0.3 * np.arange(30))).argmax()
+    assert contents.lines[1] == f"1 point: point p{most}" and "one of 30 points" in str(contents)
+    part = eval(contents.python, {"rb": rb})
+    ((_, fields),) = tomllib.loads(contents.toml).items()
+    assert fields.pop("kind") == "modal" and rb.Modal(**fields) == part
