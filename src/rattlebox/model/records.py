@@ -6,25 +6,32 @@ rows between them, as long as all are rows of finite numbers; any other file is 
 
 from __future__ import annotations
 
-import csv
-import io
 import re
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
-from typing import Any, BinaryIO, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
 from rattlebox.exchange.read.guarded import errors_of
-from rattlebox.exchange.read.sheets import SHEETS, sheet_lines
+from rattlebox.exchange.read.sheets import SHEETS
 
 from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
-from .text_tables import Dialect, comma_is_both, decode, dialect_of, has_point, may_separate_thousands
+from .text_rows import (
+    Row,
+    Rows,
+    is_number,
+    is_of_numbers,
+    numbers_by_rows,
+    numbers_of_columns,
+    read_quickly,
+    split_lines,
+    with_decimal_point,
+)
+from .text_tables import Dialect, comma_is_both, may_separate_thousands
 from .units_in_text import Line
 
 Column = int | str
@@ -51,8 +58,6 @@ _TIMES = ("t", "time", "times", "time_s", "zeit", "temps", "tiempo", "tempo")
 """Names of variables of times."""
 _LARGE = 10  # samples from which a number in a text is no coincidence
 _PROBED = 2000  # rows from which the layout is concluded
-_HEAD, _TAIL = 1 << 16, 1 << 14
-"""Bytes at the beginning and at the end of a large file that are read line by line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,69 +79,12 @@ class Columns:
     notes: tuple[str, ...] = ()
 
 
-class _Row(NamedTuple):
-    """A line of text with its number, its cells, and its content without comment mark."""
-
-    number: int
-    cells: list[str]
-    is_comment: bool
-    content: str
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Rows of data: those in the head of a file as text, the numbers of those below, and the last row of the file as text.
-
-    A file that is read line by line has all rows in its head.
-    """
-
-    head: list[_Row]
-    below: Array  # (m, width), finite
-    last: list[_Row]
-
-    def __len__(self) -> int:
-        return len(self.head) + len(self.below) + len(self.last)
-
-    def __iter__(self) -> Iterator[_Row]:
-        yield from self.head
-        yield from self.last
-
-    @property
-    def end(self) -> _Row:
-        """The last row, which may be shorter."""
-        return (self.last or self.head)[-1]
-
-    @property
-    def width(self) -> int:
-        """Number of columns."""
-        return len(self.head[0].cells)
-
-    @property
-    def cells(self) -> int:
-        """Number of all cells."""
-        return self.below.size + sum(len(row.cells) for row in self)
-
-    def numbers(self, indices: Sequence[int]) -> Array:
-        """Return the numbers of some columns, without rows that have another width; raise ValueError for other text."""
-        parts = [
-            np.array([[float(row.cells[k]) for k in indices] for row in rows if len(row.cells) == self.width])
-            for rows in (self.head, self.last)
-        ]
-        first, end = (part.reshape(-1, len(indices)) for part in parts)
-        if not len(self.below):
-            return first
-        below = (
-            self.below if len(indices) == self.below.shape[1] and indices == sorted(indices) else self.below[:, indices]
-        )
-        return np.concatenate([first, below, end])
-
-
 @dataclass(frozen=True, eq=False)
 class _Text:
     """A table of text: rows of data, and the lines above them."""
 
     file: Path
-    rows: _Rows
+    rows: Rows
     names: list[str] | None
     headings: list[list[str]]
     lines: list[Line]
@@ -253,7 +201,7 @@ def _times_and_values(text: _Text, columns: Sequence[Column] | None) -> Columns:
             )
         columns = (1, index + 1)
     indices = _column_indices(text.file, columns, text.labels, is_named=text.is_named, rises=text.rises())
-    times, values = _parse_rows(text.file, text.rows, indices).T
+    times, values = numbers_of_columns(text.file, text.rows, indices).T
     headings = text.above(indices[0]), text.above(indices[1])
     return Columns(times, values, headings, tuple(text.lines), text.notes)
 
@@ -268,7 +216,7 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
         )
     # All numbers in the order of the text, or one column.
     if by_rows:
-        values = _parse_by_rows(text.file, text.rows)
+        values = numbers_by_rows(text.file, text.rows)
         if text.width > 1:
             notes.append(f"the samples are read row by row, {text.width} a row, {values.size} in all")
         headings: list[str] = []
@@ -283,7 +231,7 @@ def _samples(text: _Text, columns: Selection, step: float | None, by_rows: bool)
             raise _by_rows_error(text.file, text.width, _BY_ROWS)
         if step is not None and (note := text.other_step(index, step)):
             notes.append(note)
-        values = _parse_rows(text.file, text.rows, [index])[:, 0]
+        values = numbers_of_columns(text.file, text.rows, [index])[:, 0]
         headings = text.above(index)
         if not is_named and text.width > 2:
             notes.append(
@@ -555,7 +503,7 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise DataError(f"{file} has two columns {twice!r}", "another name for one of them")
-        return dict(zip(names, _parse_rows(file, text.rows, list(range(len(names)))).T, strict=True))
+        return dict(zip(names, numbers_of_columns(file, text.rows, list(range(len(names)))).T, strict=True))
 
 
 def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tuple[Array, list[list[str]]]:
@@ -570,7 +518,7 @@ def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tup
         file = existing(path)
         text = _parse_text(file, requested=[str(column) for column in columns or ()])
         indices = _column_indices(file, columns, text.labels, needed=count)
-        return _parse_rows(file, text.rows, indices), [text.above(index) for index in indices]
+        return numbers_of_columns(file, text.rows, indices), [text.above(index) for index in indices]
 
 
 def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] = ()) -> _Text:
@@ -579,11 +527,11 @@ def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] 
     The names are the last line above the data with as many cells and no number in them, or an earlier one (above a line of
     units) that contains more of the known or requested names.
     """
-    quick = None if file.suffix.lower() in SHEETS else _read_quickly(file)
+    quick = None if file.suffix.lower() in SHEETS else read_quickly(file)
     text = quick and _layout(file, *quick, known, requested)
-    if text and _is_of_numbers(text.rows):
+    if text and is_of_numbers(text.rows):
         return text
-    lines, dialect = _split_lines(file)
+    lines, dialect = split_lines(file)
     text = _layout(file, lines, np.empty((0, 0)), [], dialect, known, requested)
     if text is None:
         raise DataError(f"{file} contains no numbers", _ANY)
@@ -592,9 +540,9 @@ def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] 
 
 def _layout(
     file: Path,
-    lines: list[_Row],
+    lines: list[Row],
     below: Array,
-    last: list[_Row],
+    last: list[Row],
     dialect: Dialect,
     known: Sequence[str],
     requested: Sequence[str],
@@ -616,7 +564,7 @@ def _layout(
             f" {head[0].content[:60]!r}",
             "semicolons between the columns, or decimal points",
         )
-    rows = _Rows(head, below, last)
+    rows = Rows(head, below, last)
     # One row with another number of digits tells; a factor of a thousand is not a matter of a note.
     if dialect.has_comma and may_separate_thousands(row.content for row in rows):
         if below.size:
@@ -631,7 +579,7 @@ def _layout(
     notes: tuple[str, ...] = ()
     if counted := _number_of_samples(file, rows):
         step, note = counted
-        rows, notes = _Rows(head[1:], below, last), (note,)
+        rows, notes = Rows(head[1:], below, last), (note,)
     step_is_noted = bool(notes)
     if reading := dialect.note():
         notes = (*notes, reading)
@@ -649,7 +597,7 @@ def _layout(
     above = [(row, _heading_cells(row, width)) for row in lines[:start]]
     if width == 1:  # a name and a unit; further lines are text
         above = [(row, cells if start - k <= _HEADINGS else None) for k, (row, cells) in enumerate(above)]
-    headings = [cells for _, cells in above if cells and not any(map(_is_number, cells))]
+    headings = [cells for _, cells in above if cells and not any(map(is_number, cells))]
     expected = {*known, *requested}
     names = max(reversed(headings), key=lambda cells: len(expected & set(cells)), default=None)
     # The unit in the heading of a column is not that of another one.
@@ -662,7 +610,7 @@ def _layout(
     return _Text(file, rows, names, headings, free, step, notes, is_blank, step_is_noted, dialect)
 
 
-def _heading_cells(row: _Row, width: int) -> list[str] | None:
+def _heading_cells(row: Row, width: int) -> list[str] | None:
     """Return the cells of a line above a table of so many columns; None if it has another number of cells.
 
     Columns that are separated by blanks may have blanks in their headings: "Time (s)  Ground acceleration (cm/s^2)".
@@ -692,10 +640,10 @@ def _words(text: str) -> list[str]:
     return words
 
 
-def _number_of_samples(file: Path, rows: _Rows) -> tuple[float | None, str] | None:
+def _number_of_samples(file: Path, rows: Rows) -> tuple[float | None, str] | None:
     """Return the time step and a note if the first line of numbers states the number of samples; None if it is data."""
-    first, rest = rows.head[0], _Rows(rows.head[1:], rows.below, rows.last)
-    if len(rest) < 2 or len(first.cells) > 2 or not all(map(_is_number, first.cells)):
+    first, rest = rows.head[0], Rows(rows.head[1:], rows.below, rows.last)
+    if len(rest) < 2 or len(first.cells) > 2 or not all(map(is_number, first.cells)):
         return None
     counts = [cell for cell in first.cells if _COUNT.fullmatch(cell) and len(cell) < 13]
     if not counts:
@@ -725,7 +673,7 @@ def _number_of_samples(file: Path, rows: _Rows) -> tuple[float | None, str] | No
     return step, note if is_exact else f"{note}; it states {count} samples, but {fits[0]} rows follow"
 
 
-def _breaks_times(first: _Row, rest: _Rows, step: float | None) -> bool:
+def _breaks_times(first: Row, rest: Rows, step: float | None) -> bool:
     """Return whether a first row is not the point before those of a table with times, but has their step."""
     try:
         times = np.array([float(row.cells[0]) for row in rest.head[:_PROBED]])
@@ -736,7 +684,7 @@ def _breaks_times(first: _Row, rest: _Rows, step: float | None) -> bool:
     return rises and step is not None and float(first.cells[0]) >= times[0] and abs(step / even - 1) < 0.01
 
 
-def _is_far_above(first: _Row, rest: _Rows) -> bool:
+def _is_far_above(first: Row, rest: Rows) -> bool:
     """Return whether a first whole number is far above all others, which are not whole."""
     try:
         others = rest.numbers([0])
@@ -746,7 +694,7 @@ def _is_far_above(first: _Row, rest: _Rows) -> bool:
     return far and float(first.cells[0]) >= 10 and not all(_COUNT.fullmatch(row.cells[0].lstrip("-")) for row in rest)
 
 
-def _first_data_line(lines: list[_Row]) -> int | None:
+def _first_data_line(lines: list[Row]) -> int | None:
     """Return the index of the first line of data: one with numbers only, or else (columns of text) with a number.
 
     Lines directly above that begin with a number count as data, so that an error in them is reported.
@@ -754,9 +702,9 @@ def _first_data_line(lines: list[_Row]) -> int | None:
     uncommented = [k for k, row in enumerate(lines) if not row.is_comment]
 
     def is_numeric(place: int, cell: int) -> bool:
-        return _is_number(_with_decimal_point(lines[uncommented[place]].cells[cell]))
+        return is_number(with_decimal_point(lines[uncommented[place]].cells[cell]))
 
-    only_numbers = (place for place, k in enumerate(uncommented) if all(map(_is_number, lines[k].cells)))
+    only_numbers = (place for place, k in enumerate(uncommented) if all(map(is_number, lines[k].cells)))
     first = next(only_numbers, None)
     if first is None:
         widths = (len(lines[k].cells) for k in uncommented)
@@ -767,178 +715,3 @@ def _first_data_line(lines: list[_Row]) -> int | None:
             break  # "203 points at equal spacing of 0.02 sec"
         first -= 1
     return None if first is None else uncommented[first]
-
-
-def _parse_by_rows(file: Path, rows: _Rows) -> Array:
-    """Return all numbers row by row; the last row may be shorter."""
-    parts = [rows]
-    if len(rows) > 1 and len(rows.end.cells) < rows.width:
-        full = _Rows(rows.head if rows.last else rows.head[:-1], rows.below, [])
-        parts = [full, _Rows([rows.end], np.empty((0, 0)), [])]
-    return np.concatenate([_parse_rows(file, part, list(range(part.width))).ravel() for part in parts])
-
-
-def _parse_rows(file: Path, rows: _Rows, indices: list[int]) -> Array:
-    try:
-        numbers = rows.numbers(indices)
-    except ValueError:
-        raise _bad_row(file, list(rows), indices) from None
-    if len(numbers) < len(rows) or not np.isfinite(numbers).all():
-        raise _bad_row(file, list(rows), indices)
-    return numbers
-
-
-def _bad_row(file: Path, lines: list[_Row], indices: list[int]) -> DataError:
-    """Return the error of the first line that is not a row of numbers."""
-    width = len(lines[0].cells)
-    for number, cells, _, _ in lines:
-        if len(cells) != width:
-            advice = "the whole file, if its last line is cut short"
-            return DataError(
-                f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0].number}",
-                advice
-                if number == lines[-1].number and len(cells) < width
-                else "as many cells in each line of numbers",
-            )
-        row = [cells[k] for k in indices]
-        bad = next((cell for cell in row if not _is_number(cell)), None)
-        if bad is not None:
-            is_decimal_comma = _is_number(_with_decimal_point(bad))
-            advice = "a decimal point, not a comma" if is_decimal_comma else "a number, or # before lines of text"
-            return DataError(f"{file}, line {number}: {bad!r} is not a number", advice)
-        if not np.isfinite([float(cell) for cell in row]).all():
-            return DataError(f"{file}, line {number}: {', '.join(row)} is not finite", "finite numbers in all lines")
-    raise AssertionError("all lines are rows of numbers")
-
-
-def _is_of_numbers(rows: _Rows) -> bool:
-    """Return whether all rows are of numbers, and the last one at most is shorter than the others."""
-    same = all(len(row.cells) == rows.width for row in rows.head)
-    if not same or rows.below.shape[1] != rows.width or len(rows.end.cells) > rows.width:
-        return False
-    try:
-        return bool(np.isfinite([float(cell) for row in rows for cell in row.cells]).all())
-    except ValueError:
-        return False
-
-
-def _read_quickly(file: Path) -> tuple[list[_Row], Array, list[_Row], Dialect] | None:
-    """Return the first lines of a large file, the numbers of the rows below, and the last row; None for other content."""
-    try:
-        with _open(file) as stream:
-            # Both ends are read as lines of text: they show delimiter, names and units, and where the file is cut short.
-            start = stream.read(_HEAD)
-            begin, size = start.rfind(b"\n") + 1, stream.seek(0, io.SEEK_END)
-            stream.seek(max(begin, size - _TAIL))
-            tail = stream.read()
-            cut = tail.rstrip().rfind(b"\n") + 1
-            ending = tail[tail.find(b"\n") + 1 :].rstrip().decode().splitlines()
-            above = start[:begin].decode("utf-8-sig").splitlines()
-            if size <= len(start) or len(ending) < 4 or len(above) != start.count(b"\n"):
-                return None
-            dialect = dialect_of(ending, b'"' in start or b'"' in tail)
-            if dialect.has_comma and dialect.quoted:
-                return None
-            # Between them only rows of numbers are expected; anything else raises.
-            stream.seek(begin)
-            between = 0
-            for block in iter(lambda: stream.read(1 << 20), b""):
-                between += block.count(b"\n")
-                if dialect.has_comma and b"." in block:
-                    return None
-            between -= tail[cut:].count(b"\n")
-            stream.seek(begin)
-            with io.TextIOWrapper(stream, "utf-8", newline="\n") as lines, warnings.catch_warnings():
-                warnings.simplefilter("error", UserWarning)  # no data
-                rows = islice(lines, between)
-                below = np.loadtxt(
-                    rows if dialect.is_plain else map(dialect.plain, rows),
-                    delimiter=dialect.delimiter,
-                    comments=None,
-                    quotechar='"' if dialect.quoted and dialect.delimiter else None,
-                    ndmin=2,
-                )
-        head = _as_rows(file, above, dialect)
-        last = [row._replace(number=len(above) + between + 1) for row in _as_rows(file, ending[-1:], dialect)]
-    except (ValueError, OSError, Warning):
-        return None
-    is_data = head and last and not last[0].is_comment
-    return (head, below, last, dialect) if is_data and np.isfinite(below).all() else None
-
-
-def _open(file: Path) -> BinaryIO:
-    """Return the text of a file as a stream in UTF-8."""
-    stream = file.open("rb")
-    start = stream.read(_HEAD)
-    stream.seek(0)
-    try:
-        start[: start.rfind(b"\n") + 1].decode()
-        is_ready = b"\0" not in start
-    except UnicodeDecodeError:
-        is_ready = False
-    if is_ready:
-        return stream
-    with stream:
-        return io.BytesIO(_decoded(file, stream.read()).encode())
-
-
-def _decoded(file: Path, content: bytes) -> str:
-    text = decode(content)
-    if text is None:
-        raise DataError(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat")
-    return text[0]
-
-
-def _split_lines(file: Path) -> tuple[list[_Row], Dialect]:
-    """Return the lines that are not empty, and how they are written."""
-    try:
-        is_sheet = file.suffix.lower() in SHEETS
-        text = sheet_lines(file) if is_sheet else _decoded(file, file.read_bytes()).splitlines()
-    except OSError as error:
-        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
-    dialect = dialect_of(text, any('"' in line for line in text))
-    return _as_rows(file, text, dialect), dialect
-
-
-def _as_rows(file: Path, text: Sequence[str], dialect: Dialect) -> list[_Row]:
-    """Return the lines that are not empty, with their cells."""
-    lines = []
-    delimiter = dialect.delimiter
-    for number, line in enumerate(text, start=1):
-        is_comment = line.lstrip()[:1] in ("#", "%")
-        content = line.lstrip("#% \t") if is_comment and delimiter != "\t" else line.strip(" ").lstrip("#%")
-        content = dialect.parts(content)
-        try:
-            if dialect.quoted and delimiter is not None:
-                cells = next(csv.reader([content], delimiter=delimiter), [])
-            else:
-                cells = content.split(delimiter)
-        except csv.Error as error:
-            raise DataError(f"{file}, line {number}: {error}", "numbers and names of usual lengths") from None
-        cells = [cell.strip() for cell in cells]
-        while cells and not cells[-1]:
-            cells.pop()
-        if not dialect.is_plain:
-            plain = [dialect.number(cell) for cell in cells]
-            if dialect.has_comma and not is_comment and has_point(cells) and all(map(_is_number, plain)):
-                raise DataError(
-                    f"{file}, line {number}: {content.strip()[:60]!r} has a decimal point, but other lines decimal commas",
-                    "the same decimal mark in all lines",
-                )
-            cells = plain
-        if cells:
-            lines.append(_Row(number, cells, is_comment, content))
-    return lines
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
-def _with_decimal_point(cell: str) -> str:
-    """Return the cell with a point in place of a decimal comma."""
-    return cell.replace(",", ".", 1)

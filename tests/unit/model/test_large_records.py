@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.model import records
+from rattlebox.model import records, text_rows
 
 ROWS = 60
 
@@ -75,9 +75,9 @@ def test_the_quick_way_equals_the_slow_one(tmp_path: Path, monkeypatch: pytest.M
         path.write_bytes(content)
         monkeypatch.setattr(records, "_PROBED", 10)
         slow = result(path, options)
-        monkeypatch.setattr(records, "_HEAD", 16 * (len(content) // ROWS))
-        monkeypatch.setattr(records, "_TAIL", 6 * (len(content) // ROWS))
-        is_quick = records._read_quickly(path) is not None
+        monkeypatch.setattr(text_rows, "_HEAD", 16 * (len(content) // ROWS))
+        monkeypatch.setattr(text_rows, "_TAIL", 6 * (len(content) // ROWS))
+        is_quick = text_rows.read_quickly(path) is not None
         assert result(path, options) == slow, (number, fault, options, content.decode())
         monkeypatch.undo()
         quick += is_quick
