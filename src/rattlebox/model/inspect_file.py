@@ -210,7 +210,7 @@ def _modes(path: Path, given: str) -> FileContents | None:
         given,
         "modes of a structure",
         tuple(lines),
-        tuple(assumed),
+        (*assumed, *modal.notes()),
         "\n".join(toml),
         f"rb.Modal.from_file({json.dumps(given, ensure_ascii=False)}{python})",
     )

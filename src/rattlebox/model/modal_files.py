@@ -129,7 +129,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
             f"{path}: no mode moves any of the points {listed(list(fields['shapes']))}", "other points", ["file"]
         )
     size = f"the largest mass-normalised shape is {largest:.4g} kg^-0.5, at {point}"
-    return fields, [f"{note}; {size}" for note in (*notes, *modes.notes)]
+    return fields, [*(f"{note}; {size}" for note in notes), *modes.notes]
 
 
 def _chosen(modes: ModesInFile, given: Mapping[str, Any], name: str) -> ModesInFile:

@@ -43,7 +43,7 @@ def test_modes_of_an_ansys_result() -> None:
     notes = list(modal.notes())
     assert any("states no unit of mass; kg is assumed" in note for note in notes)
     largest = max(np.abs(row).max() for row in modes.shapes.values())
-    assert all(f"{largest:.4g} kg^-0.5" in note for note in notes)
+    assert sum(f"{largest:.4g} kg^-0.5" in note for note in notes) == 1
     tonnes = rb.Modal.from_file(RST, points={"a": 100}, damping_ratio=0.01, mass_unit="t")
     np.testing.assert_allclose(tonnes.modes().shapes["a"], modes.shapes["a"] / math.sqrt(1e3), rtol=1e-12)
 

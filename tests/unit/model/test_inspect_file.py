@@ -97,6 +97,7 @@ def test_a_preview_of_modes_with_many_points(tmp_path: Path, monkeypatch: pytest
     contents = rb.inspect("modes.csv")
     most = np.abs(np.sin(0.3 * np.arange(30))).argmax()
     assert contents.lines[1] == f"1 point: point p{most}" and "one of 30 points" in str(contents)
+    assert sum("kg is assumed" in note for note in contents.notes) == 1  # no test saw that the preview left this out
     part = eval(contents.python, {"rb": rb})
     ((_, fields),) = tomllib.loads(contents.toml).items()
     assert fields.pop("kind") == "modal" and rb.Modal(**fields) == part

@@ -247,3 +247,11 @@ def test_samples_beyond_all_measurements_name_the_file(tmp_path: Path) -> None:
     path = write(tmp_path, "a.smc", SMC.replace(short(SAMPLES[1]), "   1.7E+38"))
     with pytest.raises(rb.RattleboxError, match=r"a\.smc.*1\.7e\+38"):
         rb.Record.from_file(path)
+
+
+def test_a_time_step_that_nothing_confirms_is_noted(tmp_path: Path) -> None:
+    """A V2 file that states its time step only among the numbers of its header is read with a note."""
+    text = COSMOS.replace(" approx    0 secs,", "")
+    for content, is_noted in ((COSMOS, False), (text, True)):
+        notes = list(rb.Record.from_file(write(tmp_path, "a.v2", content)).notes())
+        assert any("the time step of 0.005 s is real value 62 of its header" in note for note in notes) == is_noted

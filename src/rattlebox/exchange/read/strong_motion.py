@@ -234,7 +234,11 @@ def cosmos_signals(path: Path) -> list[SignalInFile]:
             values, index = file.samples_until(index, count, _width(block[3]))
             kind = block[2].lower()
             name = f"{_NAMES[kind]} {channel}"
-            signals.append(_even(dt, values, name=name, unit=unit[1].strip("."), is_derived=kind != "accel"))
+            # Without a second statement of the length nothing checks the time step of the header.
+            from_header = f"the time step of {dt:g} s is real value {_COSMOS_STEP} of its header"
+            notes = () if spaced or about else (from_header,)
+            is_derived = kind != "accel"
+            signals.append(_even(dt, values, name=name, unit=unit[1].strip("."), notes=notes, is_derived=is_derived))
             if kind == "displ" or _begins_channel(file.lines[index : index + 3]):
                 channel += 1
         if not signals:
