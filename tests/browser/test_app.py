@@ -13,6 +13,7 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import rattlebox as rb
@@ -651,10 +652,10 @@ def mapped(page, file, parameter, low, high, count, measure, *, log=False):
     page.get_by_role("button", name="Compute map").wait_for(timeout=20 * LONG)
     page.get_by_text("saved as map-").wait_for()
     file = download(page, page.get_by_role("button", name="CSV table"), file)
-    table = np.genfromtxt(file, delimiter=",", names=True, deletechars="")
+    table = pd.read_csv(file, comment="#")
     assert len(table) == count
     (name,) = (name for name, each in rb.MEASURES.items() if each.long_name == measure)
-    return table[parameter], table[name]
+    return table[parameter].to_numpy(), table[name].to_numpy()
 
 
 def test_lecture_best_gap_and_chaos(page, tmp_path):
