@@ -51,6 +51,7 @@ PAGES = (
     "how-to/matlab",
     "how-to/notebooks",
     "how-to/paraview",
+    "how-to/real_time",
     "how-to/report",
     "how-to/results",
     "how-to/sensitivity",
