@@ -60,6 +60,8 @@ from rattlebox.model.particles import Particles as Particles
 from rattlebox.model.particles import Sieve as Sieve
 from rattlebox.model.plates import Plate as Plate
 from rattlebox.model.random_vibration import Random as Random
+from rattlebox.model.record_sets import RecordSet as RecordSet
+from rattlebox.model.record_sets import record_set as record_set
 from rattlebox.model.recorded import Record as Record
 from rattlebox.model.reference import reference_case as reference_case
 from rattlebox.model.restitutions import Constant as Constant

@@ -207,6 +207,8 @@ class Record(FilePart, Sampled):
     time_zero
         Time of the record that is 0 s in the run [s], or "first" for its first point; default 0 s, in universal files
         "first". A run notes a shift, and points before 0 s, which are not used.
+    name
+        Label, such as the name of the earthquake; the coordinate of an axis of records.
 
     Notes
     -----
@@ -237,6 +239,7 @@ class Record(FilePart, Sampled):
     dt: PositiveTime | None = None
     scale: Number = 1.0
     time_zero: Annotated[Literal["first"] | float | None, SI("s"), BeforeValidator(_as_time_zero)] = None
+    name: str = ""
     _unit_as_given: str | None = PrivateAttr(default=None)
     _unit_is_assumed: bool = PrivateAttr(default=False)
     _notes: tuple[str, ...] = PrivateAttr(default=())

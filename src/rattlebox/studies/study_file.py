@@ -17,6 +17,7 @@ from rattlebox.model.case import Case, case_and_materials
 from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.files import existing, read_text, read_toml
 from rattlebox.model.materials import Material
+from rattlebox.model.record_sets import record_set
 from rattlebox.model.units import Whole
 from rattlebox.studies.grid import sampling
 from rattlebox.studies.kinds import study_kind, study_kinds
@@ -39,7 +40,8 @@ def read_study(path: str | os.PathLike[str]) -> Study:
         axes, or starts of basins
             One dimension per line, `"damper.gap" = values`: a list, or `{ from = "0.1 mm", to = "2 mm", count = 20 }`, with
             `spacing = "log"` for geometric spacing. A table of such lines, `[axes.level]`, is one dimension along which
-            they vary together. Quotes around the paths preserve the order of the lines.
+            they vary together. Quotes around the paths preserve the order of the lines. Records:
+            `base = { records = "quakes/*.at2" }`, a folder, a pattern or a list, with other arguments of `rb.record_set`.
         design
             `count` random points in the ranges of the table `ranges` (pairs by path); `method`, `seed` and `log` as for
             `rb.random_design`.
@@ -65,6 +67,7 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
                 "the file is a case file, not a study file",
                 f'rattlebox run {source}, or case.file = "{source}" in a study',
             )
+        given = _with_records(given, folder or Path())
         kind = given.pop("kind", "sweep")
         if not isinstance(kind, str) or kind not in study_kinds():
             raise Hint(f"kind = {kind!r} is not a kind of study", nearest(str(kind), study_kinds()))
@@ -187,6 +190,28 @@ def _with_materials(table: Any, own: Mapping[str, Material]) -> Any:
         return _with_materials(values, own)
 
     return {path: read(path, values) for path, values in table.items()}
+
+
+def _with_records(table: Any, folder: Path) -> Any:
+    """Return a table with sets of records in place of tables such as { records = "quakes/*.at2", unit = "g" }."""
+    if not isinstance(table, dict):
+        return table
+    if "records" not in table:
+        return {name: value if name == "case" else _with_records(value, folder) for name, value in table.items()}
+    fields = dict(table)
+    files = fields.pop("records")
+    if isinstance(files, str):
+        files = os.path.join(folder, files)
+    elif isinstance(files, list) and all(isinstance(each, str) for each in files):
+        files = [os.path.join(folder, each) for each in files]
+    elif isinstance(files, dict) and all(isinstance(each, str) for each in files.values()):
+        files = {name: os.path.join(folder, each) for name, each in files.items()}
+    else:
+        raise Hint(f"records = {files!r:.60} are no files", 'records = "quakes/*.at2"')
+    try:
+        return record_set(files, **fields)
+    except DataError as error:
+        raise error.restated(Hint) from None
 
 
 def _with_samples(cls: type[Study], given: dict[str, Any], source: str) -> dict[str, Any]:

@@ -19,6 +19,8 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, all_paths, get, place_of, replaced
 from rattlebox.model.plausibility import plausibility_notes
+from rattlebox.model.record_sets import RecordSet
+from rattlebox.model.recorded import Record
 from rattlebox.model.units import whole_number
 from rattlebox.studies.grid.grid import Column, Grid, Parameter, Values, labels, objects
 from rattlebox.studies.grid.sampling import RandomDesign, Replicas, number_of_variants
@@ -124,9 +126,10 @@ def _warn_about_files(case: Case, grid: Grid) -> None:
     """Warn of the assumptions about each file of an axis, such as its unit, that the base case does not make."""
     known = set(plausibility_notes(case, signals=False))
     for path, values in grid.columns.items():
-        if place_of(case, path)[-1] != "file":
-            continue
-        for value in {repr(value): value for value in values.ravel().tolist()}.values():
+        different = {id(value): value for value in values.ravel().tolist()} if values.dtype == object else {}
+        for value in {repr(value): value for value in different.values()}.values():
+            if place_of(case, path)[-1] != "file" and not _has_record(value):
+                continue
             try:
                 notes = plausibility_notes(replaced(case, {path: value}), signals=False)
             except RattleboxError:
@@ -135,6 +138,10 @@ def _warn_about_files(case: Case, grid: Grid) -> None:
                 if note.startswith("note: ") and note not in known:
                     known.add(note)
                     warnings.warn(note.removeprefix("note: "), stacklevel=5)
+
+
+def _has_record(value: Any) -> bool:
+    return any(isinstance(each, Record) for each in (value if isinstance(value, tuple) else (value,)))
 
 
 def materials_in(case: Case) -> dict[str, Material]:
@@ -173,7 +180,7 @@ class _Reader:
 
     def axis(self, key: Any, values: Any) -> _Direction:
         """Return the dimension of an item of a mapping."""
-        if isinstance(values, Mapping):
+        if isinstance(values, Mapping) and not isinstance(values, RecordSet):
             linked = dict(values)
         elif not isinstance(key, tuple):
             linked = {key: values}

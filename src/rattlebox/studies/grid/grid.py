@@ -21,6 +21,7 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, translate
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, get_field, place_of, replaced, unit_of
+from rattlebox.model.record_sets import RecordSet
 from rattlebox.model.restitutions import Restitution
 from rattlebox.model.signals import Signal
 from rattlebox.model.units import parse, plain
@@ -128,6 +129,8 @@ def _label(value: Any) -> str:
     """Return a short text for a value."""
     if isinstance(value, float):
         return f"{value:.6g}"
+    if isinstance(value, tuple) and len(value) == 1 and isinstance(value[0], Part):  # of a field for several
+        (value,) = value
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_label, value))}]"
     if not isinstance(value, Part):
@@ -238,6 +241,8 @@ class Parameter:
 
     def values(self, given: Any) -> Values:
         """Validate a list of values."""
+        if isinstance(given, RecordSet):
+            given = list(given.values())
         if isinstance(given, Spaced):
             start, stop, unit = self.ends(given.start, given.stop, given.names)
             try:

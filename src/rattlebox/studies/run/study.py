@@ -35,6 +35,7 @@ from rattlebox._util.plugins import Registry, owner_of
 from rattlebox.analysis import equivalent_damping
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest, translate
+from rattlebox.model.record_sets import RecordSet
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, PositiveTime, Whole
 from rattlebox.studies.grid.sampling import RandomDesign, Replicas, Spaced
 from rattlebox.studies.run.runner import run_work
@@ -238,7 +239,7 @@ class SpacedTable(Range):
 
 def table_shape(value: Any) -> str:
     """Return "spaced" for a table of spaced values, "linked" for other tables, "value" for text and numbers, or "other"."""
-    if isinstance(value, Mapping):
+    if isinstance(value, Mapping) and not isinstance(value, RecordSet):
         return "linked" if value and not value.keys() & {"from", "to", "count", "spacing"} else "spaced"
     return "value" if isinstance(value, (str, int, float)) or value is None else "other"
 
