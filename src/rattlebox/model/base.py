@@ -26,6 +26,7 @@ from pydantic_core import CoreSchema
 from rattlebox._util.text import has_controls
 
 from .also_accepts import AlsoAccepts
+from .as_written import TEXTS, remember
 from .errors import Hint, nearest, translate
 from .kinds import in_order, register
 from .signatures import PlainText, type_text
@@ -144,8 +145,17 @@ class Part(BaseModel, metaclass=_PartMeta):
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         register(cls)
 
-    @model_validator(mode="after")
-    def _check_names(self) -> Self:
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_texts(cls, values: Any, handler: Any) -> Self:
+        """Keep the texts of quantities for `Case.to_file`."""
+        made: Self = handler(values)
+        if isinstance(values, dict):
+            remember(made, values)
+            made._check_names()
+        return made
+
+    def _check_names(self) -> None:
         """Raise if a name has control characters, which would reach figures and terminals."""
         for field in type(self).model_fields:
             value = getattr(self, field)
@@ -153,7 +163,6 @@ class Part(BaseModel, metaclass=_PartMeta):
             for name in names:
                 if isinstance(name, str) and has_controls(name):
                     raise Hint(f"{name!r} contains a control character", "printable characters only", [field])
-        return self
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with other values, which are not validated; cached properties are computed anew.
@@ -166,7 +175,7 @@ class Part(BaseModel, metaclass=_PartMeta):
         for name in (update or {}).keys() - type(self).model_fields.keys():
             raise Hint(f"{type(self).__name__} has no field {name!r}", nearest(name, type(self).model_fields))
         copy = super().model_copy(update=update, deep=deep)
-        for name in copy.__dict__.keys() - type(self).model_fields.keys():
+        for name in copy.__dict__.keys() - type(self).model_fields.keys() - {TEXTS}:
             del copy.__dict__[name]
         return copy
 
@@ -199,6 +208,11 @@ class Part(BaseModel, metaclass=_PartMeta):
         """Return the fields by name, without those that were read from a file, from which an equal part is made."""
         from_file = self.fields_from_file()
         return {name: getattr(self, name) for name in type(self).model_fields if name not in from_file}
+
+    @classmethod
+    def excluded_by(cls, name: str, value: Any) -> list[str]:
+        """Return the fields that a value of a field excludes."""
+        return [other for pair in cls.alternatives if name in pair for other in pair if other != name]
 
     @classmethod
     def expand_aliases(cls, values: dict[str, Any]) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from rattlebox._util.narrow import instance
 from .also_accepts import AlsoAccepts
 from .any_signal import AnySignal
 from .any_structure import AnyStructure
+from .as_written import with_texts
 from .base import Part, vocabulary
 from .dampers import ImpactDamper
 from .elementwise import Vector
@@ -559,6 +560,9 @@ class Case(Part):
     def to_file(self, path: str | os.PathLike[str]) -> None:
         """Write a case file of this case, with the paths of other files relative to its folder.
 
+        Quantities keep the text from which they were read: "5 mm" stays "5 mm". A quantity that has no text, or has been
+        changed since, is written in SI units.
+
         Parameters
         ----------
         path
@@ -572,14 +576,18 @@ class Case(Part):
             If no space is left on the disk.
         """
         folder = Path(path).absolute().parent
-        text = self._toml(lambda file: _relative(file, folder))
+        text = self._toml(lambda file: _relative(file, folder), as_written=True)
         with atomic_write(path, "make room and write the case again") as name:
             name.write_text(text, encoding="utf-8")
 
-    def _toml(self, name_of: Callable[[str], str], change: Callable[[Any], Any] = lambda data: data) -> str:
+    def _toml(
+        self, name_of: Callable[[str], str], change: Callable[[Any], Any] = lambda data: data, as_written: bool = False
+    ) -> str:
         import tomli_w
 
         data = self.model_dump(mode="json", exclude_none=True, exclude_defaults=False)
+        if as_written:
+            data = with_texts(self, data)
         return tomli_w.dumps(change(_without_empty(_with_files(data, name_of))))
 
     @classmethod

@@ -12,12 +12,13 @@ from pydantic import ValidationError
 
 from rattlebox._util.narrow import instance
 
+from .as_written import Given
 from .base import Part, vocabulary
 from .dampers import ImpactDamper
 from .errors import Hint, nearest, several, translate
 from .materials import Material
 from .signals import Signal
-from .units import SI, parse
+from .units import SI
 
 Place = tuple[str | int, ...]
 AnyPart = TypeVar("AnyPart", bound=Part)  # a case; any other part has paths, too
@@ -178,20 +179,10 @@ def places_of(case: Part, values: Mapping[str, Any]) -> dict[Place, Any]:
             continue
         *above, name = place
         holder = part_at(case, above)
-        pairs = type(holder).alternatives if isinstance(holder, Part) else ()
-        excluded = [other for pair in pairs if name in pair for other in pair if other != name]
-        if name == "amplitude" and _names_a_unit(places[place]):
-            excluded.append("unit")
-        for other in excluded:
-            places.setdefault((*above, other), None)
+        if isinstance(holder, Part):
+            for other in holder.excluded_by(str(name), places[place]):
+                places.setdefault((*above, other), None)
     return places
-
-
-def _names_a_unit(value: Any) -> bool:
-    try:
-        return parse(value, ("N", "m/s^2", "m"))[1] is not None
-    except (Hint, TypeError):  # The validation of the case raises a better message.
-        return False
 
 
 def _with(node: Any, place: Place, value: Any) -> Any:
@@ -201,11 +192,10 @@ def _with(node: Any, place: Place, value: Any) -> Any:
     step, *rest = place
     if isinstance(step, int):
         return [_with(item, tuple(rest), value) if i == step else item for i, item in enumerate(node)]
-    if isinstance(node, Part):
-        node = node.as_given()
-    if not isinstance(node, dict):
+    fields = node.as_given() if isinstance(node, Part) else node
+    if not isinstance(fields, dict):
         raise Hint(f"there is no {step!r} in {node!r}", "a whole part, or fields of it, not both")
-    return {**node, step: _with(node.get(step), tuple(rest), value)}
+    return Given.changed(node, {**fields, step: _with(fields.get(step), tuple(rest), value)}, step)
 
 
 def _briefly(node: Any, kinds: Sequence[type[Part]]) -> Any:
@@ -214,7 +204,7 @@ def _briefly(node: Any, kinds: Sequence[type[Part]]) -> Any:
         return [_briefly(item, kinds) for item in node]
     if not isinstance(node, dict):
         return node
-    tree = {name: _briefly(item, kinds) for name, item in node.items()}
+    tree = Given.changed(node, {name: _briefly(item, kinds) for name, item in node.items()})
     for part in kinds:
         for other, name in part.aliases.items():
             if isinstance(tree.get(name), list) and len(tree[name]) == 1:

@@ -24,6 +24,7 @@ from rattlebox._util.frozen import complete
 from rattlebox.exchange.read import ground_motion, measurement_files, strong_motion, universal  # noqa: F401  (they register)
 from rattlebox.exchange.read.formats import Format, no_signals, record_reader, signals_in
 
+from .as_written import MOST_ITEMS, Given
 from .base import FilePart
 from .elementwise import Vector
 from .errors import Hint, at, several
@@ -260,7 +261,10 @@ class Record(FilePart, Sampled):
             isinstance(given, str) and given not in UNITS and "values" in values and (known := factor_of(given, UNITS))
         ):
             with at("values"):
-                values = {**values, "unit": known[1], "values": known[0] * numbers(values["values"])}
+                plain = numbers(values["values"])
+                values = Given.read_from(values, {**values, "unit": known[1], "values": known[0] * plain})
+                if plain.size <= MOST_ITEMS:
+                    values.texts = {**values.texts, "unit": given, "values": plain.tolist()}
         record: Record = handler(values)
         complete(
             record,
@@ -287,7 +291,8 @@ class Record(FilePart, Sampled):
             return values
         if "times" in values:
             raise Hint("give times or dt, not both", "leave dt out", ["dt"])
-        return {**values, "times": step * np.arange(np.size(values["values"])), "dt": None}
+        times = step * np.arange(np.size(values["values"]))
+        return Given.read_from(values, {**values, "times": times, "dt": None})
 
     @staticmethod
     def _read(values: dict[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
@@ -402,6 +407,11 @@ class Record(FilePart, Sampled):
         """Return the fields in the notation of the input: those of a file with the unit that the user states."""
         fields = super().as_given()
         return {**fields, "unit": self._unit_as_given} if self.file is not None else fields
+
+    @classmethod
+    def excluded_by(cls, name: str, value: Any) -> list[str]:
+        """Return the fields that a value of a field excludes; a step excludes times."""
+        return [*super().excluded_by(name, value), *(["times"] if name == "dt" else [])]
 
     def unplaced(self, allowed: Sequence[Unit]) -> str:
         """Return advice for a record in another unit than a field of a case accepts."""

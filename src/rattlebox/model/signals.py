@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, WithJsonSchema, field_validator, model_validator
 
+from .as_written import Given
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
@@ -98,6 +99,16 @@ class Signal(Part):
             if hint.place == ("unit",):
                 raise
             return values  # the field raises, together with other fields
+
+    @classmethod
+    def excluded_by(cls, name: str, value: Any) -> list[str]:
+        """Return the fields that a value of a field excludes; an amplitude with a unit excludes `unit`."""
+        excluded = super().excluded_by(name, value)
+        try:
+            is_unit = name == "amplitude" and parse(value, UNITS)[1] is not None
+        except (Hint, TypeError):  # the validation of the signal raises a better message
+            is_unit = False
+        return [*excluded, "unit"] if is_unit else excluded
 
     def placed(self, allowed: Sequence[Unit], place: str) -> Signal:
         """Return the signal with the unit of the field in which it is used.
@@ -278,7 +289,7 @@ def _with_unit_of_amplitude(values: dict[str, Any], units: tuple[Unit, ...]) -> 
         number, unit = parse(values["amplitude"], units)
     if unit is not None and values.get("unit") not in (None, unit):
         raise Hint(f"the amplitude is in {unit}", "leave unit out", ["unit"])
-    return {**values, "amplitude": number, **({} if unit is None else {"unit": unit})}
+    return Given.read_from(values, {**values, "amplitude": number, **({} if unit is None else {"unit": unit})})
 
 
 def as_several(value: Any) -> Any:
