@@ -133,7 +133,10 @@ GOOD: dict[str, Sample] = {
         "a.csv", table("f (Hz),real (m/s^2/N),imag (m/s^2/N)", 1 + TIMES, VALUES, VALUES), counted=False
     ),
 }  # fmt: skip
-DAMAGED_ELSEWHERE = {f"rattlebox.exchange.read.text_results.read_{name}" for name in ("f06", "punch", "frd")}
+DAMAGED_ELSEWHERE = {
+    "rattlebox.exchange.read.nastran_hdf5.read_nastran_hdf5",
+    *(f"rattlebox.exchange.read.text_results.read_{name}" for name in ("f06", "punch", "frd", "dat")),
+}
 """Readers whose own tests damage their files."""
 TEXT = {name: good for name, good in GOOD.items() if good.name[-3:] in ("at2", "txt", "csv", "oml", "mtx")}
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.text import has_controls
-from rattlebox.exchange.read import ansys, modal_table, text_results, universal  # noqa: F401  (they register their readers)
+from rattlebox.exchange.read import ansys, modal_table, nastran_hdf5, text_results, universal  # noqa: F401  (they register their readers)
 from rattlebox.exchange.read.formats import ModesRequest, modes_reader
 from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.modes_in_file import ModesInFile, listed

@@ -74,7 +74,39 @@ def frd() -> str:
     return text + " 9999\n"
 
 
-FILES = {"a.f06": (f06(), True), "a.pch": (punch(), False), "a.frd": (frd(), True)}
+PARTICIPATION = [[0.5, -0.2, 0.0], [0.25, 0.125, -0.0625], [1e-9, 0.5, 2.0]]
+TOTAL = [0.4, 0.5, 4.5]
+
+
+def dat() -> str:
+    """Return a .dat file: a static step, eigenvalues, participation, effective masses, and displacements of two sets."""
+
+    def table(title: str, heads: str, rows: dict[str, Any]) -> str:
+        lines = "".join(f"{label:>7s}" + "".join(f"{x:16.7E}" for x in row) + "\n" for label, row in rows.items())
+        return f"\n     {' '.join(title)}\n\n{heads}\n\n{lines}"
+
+    modes = [str(k) for k in range(1, 4)]
+    text = " displacements (vx,vy,vz) for set NALL and time  0.1000000E+01\n\n"
+    text += f"{12:10d}" + "".join(f"{x:14.6E}" for x in (9.0, 9.0, 9.0)) + "\n"
+    roots = {k: (w, abs(w) ** 0.5, abs(w) ** 0.5 / (2 * np.pi), 0.0) for k, w in zip(modes, OMEGA2, strict=True)}
+    text += table("EIGENVALUE OUTPUT", " MODE NO    EIGENVALUE                       FREQUENCY", roots)
+    heads = "MODE NO.   X-COMPONENT     Y-COMPONENT     Z-COMPONENT     X-ROTATION      Y-ROTATION      Z-ROTATION"
+    factors = np.hstack([PARTICIPATION, np.full((3, 3), 0.01)])
+    text += table("PARTICIPATION FACTORS", heads, dict(zip(modes, factors, strict=True)))
+    text += table("EFFECTIVE MODAL MASS", heads, dict(zip(modes, factors**2, strict=True)))
+    text += "TOTAL  " + "".join(f"{x:16.7E}" for x in (factors**2).sum(axis=0)) + "\n"
+    text += table("TOTAL EFFECTIVE MASS", heads, {"": [*TOTAL, 0.1, 0.1, 0.1]})
+    for k, shape in enumerate(SHAPES, start=1):
+        text += f"\n\n{' ' * 20}E I G E N V A L U E    N U M B E R {k:5d}\n\n"
+        for name, rows in (("ENDS", [0, 1]), ("TIP", [1])):
+            text += f"\n displacements (vx,vy,vz) for set {name} and time  0.2000000E+01\n\n"
+            text += "".join(f"{NODES[n]:10d}" + "".join(f"{x:14.6E}" for x in shape[n]) + "\n" for n in rows)
+        text += "\n forces (fx,fy,fz) for set TIP and time  0.2000000E+01\n\n"
+        text += f"{12:10d}" + f"{7.0:14.6E}" * 3 + "\n"
+    return text
+
+
+FILES = {"a.f06": (f06(), True), "a.pch": (punch(), False), "a.frd": (frd(), True), "a.dat": (dat(), False)}
 OPTIONS: dict[str, Any] = {"points": {"a": 12, "b": 3045}, "damping_ratio": 0.01}
 
 
@@ -105,6 +137,13 @@ def test_planted_modes(tmp_path: Path, name: str) -> None:
         ("a.frd", "1PGM", "1PXX", "no generalized mass"),
         ("a.frd", "    1C", "hello", "line 1: .* no start"),
         ("a.frd", "-1.50000E+00", "-1.5x000E+00", r"line \d+: .* not numbers"),
+        ("a.dat", "-1.500000E+00", "-1.5x0000E+00", r"line \d+: .* not numbers"),
+        ("a.dat", "-1.500000E+00", "-1.500000E+00 L", r"line \d+: .* local axes .*\n.*GLOBAL=YES"),
+        ("a.dat", "E I G E N V A L U E   O", "E I G E N T H I N G   O", "no table of eigenvalues"),
+        ("a.dat", "N U M B E R", "N U M B E Q", "no mode shape"),
+        ("a.dat", "E F F E C T I V E   M O", "E F F E C T I V E   N O", "no participation or effective mass"),
+        ("a.dat", "2.5000000E-01", "2.7000000E-01", "not the squares of the participation"),
+        ("a.dat", " MODE NO  ", " MODE NO   NODAL DIAMETER", "cyclic sector"),
     ],
 )
 def test_damaged_results(tmp_path: Path, name: str, old: str, new: str, message: str) -> None:
@@ -122,6 +161,23 @@ def test_a_mode_that_is_cut_short(tmp_path: Path) -> None:
     (tmp_path / "a.frd").write_text(text[: text.index(" -3\n", text.index("DISP"))])
     with pytest.raises(rb.DataError, match="ends within the displacements"):
         rb.Modal.from_file(tmp_path / "a.frd", **OPTIONS)
+
+
+def test_participation_of_calculix(tmp_path: Path) -> None:
+    """Participation and total mass are those of the file, for a point in 3-D and for one direction.
+
+    The tables of .dat files could not be read, so that a moving base needed numbers typed by hand.
+    """
+    (tmp_path / "a.dat").write_text(FILES["a.dat"][0])
+    modal = rb.Modal.from_file(tmp_path / "a.dat", **OPTIONS)
+    np.testing.assert_allclose(modal.participation, PARTICIPATION, rtol=1e-6)
+    np.testing.assert_allclose(modal.total_mass, TOTAL, rtol=1e-6)
+    along_z = rb.Modal.from_file(tmp_path / "a.dat", points={"a": "12 z"}, damping_ratio=0.0)
+    np.testing.assert_allclose(along_z.participation, np.array(PARTICIPATION)[:, 2], rtol=1e-6, atol=1e-12)
+    assert along_z.total_mass == pytest.approx(TOTAL[2])
+    (tmp_path / "record.dat").write_text("0 1\n1 2\n2 3\n")
+    with pytest.raises(rb.DataError, match=r"modes cannot be read from files with the ending '\.dat'"):
+        rb.Modal.from_file(tmp_path / "record.dat", **OPTIONS)
 
 
 @pytest.mark.parametrize("name", FILES)

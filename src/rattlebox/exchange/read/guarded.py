@@ -21,7 +21,7 @@ import numpy as np
 
 from rattlebox._util.exceptions import DataError, RattleboxError
 
-IN_CHILD = {"rst": "ansys_arrays.py", "full": "ansys_arrays.py", "mat": "hdf5_arrays.py"}
+IN_CHILD = {"rst": "ansys_arrays.py", "full": "ansys_arrays.py", "mat": "hdf5_arrays.py", "h5": "hdf5_arrays.py"}
 """Scripts that read a format in a child process: python -P SCRIPT FORMAT FILE OUTPUT writes an NPZ file."""
 
 LEAST_MEMORY, MEMORY_PER_BYTE = 4 << 30, 20

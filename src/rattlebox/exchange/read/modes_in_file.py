@@ -13,6 +13,8 @@ from rattlebox._util.exceptions import DataError
 
 FloatArray = NDArray[np.float64]
 _LISTED = 12  # labels in a message
+_ZERO = 1e-9  # squared frequency of a rigid-body mode, over the largest of the file
+_LARGEST_ROUNDING = 1e-6  # largest negative eigenvalue that is rounding, over the largest of the file
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +68,16 @@ class ModesInFile:
             participation=of(self.participation),
             unfit={k: self.unfit[number] for k, number in enumerate(numbers, start=1) if number in self.unfit},
         )
+
+
+def without_rounding(squares: FloatArray) -> FloatArray:
+    """Return squared frequencies with those of rigid-body modes, which are rounding of either sign, as zero."""
+    size = np.abs(squares)
+    largest = size.max(initial=0.0)
+    # Negative ones show the size of the rounding, unless the structure is unstable.
+    negative = -squares.min(initial=0.0)
+    limit = max(_ZERO * largest, 10 * negative if negative <= _LARGEST_ROUNDING * largest else 0.0)
+    return np.where(size <= limit, 0.0, squares)
 
 
 def listed(labels: Sequence[str]) -> str:

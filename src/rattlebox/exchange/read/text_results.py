@@ -1,9 +1,10 @@
-"""Modes in text results of finite element programs: Nastran (.f06, .pch) and CalculiX (.frd)."""
+"""Modes in text results of finite element programs: Nastran (.f06, .pch) and CalculiX (.frd, .dat)."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,16 +13,17 @@ from rattlebox._util.exceptions import DataError
 
 from .formats import ModesRequest, modes_reader
 from .guarded import errors_of
-from .modes_in_file import FloatArray, ModesInFile, read_start
+from .modes_in_file import FloatArray, ModesInFile, read_start, without_rounding
 
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 _F06_VECTOR = re.compile(r"(R E A L|C O M P L E X)\s+E I G E N V E C T O R\s+N O \.\s+(\d+)")
 _F06_ROW = re.compile(rf"^0?\s*(\d+)\s+([GS])((?:\s+{_NUMBER}){{1,6}})\s*$")
 _F06_VALUE = re.compile(rf"^0?\s*(\d+)\s+(\d+)((?:\s+{_NUMBER}){{5}})\s*$")
 _PUNCH_VALUE = re.compile(rf"^\$EIGENVALUE\s*=\s*({_NUMBER})\s+MODE\s*=\s*(\d+)")
-_ZERO = 1e-9  # squared frequency of a rigid-body mode, over the largest of the file
-_NORMALISED = "the modes of {} are assumed to be mass-normalised, the default of Nastran (EIGRL, NORM = MASS)"
-_AXES = "the displacements of {} are assumed to be along the global axes: Nastran does not write the axes (CD) of its points"
+_DAT_STARTS = rb" for set \S+ and time |E I G E N V A L U E   O U T P U T|S T E P +\d"  # in the first lines
+_ROUNDING = 1e-3  # relative rounding of the numbers in tables of .dat files
+NORMALISED = "the modes of {} are assumed to be mass-normalised, the default of Nastran (EIGRL, NORM = MASS)"
+AXES = "the displacements of {} are assumed to be along the global axes: Nastran does not write the axes (CD) of its points"
 
 Table = dict[int, dict[int, list[float]]]
 """Displacements x, y, z by mode and node."""
@@ -69,22 +71,38 @@ def _made(
         if masses is not None and number not in masses:
             raise DataError(f"{path} states no modal mass of mode {number}", "the complete file")
     nodes = sorted(shapes[numbers[0]])
-    array: FloatArray = np.array([[shapes[number][node] for node in nodes] for number in numbers], dtype=float)
-    omega2 = np.array([squares[number] for number in numbers])
-    # Rigid-body modes have small eigenvalues of either sign.
-    zero = np.abs(omega2) <= _ZERO * np.abs(omega2).max(initial=0.0)
-    if (omega2[~zero] < 0).any():
+    return modes_of_eigenvalues(
+        path,
+        np.array([squares[number] for number in numbers]),
+        np.array([[shapes[number][node] for node in nodes] for number in numbers], dtype=float),
+        [str(node) for node in nodes],
+        None if masses is None else np.array([masses[number] for number in numbers]),
+        notes,
+    )
+
+
+def modes_of_eigenvalues(
+    path: Path,
+    squares: FloatArray,
+    shapes: FloatArray,
+    nodes: list[str],
+    masses: FloatArray | None,
+    notes: tuple[str, ...],
+) -> ModesInFile:
+    """Return the modes from squared angular frequencies (m,), shapes (m, n, 3) and modal masses (m,)."""
+    squares = without_rounding(squares)
+    if (squares < 0).any():
         raise DataError(f"{path} has a negative eigenvalue", "a structure that is stable")
     # A file without modal masses may be scaled to a largest component of 1, which it does not state.
-    if masses is None and len(array) > 1 and np.allclose(np.abs(array).max(axis=(1, 2)), 1.0, rtol=1e-5):
+    if masses is None and len(shapes) > 1 and np.allclose(np.abs(shapes).max(axis=(1, 2)), 1.0, rtol=1e-5):
         raise DataError(
             f"{path}: every mode has a largest component of 1, so that the modal masses are unknown",
             'modal_masses = ["1 kg", ...], or modes that are mass-normalised',
         )
     return ModesInFile(
-        frequencies=np.sqrt(np.where(zero, 0.0, omega2)) / (2 * np.pi),
-        shapes={str(node): array[:, k] for k, node in enumerate(nodes)},
-        modal_masses=None if masses is None else np.array([masses[number] for number in numbers]),
+        frequencies=np.sqrt(squares) / (2 * np.pi),
+        shapes={node: shapes[:, k] for k, node in enumerate(nodes)},
+        modal_masses=masses,
         notes=notes,
     )
 
@@ -131,7 +149,7 @@ def read_f06(path: Path, _: ModesRequest) -> ModesInFile:
                         f"{path}, line {number}: mode {mode} has two eigenvalues", "the results of one analysis"
                     )
                 masses[mode] = row[3]
-        return _made(path, squares, shapes, masses, (_AXES.format(path.name),))
+        return _made(path, squares, shapes, masses, (AXES.format(path.name),))
 
 
 @modes_reader(".pch")
@@ -170,7 +188,7 @@ def read_punch(path: Path, _: ModesRequest) -> ModesInFile:
                 )
             node = int(label)
             _add(path, number, shapes.setdefault(current, {}), node, _floats(path, number, cells))
-        notes = (_NORMALISED.format(path.name), _AXES.format(path.name))
+        notes = (NORMALISED.format(path.name), AXES.format(path.name))
         return _made(path, squares, shapes, None, notes)
 
 
@@ -217,3 +235,74 @@ def read_frd(path: Path, _: ModesRequest) -> ModesInFile:
             masses[mode], squares[mode] = values["PGM"], values["PGK"] / values["PGM"]
             shapes[mode] = shape
         return _made(path, squares, shapes, masses, ())
+
+
+@modes_reader(contents=_DAT_STARTS)
+def read_dat(path: Path, _: ModesRequest) -> ModesInFile:
+    """Read the modes of a .dat file of CalculiX: eigenvalues, participation, and displacements of *NODE PRINT.
+
+    Notes
+    -----
+    The modes are mass-normalised: the effective masses are the squares of the participation, which is checked.
+    """
+    with errors_of(path, "a .dat file of CalculiX"):
+        rows: dict[str, dict[int, list[float]]] = {}
+        total: list[float] = []
+        shapes: Table = {}
+        table, mode, is_shape = "", 0, False
+        for number, line in enumerate(_lines(path), start=1):
+            cells = line.split()
+            if found := re.match(r"^ +E I G E N V A L U E    N U M B E R +(\d+)", line):
+                table, mode, is_shape = "", int(found[1]), False
+            elif re.match(r"^ +[A-Z] [A-Z] ", line):
+                table, is_shape = line.replace(" ", ""), False
+                if table in rows:
+                    raise DataError(
+                        f"{path}, line {number}: {line.strip()} is in the file twice",
+                        "the results of one frequency step",
+                    )
+                rows[table] = {}
+                mode = 0
+            elif " for set " in line and " and time " in line:
+                is_shape = bool(mode) and line.startswith(" displacements (vx,vy,vz)")
+            elif "NODAL" in cells or "DIAMETER" in cells:
+                raise DataError(f"{path}, line {number}: the modes are those of a cyclic sector", "the whole structure")
+            elif not cells:
+                continue
+            elif is_shape:
+                if cells[-1] == "L":
+                    raise DataError(
+                        f"{path}, line {number}: displacements are along local axes (*TRANSFORM)",
+                        "*NODE PRINT, GLOBAL=YES",
+                    )
+                label, texts = line[:10].strip(), [line[10 + 14 * k : 24 + 14 * k] for k in range(3)]
+                if not label.isdigit():
+                    raise DataError(f"{path}, line {number}: {label[:20]!r} is no number of a node", "an integer")
+                _add(path, number, shapes.setdefault(mode, {}), int(label), _floats(path, number, texts))
+            elif table and cells[0].isdigit():
+                rows[table][int(cells[0])] = _floats(path, number, cells[1:])
+            elif table == "TOTALEFFECTIVEMASS" and cells[0] != "MODE":
+                total = _floats(path, number, cells)
+        values = rows.get("EIGENVALUEOUTPUT")
+        if not values:
+            raise DataError(f"{path} contains no table of eigenvalues", "the results of a step with *FREQUENCY")
+        if not shapes:
+            raise DataError(
+                f"{path} contains no mode shape",
+                "*NODE PRINT, NSET=..., GLOBAL=YES with U in the step; or the .frd file",
+            )
+        if bad := next((mode for mode, row in values.items() if len(row) != 4), 0):
+            raise DataError(f"{path}: the eigenvalue of mode {bad} has {len(values[bad])} columns", "four numbers")
+        factors = rows.get("PARTICIPATIONFACTORS", {})
+        effective = rows.get("EFFECTIVEMODALMASS", {})
+        modes = _made(path, {mode: row[0] for mode, row in values.items()}, shapes, None, ())
+        if not all(len(factors.get(mode, ())) == 6 == len(effective.get(mode, ())) for mode in shapes):
+            raise DataError(f"{path} states no participation or effective mass of a mode", "the complete file")
+        participation = np.array([factors[mode][:3] for mode in sorted(shapes)])
+        masses = np.array([effective[mode][:3] for mode in sorted(shapes)])
+        if not np.allclose(participation**2, masses, rtol=_ROUNDING, atol=_ROUNDING**2 * masses.max(initial=0.0)):
+            raise DataError(
+                f"{path}: the effective masses are not the squares of the participation: the modes are not mass-normalised",
+                "the file as CalculiX wrote it",
+            )
+        return replace(modes, participation=participation, total_mass=np.array(total[:3]) if len(total) == 6 else None)
