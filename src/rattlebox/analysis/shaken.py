@@ -7,10 +7,11 @@ import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError, DataError
 
-from .cycle_loss import cycle_loss
+from .cycle_loss import CycleLoss, cycle_loss
 from .signals import FloatArray, first_harmonic, positive, steps_inside, trapezoid_weights
 
 if TYPE_CHECKING:
@@ -99,8 +100,6 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
 
 def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, after: float = 0.0) -> xarray.Dataset:
     """Return the result of `shaken_cavity`, without a Python warning."""
-    import xarray
-
     arrays, particle_mass = run.arrays, run.arrays.particle_mass
     if damper is None and len(arrays.dampers) == 1:
         damper = arrays.dampers[0]
@@ -108,26 +107,60 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
         raise ValueError(f"damper is one of {', '.join(arrays.dampers)}, not {damper!r}")
     number = arrays.dampers.index(damper)
     frequency = positive("frequency", frequency, "Hz")
-    times = arrays.time
-    # Whole cycles that end with the run: the end is the most settled part, and means over parts of a cycle are biased.
-    cycles = math.floor((times[-1] - max(after, times[0])) * frequency + 1e-9)
+    times, mass = arrays.time, float(particle_mass[number])
+    cycles = _whole_cycles(times, frequency, after)
+    start = times[-1] - cycles / frequency
+    # The ledger is relative to the base; the harmonic balance holds in the inertial frame.
+    velocity = arrays.base_velocity + arrays.cavity_velocity[:, number]
+    momentum = arrays.momentum[:, number] + mass * arrays.base_velocity
+    weights = trapezoid_weights(times, start)
+    v = _velocity_amplitude(times, velocity, weights, frequency, float(times[-1] - start))
+    size = float(np.linalg.norm(v))
+    # Forces in contacts last for less than a sampling step. The change of momentum has their whole impulse.
+    step = np.diff(times)
+    middle = 0.5 * (times[1:] + times[:-1])
+    # The weight is constant, so the change of momentum gives the first harmonic of the force.
+    mean_force = np.diff(momentum, axis=0) / step[:, None]
+    inside = steps_inside(times, start)
+    force = first_harmonic(middle, mean_force, inside, frequency, gain=np.sinc(frequency * step))
+    power = complex(force.conjugate() @ v) / 2
+    # The second way needs no forces: energy from the ledger, mass from the momentum in phase with the velocity.
+    carried = first_harmonic(times, momentum, weights, frequency)
+    balance = cycle_loss(run, frequency, cycles, [number])
+    omega = 2 * np.pi * frequency
+    masses = np.array([-2 * power.imag / (omega * size**2), float((carried @ v.conjugate()).real) / size**2])
+    powers = np.array([power.real, balance.work * frequency])
+    result = _losses(powers, masses, balance, frequency, particle_mass=mass, size=size)
+    return result.assign_attrs(
+        frequency=frequency,
+        cycles=cycles,
+        velocity_amplitude=size,
+        damper=damper,
+        warnings=[text] if (text := balance.warning()) else [],
+    )
+
+
+def _whole_cycles(times: FloatArray, frequency: float, after: float) -> int:
+    """Return the number of whole cycles after a time that end with a run."""
+    # The end is the most settled part, and means over parts of a cycle are biased.
+    cycles = math.floor((float(times[-1]) - max(after, float(times[0]))) * frequency + 1e-9)
     if cycles < 1:
         raise ValueError(f"no whole cycle of {frequency:g} Hz lies after {after:g} s; the run ends at {times[-1]:g} s")
-    start = times[-1] - cycles / frequency
-    mass = float(particle_mass[number])
     # With fewer samples the harmonics of short impulses are aliased into the amplitude of the force.
-    samples = np.count_nonzero(times > start + 1e-9 / frequency)
+    samples = np.count_nonzero(times > times[-1] - cycles / frequency + 1e-9 / frequency)
     if samples < MIN_SAMPLES * cycles:
         raise CaseError(
             f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {MIN_SAMPLES}",
             f"rb.Output(rate={20 * frequency:g})",
         )
-    # The ledger is relative to the base; the harmonic balance holds in the inertial frame.
-    velocity = arrays.base_velocity + arrays.cavity_velocity[:, number]
-    momentum = arrays.momentum[:, number] + mass * arrays.base_velocity
-    omega, span = 2 * np.pi * frequency, times[-1] - start
-    weights = trapezoid_weights(times, start)
-    v = first_harmonic(times, velocity, weights, frequency)
+    return cycles
+
+
+def _velocity_amplitude(
+    times: FloatArray, velocity: FloatArray, weights: FloatArray, frequency: float, span: float
+) -> NDArray[np.complex128]:
+    """Return the complex amplitude of the velocity of a cavity, which must move mostly at this frequency."""
+    v: NDArray[np.complex128] = first_harmonic(times, velocity, weights, frequency)
     size = float(np.linalg.norm(v))
     # A cavity that moves mostly at other frequencies has a small first harmonic, whose ratios would be noise. A drift
     # is not motion in this sense.
@@ -140,23 +173,22 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
             f"{100 * _LEAST_SHARE:g} % are needed",
             "the frequency of the motion",
         )
-    # Forces in contacts last for less than a sampling step. The change of momentum has their whole impulse.
-    step = np.diff(times)
-    middle = 0.5 * (times[1:] + times[:-1])
-    # The weight is constant, so the change of momentum gives the first harmonic of the force.
-    mean_force = np.diff(momentum, axis=0) / step[:, None]
-    inside = steps_inside(times, start)
-    force = first_harmonic(middle, mean_force, inside, frequency, gain=np.sinc(frequency * step))
-    power = complex(force.conjugate() @ v) / 2
-    # The second way needs no forces: energy from the ledger, mass from the momentum in phase with the velocity.
-    carried = first_harmonic(times, momentum, weights, frequency)
-    balance = cycle_loss(run, frequency, cycles, [number])
-    masses = np.array([-2 * power.imag / (omega * size**2), float((carried @ v.conjugate()).real) / size**2])
-    powers = np.array([power.real, balance.work * frequency])
-    reactive = 0.5 * omega * np.abs(masses) * size**2
+    return v
+
+
+def _losses(
+    powers: FloatArray, masses: FloatArray, balance: CycleLoss, frequency: float, *, particle_mass: float, size: float
+) -> xarray.Dataset:
+    """Return the losses and masses of both ways, and the balance of the particles, as a dataset."""
+    import xarray
+
+    reactive = np.pi * frequency * np.abs(masses) * size**2
 
     def over(values: Any, units: str, long_name: str) -> Any:
         return "way", values, {"units": units, "long_name": long_name}
+
+    def scalar(value: Any, long_name: str, **units: str) -> Any:
+        return (), value, {**units, "long_name": long_name}
 
     return xarray.Dataset(
         {
@@ -164,28 +196,13 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
             "loss_per_cycle": over(powers / frequency, "J", "energy absorbed in a cycle"),
             "effective_mass": over(masses, "kg", "effective mass"),
             "loss_factor": over(powers / reactive, "1", "loss factor"),
-            "reduced_loss": over(powers / (frequency * mass * size**2), "1", "energy of a cycle over m v^2"),
-            "dissipated_power": ((), balance.dissipated * frequency, {"units": "W", "long_name": "loss in contacts"}),
-            "stored_power": (
-                (),
-                balance.stored * frequency,
-                {"units": "W", "long_name": "rise of the particles' energy"},
-            ),
-            "raised_power": (
-                (),
-                balance.raised * frequency,
-                {"units": "W", "long_name": "rise of the gravity potential"},
-            ),
-            "steady": ((), balance.is_steady, {"long_name": "whether the motion is steady"}),
+            "reduced_loss": over(powers / (frequency * particle_mass * size**2), "1", "energy of a cycle over m v^2"),
+            "dissipated_power": scalar(balance.dissipated * frequency, "loss in contacts", units="W"),
+            "stored_power": scalar(balance.stored * frequency, "rise of the particles' energy", units="W"),
+            "raised_power": scalar(balance.raised * frequency, "rise of the gravity potential", units="W"),
+            "steady": scalar(balance.is_steady, "whether the motion is steady"),
         },
         {"way": ("way", list(WAYS), {"long_name": "method"})},
-        {
-            "frequency": frequency,
-            "cycles": cycles,
-            "velocity_amplitude": size,
-            "damper": damper,
-            "warnings": [text] if (text := balance.warning()) else [],
-        },
     )
 
 

@@ -61,15 +61,10 @@ def _from_toml(file: Path, _: ModesRequest) -> dict[str, Any]:
     return table
 
 
-def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any], list[str]]:
-    """Return the fields of Modal with the modes of a file, and notes of assumptions."""
-    count = given.get("mode_count")
-    if count is not None:
-        with at("mode_count"):
-            count = whole_number(count, "mode_count", 1)
+def _modes_with_masses(given: Mapping[str, Any], path: str, count: int | None) -> ModesInFile:
+    """Return the modes of a file with the modal masses that the user states, or else its own."""
     with at("file"):
         modes = read_modes(path, count, has_mass_unit=given.get("mass_unit") is not None)
-    name = Path(path).name
     # Modal masses of the user replace those of the file.
     masses = None
     if given.get("modal_masses") is not None:
@@ -82,19 +77,15 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
                     masses = _modal_masses(modes["modal_masses"], given, in_kg=False)
                 except Hint as hint:
                     raise Hint(f"{path}: {hint.complaint}", hint.suggestion or 'modal_masses = ["1 kg", ...]') from None
-        modes = _modes_of_toml(modes, path, masses, has_mass_unit=given.get("mass_unit") is not None)
-    elif masses is not None:
-        modes = replace(modes, modal_masses=masses, mass_unit=1.0)
-    modes = _chosen(modes, given, name)
-    with at("file"):
-        _check_numbers(modes, path)
-    # The first modes only, mass-normalised and in SI units.
-    first = slice(None, count)
+        return _modes_of_toml(modes, path, masses, has_mass_unit=given.get("mass_unit") is not None)
+    return modes if masses is None else replace(modes, modal_masses=masses, mass_unit=1.0)
+
+
+def _check_fit(modes: ModesInFile, path: str, count: int) -> None:
+    """Raise if one of the first modes cannot be read as a real one."""
     total = modes.frequencies.size
-    if count is not None and count > total:
-        raise Hint(f"{name} has {total} modes", f"mode_count = {total}", ["mode_count"])
     bad = min(modes.unfit, default=total + 1)
-    if bad <= (count or total):
+    if bad <= count:
         fit = [number for number in range(1, total + 1) if number not in modes.unfit]
         advice = (
             f"mode_numbers = {fit}, which leaves out those that do not fit" if fit else "an export of real normal modes"
@@ -102,6 +93,24 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         raise DataError(
             f"{path}: mode {bad} at {modes.frequencies[bad - 1]:.4g} Hz: {modes.unfit[bad]}", advice, ["file"]
         )
+
+
+def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any], list[str]]:
+    """Return the fields of Modal with the modes of a file, and notes of assumptions."""
+    count = given.get("mode_count")
+    if count is not None:
+        with at("mode_count"):
+            count = whole_number(count, "mode_count", 1)
+    name = Path(path).name
+    modes = _chosen(_modes_with_masses(given, path, count), given, name)
+    with at("file"):
+        _check_numbers(modes, path)
+    # The first modes only, mass-normalised and in SI units.
+    first = slice(None, count)
+    total = modes.frequencies.size
+    if count is not None and count > total:
+        raise Hint(f"{name} has {total} modes", f"mode_count = {total}", ["mode_count"])
+    _check_fit(modes, path, count or total)
     scale, notes = _scale(modes, given, name, path)
     points = _select_points(modes, given, name)
     with at("file"):

@@ -586,17 +586,25 @@ def _layout(
     if step is None:
         stated = {float(match[1]) for row in lines[:start] for match in _STEP.finditer(row.content)}
         step = stated.pop() if len(stated) == 1 and 0 < min(stated) < np.inf else None
-    # Which lines above are names of columns; all others are free text.
+    names, headings, free = _headings(file, lines[:start], rows, known, requested)
+    is_blank = all(row.cells == row.content.split() for row in rows.head[:_PROBED])
+    return _Text(file, rows, names, headings, free, step, notes, is_blank, step_is_noted, dialect)
+
+
+def _headings(
+    file: Path, lines: list[Row], rows: Rows, known: Sequence[str], requested: Sequence[str]
+) -> tuple[list[str] | None, list[list[str]], list[tuple[int, str]]]:
+    """Return the names of the columns, all headings, and the lines of free text among the lines above the data."""
     width = rows.width
-    for row in lines[:start]:
+    for row in lines:
         if len(row.cells) != width and set(row.cells) <= set(known):
             raise DataError(
                 f"{file}, line {rows.head[0].number}: {width} columns, but {len(row.cells)} in line {row.number}",
                 "a name above each column",
             )
-    above = [(row, _heading_cells(row, width)) for row in lines[:start]]
+    above = [(row, _heading_cells(row, width)) for row in lines]
     if width == 1:  # a name and a unit; further lines are text
-        above = [(row, cells if start - k <= _HEADINGS else None) for k, (row, cells) in enumerate(above)]
+        above = [(row, cells if len(lines) - k <= _HEADINGS else None) for k, (row, cells) in enumerate(above)]
     headings = [cells for _, cells in above if cells and not any(map(is_number, cells))]
     expected = {*known, *requested}
     names = max(reversed(headings), key=lambda cells: len(expected & set(cells)), default=None)
@@ -606,8 +614,7 @@ def _layout(
         for row, cells in above
         if cells is None or cells not in headings or "unit" in row.content.lower()
     ]
-    is_blank = all(row.cells == row.content.split() for row in rows.head[:_PROBED])
-    return _Text(file, rows, names, headings, free, step, notes, is_blank, step_is_noted, dialect)
+    return names, headings, free
 
 
 def _heading_cells(row: Row, width: int) -> list[str] | None:

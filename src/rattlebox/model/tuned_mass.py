@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -181,36 +182,97 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
     """
     if not tuned:
         return modes
-    count, total = modes.stiffness.shape[0], modes.stiffness.shape[0] + len(tuned)
-    if not count:
+    if not modes.stiffness.shape[0]:
         raise Hint("a tuned mass needs a structure that moves", "SDOF, Modal or Matrices", ["tuned_masses", 0])
+    coordinates = _Coordinates.of(modes, tuned)
+    names, springs = _springs(modes, tuned, coordinates)
+    values, damping, vectors = _eigenmodes(*_matrices(modes, tuned, springs, coordinates))
 
-    # Numbers may be arrays over a grid, whose axes follow those of vectors and matrices.
-    numbers = [number for part in tuned for number in (part.mass, part.frequency, part.damping_ratio, part.velocity)]
-    numbers += [part.displacement for part in tuned if part.displacement is not None]
-    own = (modes.decay, modes.stiffness, modes.q0, modes.p0)
-    axes = max(*(np.ndim(number) for number in numbers), *(vector.ndim - 1 for vector in own))
+    def into_modes(first: Any, more: Sequence[Any], spatial: bool = False) -> Vector:
+        """Return a vector in the coordinates as one in the new modes."""
+        vector = coordinates.joined(first, more, 2 if spatial else 1)
+        return np.asarray(np.einsum("cm...,cd...->md..." if spatial else "cm...,c...->m...", vectors, vector))
 
-    def lifted(value: Any, components: int) -> Vector:
+    # Points, participation, displacements and velocities go into the new modes by the same rotation.
+    roots, count = coordinates.roots, len(tuned)
+    shapes = {
+        name: into_modes(shape, [np.zeros(3) if name in modes.spatial else 0.0] * count, name in modes.spatial)
+        for name, shape in modes.shapes.items()
+    }
+    for index, name in enumerate(names):
+        own = [1 / root if k == index else 0.0 for k, root in enumerate(roots)]
+        shapes[name] = into_modes(np.zeros(modes.stiffness.shape[0]), own)
+    places = [
+        root * (_initial_displacement(modes, part) if part.displacement is None else part.displacement)
+        for part, root in zip(tuned, roots, strict=True)
+    ]
+    speeds = [root * part.velocity for part, root in zip(tuned, roots, strict=True)]
+    inertia = [  # m^1/2, or m^1/2 d of a mass that moves along d
+        root if part.direction is None else np.multiply.outer(unit_vector(part.direction), root)
+        for part, root in zip(tuned, roots, strict=True)
+    ]
+    total_mass, participation = modes.total_mass, modes.participation
+    if total_mass is not None:
+        for one in inertia:
+            total_mass = total_mass + (np.einsum("a...,b...->ab...", one, one) if modes.spatial else one * one)
+    if participation is not None:
+        participation = into_modes(participation, inertia, bool(modes.spatial))
+    # The dampers couple the modes unless the damping happens to be proportional; rounding is no coupling.
+    main = np.stack([damping[k, k] for k in range(len(damping))])
+    coupling = damping - _diagonal(main)
+    is_coupled = bool(np.any(np.abs(coupling) > _NO_COUPLING * np.abs(main).max(initial=0.0)))
+    return ModalModel(
+        decay=np.maximum(main, 0.0) / 2,
+        stiffness=values,
+        shapes=shapes,
+        participation=participation,
+        q0=into_modes(modes.q0, places),
+        p0=into_modes(modes.p0, speeds),
+        spatial=modes.spatial,
+        coupling=coupling if is_coupled else None,
+        attached=modes.attached | frozenset(names),
+        total_mass=total_mass,
+    )
+
+
+@dataclass(frozen=True)
+class _Coordinates:
+    """Coordinates in which the mass matrix is the identity.
+
+    They are those of the modes of the structure, and the displacement of each tuned mass times the root of its mass.
+    Numbers may be arrays over a grid, whose axes follow those of vectors and matrices.
+    """
+
+    roots: list[Any]
+    grid_axes: int
+
+    @classmethod
+    def of(cls, modes: ModalModel, tuned: Sequence[TunedMass]) -> _Coordinates:
+        numbers = [
+            number for part in tuned for number in (part.mass, part.frequency, part.damping_ratio, part.velocity)
+        ]
+        numbers += [part.displacement for part in tuned if part.displacement is not None]
+        vectors = (modes.decay, modes.stiffness, modes.q0, modes.p0)
+        axes = max(*(np.ndim(number) for number in numbers), *(vector.ndim - 1 for vector in vectors))
+        return cls([power(part.mass, 0.5) for part in tuned], axes)
+
+    def lifted(self, value: Any, components: int) -> Vector:
+        """Return an array of components with all axes of the grid."""
         array = np.asarray(value, dtype=float)
-        return array.reshape((*array.shape, *(1,) * (components + axes - array.ndim)))
+        return array.reshape((*array.shape, *(1,) * (components + self.grid_axes - array.ndim)))
 
-    def joined(first: Any, more: Sequence[Any], components: int = 1) -> Vector:
+    def joined(self, first: Any, more: Sequence[Any], components: int = 1) -> Vector:
         """Return a vector over the structure's modes and the tuned masses."""
-        parts = [*lifted(first, components), *(lifted(one, components - 1) for one in more)]
+        parts = [*self.lifted(first, components), *(self.lifted(one, components - 1) for one in more)]
         return np.stack(np.broadcast_arrays(*parts))
 
-    def diagonal(vector: Vector) -> Vector:
-        matrix = np.zeros((len(vector), *vector.shape))
-        for k, value in enumerate(vector):
-            matrix[k, k] = value
-        return matrix
 
-    # The coordinates are the modes of the structure and the displacement of each tuned mass times the root of its mass, so
-    # that the mass matrix is the identity. A spring stretches by the shape at its point minus the displacement of its mass.
-    nothing = (0.0,) * len(tuned)
+def _springs(
+    modes: ModalModel, tuned: Sequence[TunedMass], coordinates: _Coordinates
+) -> tuple[list[str], list[Vector]]:
+    """Return the names of the masses, and the stretch of each spring per coordinate."""
     names: list[str] = []
-    springs, roots, inertia = [], [], []
+    springs = []
     for index, part in enumerate(tuned):
         with at("tuned_masses", index):
             try:
@@ -221,69 +283,48 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
             if name in modes.shapes or name in names:
                 raise Hint(f"the point {name!r} already exists", 'name = "another name"', ["name"])
         names.append(name)
-        root = power(part.mass, 0.5)
-        roots.append(root)
-        springs.append(joined(shape, [-1 / root if k == index else 0.0 for k in range(len(tuned))]))
-        inertia.append(root if part.direction is None else np.multiply.outer(unit_vector(part.direction), root))
+        # A spring stretches by the shape at its point minus the displacement of its mass.
+        own = [-1 / root if k == index else 0.0 for k, root in enumerate(coordinates.roots)]
+        springs.append(coordinates.joined(shape, own))
+    return names, springs
 
-    # Each spring and each damper adds a matrix of rank one to those of the structure.
-    stiffness = diagonal(joined(modes.stiffness, nothing))
-    damping = diagonal(joined(2 * modes.decay, nothing))
+
+def _matrices(
+    modes: ModalModel, tuned: Sequence[TunedMass], springs: Sequence[Vector], coordinates: _Coordinates
+) -> tuple[Vector, Vector]:
+    """Return the stiffness and damping matrices."""
+    nothing = (0.0,) * len(tuned)
+    stiffness = _diagonal(coordinates.joined(modes.stiffness, nothing))
+    damping = _diagonal(coordinates.joined(2 * modes.decay, nothing))
     if modes.coupling is not None:
-        damping[:count, :count] += lifted(modes.coupling, 2)
+        count = modes.stiffness.shape[0]
+        damping[:count, :count] += coordinates.lifted(modes.coupling, 2)
+    # Each spring and each damper adds a matrix of rank one to those of the structure.
     for part, spring in zip(tuned, springs, strict=True):
         rate = 2 * math.pi * part.frequency
         outer = spring[:, None] * spring[None, :]
         stiffness = stiffness + part.mass * rate * rate * outer
         damping = damping + 2 * part.damping_ratio * part.mass * rate * outer
+    return stiffness, damping
+
+
+def _eigenmodes(stiffness: Vector, damping: Vector) -> tuple[Vector, Vector, Vector]:
+    """Return the squared frequencies, the damping matrix in the modes, and the modes (coordinate, mode, ...)."""
     # The eigenvectors of a symmetric matrix are orthonormal: the new modes are mass-normalised as well. A rigid-body mode
     # has an eigenvalue of rounding, whose root would be a frequency.
     values, vectors = np.linalg.eigh(_last(stiffness))
     largest = np.abs(values).max(axis=-1, keepdims=True)
     values = np.moveaxis(np.where(np.abs(values) < 1e-12 * largest, 0.0, values), -1, 0)
     in_modes = np.moveaxis(np.swapaxes(vectors, -1, -2) @ _last(damping) @ vectors, (-2, -1), (0, 1))
-    turned = np.moveaxis(vectors, (-2, -1), (0, 1))  # (coordinate, mode, ...)
+    return values, in_modes, np.moveaxis(vectors, (-2, -1), (0, 1))
 
-    def into_modes(first: Any, more: Sequence[Any], spatial: bool = False) -> Vector:
-        vector = joined(first, more, 2 if spatial else 1)
-        return np.asarray(np.einsum("cm...,cd...->md..." if spatial else "cm...,c...->m...", turned, vector))
 
-    # Points, participation, displacements and velocities go into the new modes by the same rotation.
-    shapes = {
-        name: into_modes(shape, [np.zeros(3)] * len(tuned) if name in modes.spatial else nothing, name in modes.spatial)
-        for name, shape in modes.shapes.items()
-    }
-    for index, name in enumerate(names):
-        own_place = [1 / root if k == index else 0.0 for k, root in enumerate(roots)]
-        shapes[name] = into_modes(np.zeros(count), own_place)
-    places = [
-        root * (_initial_displacement(modes, part) if part.displacement is None else part.displacement)
-        for part, root in zip(tuned, roots, strict=True)
-    ]
-    speeds = [root * part.velocity for part, root in zip(tuned, roots, strict=True)]
-    # The dampers couple the modes unless the damping happens to be proportional; rounding is no coupling.
-    main = np.stack([in_modes[k, k] for k in range(total)])
-    coupling = in_modes - diagonal(main)
-    coupled = bool(np.any(np.abs(coupling) > _NO_COUPLING * np.abs(main).max(initial=0.0)))
-    total_mass = modes.total_mass
-    if total_mass is not None:
-        for one in inertia:  # m, or m d d^T of a mass that moves along d
-            total_mass = total_mass + (np.einsum("a...,b...->ab...", one, one) if modes.spatial else one * one)
-    inertia_of_modes = modes.participation
-    if inertia_of_modes is not None:
-        inertia_of_modes = into_modes(inertia_of_modes, inertia, bool(modes.spatial))
-    return ModalModel(
-        decay=np.maximum(main, 0.0) / 2,
-        stiffness=values,
-        shapes=shapes,
-        participation=inertia_of_modes,
-        q0=into_modes(modes.q0, places),
-        p0=into_modes(modes.p0, speeds),
-        spatial=modes.spatial,
-        coupling=coupling if coupled else None,
-        attached=modes.attached | frozenset(names),
-        total_mass=total_mass,
-    )
+def _diagonal(vector: Vector) -> Vector:
+    """Return a diagonal matrix (n, n, ...) of a vector (n, ...)."""
+    matrix = np.zeros((len(vector), *vector.shape))
+    for k, value in enumerate(vector):
+        matrix[k, k] = value
+    return matrix
 
 
 def _initial_displacement(modes: ModalModel, part: TunedMass) -> Any:

@@ -61,57 +61,10 @@ def read_ground_motion(path: Path) -> GroundMotion:
             lines = path.read_text(encoding="latin-1").splitlines()
         except OSError as error:
             raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
-        # The number of header lines differs between editions of the format: the last one is that with count and step.
-        above, count, step = 0, "", ""
-        for line in lines[:_HEADER]:
-            above += 1
-            old = _OLD_HEADER.match(line)
-            count, step = (old[1], old[2]) if old else (_first_group(_COUNT, line), _first_group(_STEP, line))
-            if count and step:
-                break
-        else:
-            raise DataError(
-                f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT; an AT2 file needs both",
-                'the ending .csv or .txt, and dt = "0.01 s" for one column of numbers',
-            )
+        above, count, step = _header(path, lines)
         header = "\n".join(lines[:above])
-        # The three quantities have the same layout: the header decides, and the ending if it does not say.
-        named = {match.lower() for match in _QUANTITY.findall(header)}
-        kind = path.suffix.lower()
-        quantity = "accel" if "accel" in named else next(iter(sorted(named)), _QUANTITIES.get(kind, "accel"))
-        if quantity == "velocity" or (kind == ".vt2" and quantity == "accel"):
-            raise DataError(
-                f"{path} contains a velocity, not an acceleration",
-                "the file with the ending .AT2, or .DT2 for a motion",
-            )
-        if quantity != _QUANTITIES.get(kind, quantity):
-            raise DataError(
-                f"{path} contains {'a displacement' if quantity == 'displacement' else 'an acceleration'} by its header, "
-                f"but not by its ending {path.suffix}",
-                "the ending .DT2 for displacements, .AT2 for accelerations",
-            )
-        if not (_is_positive(step) and len(count) < _DIGITS):
-            raise DataError(
-                f"{path}, line {above}: the time step is {step} s and the number of samples {count[:_DIGITS]}; both must be"
-                " positive and finite",
-                _WHOLE,
-            )
-        values = []
-        for number, line in enumerate(lines[above:], start=above + 1):
-            try:
-                values += _row(line)
-            except ValueError:
-                if len(values) == int(count):
-                    continue  # such as "*** End Data ***"
-                raise DataError(
-                    f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers", _WHOLE
-                ) from None
-        # The stated number is the only sign of a truncated file.
-        if len(values) != int(count):
-            raise DataError(
-                f"{path} states {count} samples, but contains {len(values)}",
-                "the complete file: it may be cut short" if len(values) < int(count) else _WHOLE,
-            )
+        _check_quantity(path, header)
+        values = _values(path, lines, above, count)
         samples = np.array(values)
         if not np.isfinite(samples).all():
             raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite", _WHOLE)
@@ -119,6 +72,68 @@ def read_ground_motion(path: Path) -> GroundMotion:
         return GroundMotion(
             float(step), samples, unit[1].strip(".,()") if unit else "", tuple(enumerate(lines[:above], start=1))
         )
+
+
+def _header(path: Path, lines: list[str]) -> tuple[int, int, str]:
+    """Return how many lines the header has, the number of samples and the time step that its last line states."""
+    # The number of header lines differs between editions of the format: the last one is that with count and step.
+    above, count, step = 0, "", ""
+    for line in lines[:_HEADER]:
+        above += 1
+        old = _OLD_HEADER.match(line)
+        count, step = (old[1], old[2]) if old else (_first_group(_COUNT, line), _first_group(_STEP, line))
+        if count and step:
+            break
+    else:
+        raise DataError(
+            f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT; an AT2 file needs both",
+            'the ending .csv or .txt, and dt = "0.01 s" for one column of numbers',
+        )
+    if not (_is_positive(step) and len(count) < _DIGITS):
+        raise DataError(
+            f"{path}, line {above}: the time step is {step} s and the number of samples {count[:_DIGITS]}; both must be"
+            " positive and finite",
+            _WHOLE,
+        )
+    return above, int(count), step
+
+
+def _check_quantity(path: Path, header: str) -> None:
+    """Raise if a file contains velocities, or another quantity than its ending says."""
+    # The three quantities have the same layout: the header decides, and the ending if it does not say.
+    named = {match.lower() for match in _QUANTITY.findall(header)}
+    kind = path.suffix.lower()
+    quantity = "accel" if "accel" in named else next(iter(sorted(named)), _QUANTITIES.get(kind, "accel"))
+    if quantity == "velocity" or (kind == ".vt2" and quantity == "accel"):
+        raise DataError(
+            f"{path} contains a velocity, not an acceleration",
+            "the file with the ending .AT2, or .DT2 for a motion",
+        )
+    if quantity != _QUANTITIES.get(kind, quantity):
+        raise DataError(
+            f"{path} contains {'a displacement' if quantity == 'displacement' else 'an acceleration'} by its header, "
+            f"but not by its ending {path.suffix}",
+            "the ending .DT2 for displacements, .AT2 for accelerations",
+        )
+
+
+def _values(path: Path, lines: list[str], above: int, count: int) -> list[float]:
+    """Return the samples below the header."""
+    values: list[float] = []
+    for number, line in enumerate(lines[above:], start=above + 1):
+        try:
+            values += _row(line)
+        except ValueError:
+            if len(values) == count:
+                continue  # such as "*** End Data ***"
+            raise DataError(f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers", _WHOLE) from None
+    # The stated number is the only sign of a truncated file.
+    if len(values) != count:
+        raise DataError(
+            f"{path} states {count} samples, but contains {len(values)}",
+            "the complete file: it may be cut short" if len(values) < count else _WHOLE,
+        )
+    return values
 
 
 @record_reader(".at2", ".vt2", ".dt2", needs_unit=True)

@@ -114,30 +114,7 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
             )
         return factors[key]
 
-    # Each column is a quantity of the mode, its number, or a mode shape: a name that is no quantity is a point, with an
-    # axis after a blank.
-    columns: dict[str, list[int]] = {}  # by quantity
-    points: dict[str, dict[int, int]] = {}  # column of each axis, -1 for a shape without components
-    for column, name in enumerate(names):
-        words = _words(name)
-        if words in _NUMBERING:
-            continue
-        quantity = _QUANTITIES.get(words) or ("participation" if words.startswith("participation ") else "")
-        if quantity:
-            columns.setdefault(quantity, []).append(column)
-            continue
-        stem, _, axis = name.rpartition(" ")
-        point = stem if axis.lower() in _AXES and stem else name
-        axes = points.setdefault(point, {})
-        component = _AXES[axis.lower()] if point != name else -1
-        if component in axes:
-            raise DataError(f"{path}: two columns are called {name!r}", "another name for one of them")
-        axes[component] = column
-    for quantity, places in columns.items():
-        if len(places) > (3 if quantity == "participation" else 1):
-            raise DataError(f"{path}: two columns are called {names[places[1]]!r}", "another name for one of them")
-    if not points:
-        raise DataError(f"{path} contains no mode shape at any point", "a column for each point, called by its name")
+    columns, points = _quantities_and_points(path, names)
     # The unit of mass follows from what the table states: modal masses, or else the unit kg^-1/2 of mass-normalised
     # shapes.
     (frequency,) = columns["frequency"]
@@ -150,14 +127,6 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
         if len(roots) > 1:
             raise DataError(f"{path}: the mode shapes are in different units", "one unit for all of them")
         mass_unit = roots.pop()
-    shapes = {}
-    for name, axes in points.items():
-        if -1 in axes:
-            shapes[name] = table[:, axes[-1]]
-        else:
-            shapes[name] = np.zeros((len(table), 3))
-            for component, column in axes.items():
-                shapes[name][:, component] = table[:, column]
     participation = None
     if "participation" in columns:
         places = columns["participation"]
@@ -182,10 +151,51 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
             notes.append(f"{path.name} states no unit of damping; shares of one are assumed, up to {damping.max():.4g}")
     return ModesInFile(
         frequencies=frequencies,
-        shapes=shapes,
+        shapes={name: _shape(table, axes) for name, axes in points.items()},
         modal_masses=modal_masses,
         damping_ratios=damping,
         participation=participation,
         mass_unit=mass_unit,
         notes=tuple(notes),
     )
+
+
+def _quantities_and_points(
+    path: Path, names: tuple[str, ...]
+) -> tuple[dict[str, list[int]], dict[str, dict[int, int]]]:
+    """Return the columns of each quantity, and the column of each axis of each point; -1 is a shape without axes."""
+    # Each column is a quantity of the mode, its number, or a mode shape: a name that is no quantity is a point, with an
+    # axis after a blank.
+    columns: dict[str, list[int]] = {}
+    points: dict[str, dict[int, int]] = {}
+    for column, name in enumerate(names):
+        words = _words(name)
+        if words in _NUMBERING:
+            continue
+        quantity = _QUANTITIES.get(words) or ("participation" if words.startswith("participation ") else "")
+        if quantity:
+            columns.setdefault(quantity, []).append(column)
+            continue
+        stem, _, axis = name.rpartition(" ")
+        point = stem if axis.lower() in _AXES and stem else name
+        axes = points.setdefault(point, {})
+        component = _AXES[axis.lower()] if point != name else -1
+        if component in axes:
+            raise DataError(f"{path}: two columns are called {name!r}", "another name for one of them")
+        axes[component] = column
+    for quantity, places in columns.items():
+        if len(places) > (3 if quantity == "participation" else 1):
+            raise DataError(f"{path}: two columns are called {names[places[1]]!r}", "another name for one of them")
+    if not points:
+        raise DataError(f"{path} contains no mode shape at any point", "a column for each point, called by its name")
+    return columns, points
+
+
+def _shape(table: FloatArray, axes: dict[int, int]) -> FloatArray:
+    """Return the mode shape of a point, (modes,) or (modes, 3)."""
+    if -1 in axes:
+        return table[:, axes[-1]]
+    shape = np.zeros((len(table), 3))
+    for component, column in axes.items():
+        shape[:, component] = table[:, column]
+    return shape

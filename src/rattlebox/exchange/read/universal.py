@@ -121,33 +121,10 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
     with errors_of(path, "a universal file"):
         every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
         sets = [block for block in every if block["type"] not in _GEOMETRY]
-        # The set 55 may also have stresses, velocities or accelerations of the same modes.
-        normal = [block for block in sets if block["type"] == 55 and _is_normal(block)]
-        quantities = {int(block["spec_data_type"]) for block in normal}
-        wanted: tuple[int, ...] = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
-        chosen = [block for block in sets if block["type"] != 164 and _is_mode(block, wanted, (_NORMAL_MODES,))]
-        others = [_QUANTITIES.get(kind, f"data of type {kind}") for kind in sorted(quantities - set(wanted))]
-        # From here on the errors say why there are no modes: other quantities, other analyses.
-        if not chosen and others:
-            raise DataError(
-                f"{path} contains normal modes of {' and '.join(others)}; mode shapes are displacements (type 8)",
-                "an export of displacements",
-            )
-        is_complex = not chosen
-        if is_complex:  # as most programs of modal tests write them
-            wanted = (_DISPLACEMENT, *_UNKNOWN)
-            chosen = [block for block in sets if block["type"] != 164 and _is_mode(block, wanted, _COMPLEX_MODES)]
-        if not chosen:
-            kinds = sorted({int(block["analysis_type"]) for block in sets if block["type"] != 164})
-            raise DataError(
-                f"{path} contains no modes of displacements (analysis types 2, 3 and 7); its analysis types are "
-                f"{', '.join(map(str, kinds)) or 'none'}",
-                "an export of mode shapes",
-            )
+        chosen, note = _sets_of_modes(path, [block for block in sets if block["type"] != 164])
+        is_complex = not _is_normal(chosen[0])
         modes = [_complex_mode(path, block) if is_complex else _mode(path, block) for block in _without_twins(chosen)]
-        notes = [f"{path.name} does not state the quantity of its modes; displacements are assumed"] * (
-            bool(quantities) and wanted == _UNKNOWN
-        )
+        notes = [*note]
         if is_complex:
             scatters = ", ".join(f"{mode.scatter:.2g}" for mode in modes[:_LISTED]) + ", ..." * (len(modes) > _LISTED)
             notes.append(
@@ -178,6 +155,35 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
             unfit={number: mode.unfit for number, mode in enumerate(modes, start=1) if mode.unfit},
             notes=(*notes, *assumed),
         )
+
+
+def _sets_of_modes(path: Path, sets: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], tuple[str, ...]]:
+    """Return the sets with normal modes, or else those with complex modes, and a note if their quantity is assumed."""
+    # The set 55 may also have stresses, velocities or accelerations of the same modes.
+    normal = [block for block in sets if block["type"] == 55 and _is_normal(block)]
+    quantities = {int(block["spec_data_type"]) for block in normal}
+    wanted: tuple[int, ...] = (_DISPLACEMENT,) if _DISPLACEMENT in quantities else _UNKNOWN
+    if chosen := [block for block in sets if _is_mode(block, wanted, (_NORMAL_MODES,))]:
+        is_assumed = bool(quantities) and wanted == _UNKNOWN
+        note = f"{path.name} does not state the quantity of its modes; displacements are assumed"
+        return chosen, (note,) if is_assumed else ()
+    # From here on the errors say why there are no modes: other quantities, other analyses.
+    others = [_QUANTITIES.get(kind, f"data of type {kind}") for kind in sorted(quantities - set(wanted))]
+    if others:
+        raise DataError(
+            f"{path} contains normal modes of {' and '.join(others)}; mode shapes are displacements (type 8)",
+            "an export of displacements",
+        )
+    # Most programs of modal tests write complex modes.
+    chosen = [block for block in sets if _is_mode(block, (_DISPLACEMENT, *_UNKNOWN), _COMPLEX_MODES)]
+    if not chosen:
+        kinds = sorted({int(block["analysis_type"]) for block in sets})
+        raise DataError(
+            f"{path} contains no modes of displacements (analysis types 2, 3 and 7); its analysis types are "
+            f"{', '.join(map(str, kinds)) or 'none'}",
+            "an export of mode shapes",
+        )
+    return chosen, ()
 
 
 def _axes_of_nodes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[dict[int, FloatArray], tuple[str, ...]]:

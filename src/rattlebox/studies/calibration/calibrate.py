@@ -240,51 +240,8 @@ class Calibration:
         import xarray
 
         space = self.space
-        ends = fit.intervals
-
-        def of(dims: Any, numbers: Any, long_name: str) -> tuple[Any, Any, dict[str, str]]:
-            return dims, numbers, {"long_name": long_name}
-
-        data: dict[str, Any] = {
-            "value": of("parameter", fit.best, "value"),
-            "lower": of("parameter", ends[:, 0], "lower 95 % limit"),
-            "upper": of("parameter", ends[:, 1], "upper 95 % limit"),
-            "is_lower_bounded": of("parameter", fit.bounded[:, 0], "whether the data bound it below"),
-            "is_upper_bounded": of("parameter", fit.bounded[:, 1], "whether the data bound it above"),
-            "smallest": of("parameter", space.low, "smallest value of the range"),
-            "largest": of("parameter", space.high, "largest value of the range"),
-            "correlation": of(("parameter", "other"), fit.region.correlation, "correlation of two parameters"),
-            "measured": of("datum", self.measured, "measured value"),
-            "error": of("datum", self.error, "standard uncertainty of the measured value"),
-            "fitted": of("datum", fit.fitted, "value of the response surface at the result"),
-            "scatter": of("datum", fit.scatter, "standard deviation of a simulated value"),
-            "check": of("datum", checks.mean(axis=0), "mean of further packings at the result"),
-            "check_deviation": of("datum", checks.std(axis=0, ddof=1), "standard deviation of these packings"),
-            "simulated": of(("sample", "datum"), values, "simulated value"),
-            "exceeded": (
-                "sample",
-                flags,
-                {"long_name": "exceeded validity limits", "flag_meanings": " ".join(WARNINGS)},
-            ),
-            **self._profiles(fit),
-        }
-        coords: dict[str, Any] = {
-            "parameter": space.paths,
-            "other": space.paths,
-            "unit": ("parameter", space.units),
-            "measure": ("datum", [point.measure for point in self.points]),
-            "amplitude": of("datum", [point.amplitude for point in self.points], "amplitude"),
-            "amplitude_unit": ("datum", [point.unit for point in self.points]),
-            "frequency": (
-                "datum",
-                [point.frequency for point in self.points],
-                {"units": "Hz", "long_name": "frequency"},
-            ),
-            "data_set": of("datum", self.sets, "number of the measurement"),
-        }
-        for path, unit, column in zip(space.paths, space.units, space.values(points).T, strict=True):
-            coords[path] = ("sample", column, {"units": unit, "long_name": path.replace(".", " ").replace("_", " ")})
-        return xarray.Dataset(data, coords).assign_attrs(
+        data = {**self._fitted(fit, checks), **self._samples(values, flags), **self._profiles(fit)}
+        return xarray.Dataset(data, self._coordinates(points)).assign_attrs(
             title="Calibration of contact parameters",
             case=self.case.to_toml(),
             chi2=fit.chi2,
@@ -297,6 +254,52 @@ class Calibration:
             known=json.dumps(space.known),
             log=[path for path, is_log in zip(space.paths, space.is_log, strict=True) if is_log],
         )
+
+    def _fitted(self, fit: Fit, checks: FloatArray) -> dict[str, Any]:
+        """Return the parameters with their limits, and the data with their fitted values."""
+        space, ends = self.space, fit.intervals
+        return {
+            "value": _variable("parameter", fit.best, "value"),
+            "lower": _variable("parameter", ends[:, 0], "lower 95 % limit"),
+            "upper": _variable("parameter", ends[:, 1], "upper 95 % limit"),
+            "is_lower_bounded": _variable("parameter", fit.bounded[:, 0], "whether the data bound it below"),
+            "is_upper_bounded": _variable("parameter", fit.bounded[:, 1], "whether the data bound it above"),
+            "smallest": _variable("parameter", space.low, "smallest value of the range"),
+            "largest": _variable("parameter", space.high, "largest value of the range"),
+            "correlation": _variable(("parameter", "other"), fit.region.correlation, "correlation of two parameters"),
+            "measured": _variable("datum", self.measured, "measured value"),
+            "error": _variable("datum", self.error, "standard uncertainty of the measured value"),
+            "fitted": _variable("datum", fit.fitted, "value of the response surface at the result"),
+            "scatter": _variable("datum", fit.scatter, "standard deviation of a simulated value"),
+            "check": _variable("datum", checks.mean(axis=0), "mean of further packings at the result"),
+            "check_deviation": _variable("datum", checks.std(axis=0, ddof=1), "standard deviation of these packings"),
+        }
+
+    def _samples(self, values: FloatArray, flags: NDArray[np.int64]) -> dict[str, Any]:
+        """Return the simulated values and the exceeded limits of all samples."""
+        meanings = " ".join(WARNINGS)
+        return {
+            "simulated": _variable(("sample", "datum"), values, "simulated value"),
+            "exceeded": _variable("sample", flags, "exceeded validity limits", flag_meanings=meanings),
+        }
+
+    def _coordinates(self, points: FloatArray) -> dict[str, Any]:
+        """Return the names of the parameters, the data, and the values of the samples."""
+        space = self.space
+        coordinates: dict[str, Any] = {
+            "parameter": space.paths,
+            "other": space.paths,
+            "unit": ("parameter", space.units),
+            "measure": ("datum", [point.measure for point in self.points]),
+            "amplitude": _variable("datum", [point.amplitude for point in self.points], "amplitude"),
+            "amplitude_unit": ("datum", [point.unit for point in self.points]),
+            "frequency": _variable("datum", [point.frequency for point in self.points], "frequency", units="Hz"),
+            "data_set": _variable("datum", self.sets, "number of the measurement"),
+        }
+        for path, unit, column in zip(space.paths, space.units, space.values(points).T, strict=True):
+            words = path.replace(".", " ").replace("_", " ")
+            coordinates[path] = _variable("sample", column, words, units=unit)
+        return coordinates
 
     def _profiles(self, fit: Fit) -> dict[str, Any]:
         """Return the profiles of all parameters, and the map of the first two."""
@@ -324,6 +327,11 @@ class Calibration:
                 about = {"units": self.space.units[axis], "long_name": self.space.paths[axis]}
                 found[f"{name}_value"] = name, fit.along(axis, region.axes[axis][steps[axis]]), about
         return found
+
+
+def _variable(dims: str | tuple[str, ...], values: Any, long_name: str, **attributes: str) -> Any:
+    """Return a variable of a dataset."""
+    return dims, values, {"long_name": long_name, **attributes}
 
 
 def _exceeded(flags: NDArray[np.int64]) -> Iterator[str]:

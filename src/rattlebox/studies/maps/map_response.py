@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -368,6 +369,7 @@ class MapResponse:
         solutions, amplitude, rests = _motions(transfer, table, masses, number, levels, from_map)
         squared = 1.0 if masses.is_acceleration else (2 * np.pi * transfer.frequency[:, None, None]) ** 2
         each = np.abs(solutions.acceleration) / squared
+        largest = np.abs(amplitude[..., 0])
         peak, where = _peaks(transfer, solutions, np.abs(amplitude), levels)
         damping = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
         modes = model.stiffness, damping, transfer.shapes, number
@@ -381,35 +383,16 @@ class MapResponse:
             others, found, _ = _motions(transfer, table, other, number, levels, near)
             return np.abs(found[..., 0]), _peaks(transfer, others, np.abs(found), levels)[0]
 
-        # Errors: the same response from half of the amplitudes or frequencies of the map.
-        errors, peak_errors = [np.zeros(solutions.is_below.shape)], [np.zeros(peak.shape)]
-        for size, highest in map(changed, table.thinned):
-            with np.errstate(invalid="ignore"):
-                errors.append(np.abs(size / np.abs(amplitude[..., 0]) - 1))
-            peak_errors.append(np.abs(highest / peak - 1))
-        # Intervals: the response from maps that are shifted by half of their intervals, where the map has these.
-        peak_interval, ratio_interval = np.full(peak.shape, np.nan), np.full(ratio.shape, np.nan)
-        amplitude_interval = np.full(solutions.is_below.shape, np.nan)
-        if table.shifted:
-            sizes, peaks = zip(*map(changed, table.shifted), strict=True)
-            moved = np.moveaxis(each, 1, 0)
-            has = np.asarray((table.has_interval(transfer.frequency, moved) | np.isnan(moved)).all(axis=(-2, -1))).T
-            largest = np.abs(amplitude[..., 0])
-            amplitude_interval = np.where(has, np.hypot(*(size - largest for size in sizes)), np.nan)
-            at_peak = (transfer.frequency == where[:, None]).argmax(axis=1)  # 0 where the peak is NaN
-            half = np.hypot(*(highest - peak for highest in peaks))
-            peak_interval = np.where(has[np.arange(peak.size), at_peak], half, np.nan)
-            ratios = [damping_of_modes(other, *modes)[1] - ratio for other in table.shifted]
-            own = np.nan_to_num(frequency, nan=masses.frequency[0]).ravel()
-            has = table.has_interval(own, np.broadcast_to(masses.amplitude, ratio.shape).ravel())
-            ratio_interval = np.where(has.reshape(ratio.shape), np.hypot(*ratios), np.nan)
+        error, peak_error = _interpolation_errors(map(changed, table.thinned), largest, peak)
+        at_peak = (transfer.frequency == where[:, None]).argmax(axis=1)  # 0 where the peak is NaN
+        has_interval = _all_covered(table, transfer.frequency, np.moveaxis(each, 1, 0))
+        amplitude_interval, peak_interval = _intervals(
+            [changed(other) for other in table.shifted], largest, peak, has_interval, at_peak
+        )
+        ratios = [damping_of_modes(other, *modes)[1] for other in table.shifted]
         softening_error = np.full(peak.shape, np.nan)
         if table.unsoftened is not None:
             softening_error = np.abs(changed(table.unsoftened)[1] / peak - 1)
-        # Flags: a motion is doubtful if a run of the map next to it is.
-        known = np.moveaxis(each, 1, 0)
-        doubtful = table.interpolate(table.is_doubtful.astype(float), transfer.frequency, known)
-        near = np.asarray(((doubtful > 0) & np.isfinite(known)).any(axis=(-2, -1)))
         masks = {
             "several_solutions": np.isfinite(amplitude).sum(axis=-1) > 1,
             "below_map": solutions.is_below,
@@ -418,7 +401,7 @@ class MapResponse:
             "not_found": solutions.is_lost,
             "higher_harmonics": (share < LEAST_SHARE).any(axis=-1),
             "heavy_damper": (np.isfinite(amplitude) & ~rests).any(axis=-1) & (heavy > HEAVY),
-            "map_warning": near.T,
+            "map_warning": _next_to_doubtful(table, transfer.frequency, np.moveaxis(each, 1, 0)),
         }
         return cls(
             amplitude,
@@ -427,17 +410,70 @@ class MapResponse:
             share,
             solutions.is_unstable,
             np.asarray(sum(masks[name].astype(np.int16) << bit for bit, name in enumerate(FLAGS)), np.int16),
-            np.where(np.isfinite(amplitude[..., 0]), np.max(errors, axis=0), np.nan),
+            error,
             amplitude_interval,
             peak,
             where,
-            np.where(np.isfinite(peak), np.max(peak_errors, axis=0), np.nan),
+            peak_error,
             peak_interval,
             softening_error,
             frequency,
             ratio,
-            ratio_interval,
+            _ratio_interval(table, frequency, ratio, ratios),
         )
+
+
+def _interpolation_errors(
+    changes: Iterable[tuple[FloatArray, FloatArray]], largest: FloatArray, peak: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the largest relative changes of amplitudes and peaks with half of the amplitudes or frequencies of a map."""
+    errors, peak_errors = [np.zeros(largest.shape)], [np.zeros(peak.shape)]
+    for size, highest in changes:
+        with np.errstate(invalid="ignore"):
+            errors.append(np.abs(size / largest - 1))
+        peak_errors.append(np.abs(highest / peak - 1))
+    return (
+        np.where(np.isfinite(largest), np.max(errors, axis=0), np.nan),
+        np.where(np.isfinite(peak), np.max(peak_errors, axis=0), np.nan),
+    )
+
+
+def _intervals(
+    changes: list[tuple[FloatArray, FloatArray]],
+    largest: FloatArray,
+    peak: FloatArray,
+    has_interval: NDArray[np.bool_],
+    at_peak: NDArray[np.intp],
+) -> tuple[FloatArray, FloatArray]:
+    """Return half of the intervals of amplitudes and peaks, from maps that are shifted by half of theirs."""
+    if not changes:
+        return np.full(largest.shape, np.nan), np.full(peak.shape, np.nan)
+    half = np.hypot(*(size - largest for size, _ in changes))
+    half_of_peak = np.hypot(*(highest - peak for _, highest in changes))
+    covered = has_interval[np.arange(peak.size), at_peak]
+    return np.where(has_interval, half, np.nan), np.where(covered, half_of_peak, np.nan)
+
+
+def _ratio_interval(
+    table: LossTable, frequency: FloatArray, ratio: FloatArray, shifted: list[FloatArray]
+) -> FloatArray:
+    """Return half of the intervals of damping ratios from those with shifted maps; NaN where the map has none."""
+    if not shifted:
+        return np.full(ratio.shape, np.nan)
+    own = np.nan_to_num(frequency, nan=table.masses.frequency[0]).ravel()
+    has = table.has_interval(own, np.broadcast_to(table.masses.amplitude, ratio.shape).ravel())
+    return np.where(has.reshape(ratio.shape), np.hypot(*(other - ratio for other in shifted)), np.nan)
+
+
+def _all_covered(table: LossTable, frequency: FloatArray, amplitude: FloatArray) -> NDArray[np.bool_]:
+    """Return whether a map has intervals at all motions of the dampers, (L, F), of amplitudes (F, L, S, P)."""
+    return np.asarray((table.has_interval(frequency, amplitude) | np.isnan(amplitude)).all(axis=(-2, -1))).T
+
+
+def _next_to_doubtful(table: LossTable, frequency: FloatArray, amplitude: FloatArray) -> NDArray[np.bool_]:
+    """Return whether a run of the map next to a motion is doubtful, (L, F), for amplitudes (F, L, S, P)."""
+    doubtful = table.interpolate(table.is_doubtful.astype(float), frequency, amplitude)
+    return np.asarray(((doubtful > 0) & np.isfinite(amplitude)).any(axis=(-2, -1))).T
 
 
 def _motions(
