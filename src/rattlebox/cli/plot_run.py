@@ -15,6 +15,7 @@ from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
 from rattlebox.cli.output import output_file
 from rattlebox.cli.plot import FORMATS, PlotOptions, check_output, refuse_particle_options
 from rattlebox.cli.terminal import terminal
+from rattlebox.engines.checkpoint import started_with
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
 from rattlebox.plots.spheres import default_renderer
@@ -106,7 +107,8 @@ def _why_missing(path: Path) -> tuple[str, str]:
         return "", "output.snapshots in the case"
     unfinished = ": the run is not finished" if CHECKPOINT in present else ""
     hints = [f"rattlebox plot {path.parent / SNAPSHOTS}"] if SNAPSHOTS in present else []
-    hints += ["repeat the command that started the run; it resumes"] if unfinished else []
+    if unfinished:
+        hints.append(f"repeat the command that started the run{started_with(path.parent / CHECKPOINT)}; it resumes")
     return unfinished, ", or ".join(hints) or "the folder that 'rattlebox run -o' wrote"
 
 

@@ -15,7 +15,7 @@ from rattlebox.report.write import write_report
 from rattlebox.results import Run, load
 from rattlebox.results.snapshots import Snapshots
 from rattlebox.studies.design.trials import count_trials
-from rattlebox.studies.run.stored import has_map, open_study
+from rattlebox.studies.run.stored import has_map, open_study, started_with
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,7 +44,7 @@ def read_result(path: Path) -> Run | UnfinishedRun | xr.Dataset:
         if trials is not None and not has_map(path):
             raise DataError(
                 f"{path} is a design that is not finished: {trials} trials, whose result is written at the end",
-                "repeat the command that started it, which resumes it; then the report",
+                f"repeat the command that started it{started_with(path)}, which resumes it; then the report",
             )
         return open_study(path).load()
     if path.is_file():
@@ -55,5 +55,5 @@ def read_result(path: Path) -> Run | UnfinishedRun | xr.Dataset:
         return load(path / RUN)
     if (path / CHECKPOINT).is_file():
         snapshots = Snapshots(path / SNAPSHOTS) if (path / SNAPSHOTS).is_file() else None
-        return UnfinishedRun(*read_unfinished(path / CHECKPOINT), snapshots)
+        return UnfinishedRun(*read_unfinished(path / CHECKPOINT)[:3], snapshots)
     raise DataError(f"{path} has no {RUN}", "the folder that 'rattlebox run -o' wrote")

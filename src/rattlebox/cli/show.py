@@ -24,6 +24,7 @@ from rattlebox.studies.run.stored import (
     open_study,
     progress_of,
     report_damage,
+    started_with,
     status_lines,
 )
 from rattlebox.studies.work.measures import INTERVAL
@@ -61,7 +62,8 @@ def show_study(path: Path) -> None:
             latest = so_far.trial.values[-_MAX_TRIALS:]
             console.print(_trial_table(so_far, "trial", latest, so_far.trial.size))
     if not complete:
-        console.print("  The study is not finished; repeat the command that started it to resume.", soft_wrap=True)
+        line = f"  The study is not finished; repeat the command that started it{started_with(path)} to resume."
+        console.print(line, soft_wrap=True)
 
 
 def _progress_text(progress: Progress) -> str:

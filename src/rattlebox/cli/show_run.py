@@ -9,6 +9,7 @@ from rich.text import Text
 from rattlebox._util.exceptions import DataError
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, files_in, replacements
 from rattlebox.cli.terminal import terminal
+from rattlebox.engines.checkpoint import started_with
 from rattlebox.results import load
 
 
@@ -22,7 +23,8 @@ def show_run(path: Path) -> None:
         console.print(Text.assemble((str(path), "bold"), f": {title}"), soft_wrap=True)
         console.print(files, soft_wrap=True)
         if unfinished:
-            console.print("  Repeat the command that started the run to resume it.", soft_wrap=True)
+            by = started_with(path / CHECKPOINT)
+            console.print(f"  Repeat the command that started the run{by} to resume it.", soft_wrap=True)
         elif (path / SNAPSHOTS).is_file():
             console.print(f"  To draw the snapshots: rattlebox plot {path / SNAPSHOTS}", soft_wrap=True)
         _show_replacements(path)

@@ -34,7 +34,7 @@ from rattlebox.core import _core
 from rattlebox.core.choose import instructions
 from rattlebox.model.differences import differences
 from rattlebox.model.foreign_code import foreign_code
-from rattlebox.results.provenance import Provenance
+from rattlebox.results.provenance import Provenance, with_version
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -90,11 +90,12 @@ register_format(".checkpoint", is_checkpoint)
 
 
 class Unfinished(NamedTuple):
-    """State of a run that is not finished: the text of its case, the simulated time and the computing time so far [s]."""
+    """State of a run that is not finished: the text of its case, simulated time and computing time so far [s], version."""
 
     case_toml: str
     time: float
     seconds: float
+    version: str
 
 
 def read_unfinished(path: Path) -> Unfinished:
@@ -104,11 +105,19 @@ def read_unfinished(path: Path) -> Unfinished:
         with zipfile.ZipFile(path) as archive:
             about = json.loads(_read_array(archive, "about").tobytes())
         check_format(path, about["format"], FORMAT)
-        return Unfinished(str(about["case"]), float(about["time"]), float(about["seconds"]))
+        return Unfinished(str(about["case"]), float(about["time"]), float(about["seconds"]), str(about["version"]))
     except (DataError, MemoryError):
         raise
     except Exception:  # NumPy and zipfile raise nearly any exception for damaged files
         raise _damaged(path, "its description") from None
+
+
+def started_with(path: Path) -> str:
+    """Return the words that name the version which began a run, "" if it is the present one or unknown."""
+    try:
+        return with_version(read_unfinished(path).version)
+    except DataError:
+        return ""
 
 
 def _damaged(path: Path, block: str) -> DataError:
@@ -225,6 +234,8 @@ class Checkpoint:
         stored = {name: stored[name] for name in self._about}
         if lines := differences(stored, self._about):
             hint = _OTHER_FILE
+            if other := with_version(stored["version"]):
+                hint = f"another file, or the same command{other}"
             if len(lines) == 1 and stored["core"] != self._about["core"]:
                 hint = f"RATTLEBOX_SIMD={stored['core']} in the environment, or another file"
             raise CheckpointMismatch("\n".join([f"{self.path} holds another run", *lines]), hint)

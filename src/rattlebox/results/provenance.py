@@ -31,6 +31,11 @@ class Provenance:
         )
 
 
+def with_version(version: str) -> str:
+    """Return the words that name the version which resumes what it began; "" if it is the present one."""
+    return "" if version in ("", _version()) else f" with Rattlebox {version}"
+
+
 @cache
 def _version() -> str:
     from importlib.metadata import PackageNotFoundError, version

@@ -17,6 +17,8 @@ import numpy as np
 
 from rattlebox._util.exceptions import StoreError
 from rattlebox._util.owned_folder import read_marker
+from rattlebox.model.differences import differences
+from rattlebox.results.provenance import with_version
 from rattlebox.studies.design.search import MOST_COMBINATIONS, DesignSearch, Evaluation, Values
 from rattlebox.studies.design.space import ADDED_MASS, DesignVariable
 from rattlebox.studies.run.backends import Budget
@@ -122,8 +124,10 @@ def load_study(optuna: Any, storage: Any, directions: Sequence[str], description
     if stored is None:
         study.set_user_attr("about", about)
     elif stored != about:
-        names = ", ".join(name for name in {**stored, **about} if stored.get(name) != about.get(name))
-        raise StoreError(f"{store} holds the trials of another study, which differs in {names}", "another folder")
+        other = with_version(stored["version"])
+        advice = f"another folder, or the same command{other}" if other else "another folder"
+        lines = [f"{store} holds the trials of another study", *differences(stored, about)]
+        raise StoreError("\n".join(lines), advice)
     # A trial that a stopped process was running is lost.
     for trial in study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)):
         study.tell(trial.number, state=optuna.trial.TrialState.FAIL)

@@ -36,6 +36,7 @@ from rattlebox._util.owned_folder import (
 )
 from rattlebox.model.differences import differences
 from rattlebox.model.particle_damper import memory
+from rattlebox.results.provenance import with_version
 from rattlebox.studies.run.stored import (
     FORMAT,
     KIND,
@@ -327,6 +328,8 @@ class Store:
         if not lines:
             return
         hint = "another folder, or remove this one"
+        if other := with_version(there["version"]):
+            hint = f"another folder, or the same command{other}; rb.open_study reads this one"
         if len(lines) == 1 and there["core"] != here["core"]:
             hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another folder"
         raise StoreError("\n".join([f"{self.path} holds another study", *lines]), hint)

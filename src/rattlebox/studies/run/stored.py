@@ -21,6 +21,7 @@ from rattlebox._util.owned_folder import DamagedError, Marker, damaged_files, re
 from rattlebox.model.errors import Hint
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.export import as_cells, as_column
+from rattlebox.results.provenance import with_version
 from rattlebox.studies.work.work import Blocks
 
 if TYPE_CHECKING:
@@ -120,6 +121,12 @@ def check_marker(path: str | os.PathLike[str]) -> Marker | None:
     return marker
 
 
+def started_with(path: str | os.PathLike[str]) -> str:
+    """Return the words that name the version which began a study, "" if it is the present one."""
+    marker = check_marker(path)
+    return with_version(marker.version) if marker else ""
+
+
 def study_marker(path: str | os.PathLike[str]) -> Marker:
     """Return the complete marker of a study."""
     marker = check_marker(path)
@@ -200,7 +207,8 @@ def open_runs(path: Path, marker: Marker) -> xr.Dataset:
     if damaged := damaged_files(path, marker):
         raise StoreError(
             f"{path} is damaged: {damaged[0]} is missing or has changed",
-            "the command that started the study, which repairs it and computes only the missing blocks",
+            f"the command that started the study{with_version(marker.version)}, which repairs it and computes only the "
+            "missing blocks",
         )
     with report_damage(path):
         store = _intact_only()(LocalStore(path, read_only=True), Chunks(path, marker))
