@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
-from rattlebox.exchange.read.universal import Function, read_functions
+from rattlebox.exchange.read.universal import Function, frequency_responses
 from rattlebox.model.errors import Hint
 from rattlebox.model.files import existing
 from rattlebox.model.records import Column, as_columns, read_numbers
@@ -24,7 +24,6 @@ from .signals import FloatArray, labelled
 if TYPE_CHECKING:
     import xarray
 
-_FREQUENCY_RESPONSE = 4  # type of a function in the sets 58
 _SI = ("m", "m/s", "m/s^2", "N")
 _QUANTITIES = {8: "m", 9: "N", 11: "m/s", 12: "m/s^2", 13: "N"}
 _INVERSE = re.compile(r"^\(?\s*1\s*/\s*([^()*]+?)\s*\)?\s*\*\s*\(?([^()]+)\)?$")  # (1/N)*(m/s^2)
@@ -123,9 +122,7 @@ def read_frequency_response(
 
 def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, Any, str, str | None]:
     """Return frequencies, values, the stated unit, and the SI unit of the stated quantities."""
-    functions = [function for function in read_functions(file) if function.kind == _FREQUENCY_RESPONSE]
-    if not functions:
-        raise DataError(f"{file} holds no frequency response function", "a function of type 4 in a set 58")
+    functions = frequency_responses(file)
     names = [function.name for function in functions]
     if wanted is None and len(functions) > 1:
         raise DataError(

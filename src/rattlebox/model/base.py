@@ -83,7 +83,7 @@ def _signature(part: type[Part]) -> Signature:
         if not field.is_required():
             default = field.get_default(call_default_factory=True)
             default = () if isinstance(default, np.ndarray) else default
-        elif name in alternatives:
+        elif name in alternatives and name not in part.positional:  # a required argument may follow a positional one
             annotation, metadata, default = Annotated[annotation, *metadata] | None, (), None
         if name in singular:
             # Show both names: the plural takes several, and is optional if the singular is given.

@@ -16,14 +16,17 @@ from rattlebox.exchange.read.formats import modes_reader, record_reader, signals
 from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.modes_in_file import ModesInFile
 
+from .density_files import density_names, states_density
 from .errors import several
 from .files import BINARY, existing, read_arrays
 from .modal_files import MOST_POINTS, read_modes
+from .random_vibration import Random
 from .recorded import Record, is_table
 from .records import columns_of_arrays, columns_of_text
 from .structures import Modal
 from .units import STANDARD_GRAVITY
 
+_ASSUMED_DURATION = "1 s"
 _ASSUMED_STEP, _ASSUMED_UNIT, _ASSUMED_DAMPING = "0.01 s", "m/s^2", 0.01
 _LISTED = 12
 _HEAD = 1000  # bytes of a table that contain its headings
@@ -98,7 +101,7 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
             ".txt",
             ".tsv",
         )
-    for view in (_modes, _records) if is_table_of_modes else (_records, _modes):
+    for view in (_modes, _records) if is_table_of_modes else (_densities, _records, _modes):
         try:
             if found := view(path, given):
                 return found
@@ -167,6 +170,60 @@ def _records(path: Path, given: str) -> FileContents | None:
         (*(f"assumed: {text}" for text in assumed), *record.notes()),
         "\n".join(toml),
         f"rb.Record.from_file({json.dumps(given, ensure_ascii=False)}{python})",
+    )
+
+
+def _densities(path: Path, given: str) -> FileContents | None:
+    """Return the preview of a table with a unit of a density above it, or of a file with densities and no time histories."""
+    form = record_reader.of(path)
+    if form is None or is_table(form):
+        names = ["values"] if path.suffix.lower() != ".toml" and states_density(path) else []
+    else:
+        try:
+            signals_in(path, form)
+            names = []
+        except DataError:
+            names = density_names(path)
+    if not names:
+        return None
+    lines = []
+    fields: dict[str, Any] = {}
+    notes: tuple[str, ...] = ()
+    for number, name in enumerate(names[:_LISTED], start=1):
+        options: dict[str, Any] = {} if len(names) == 1 else {"columns": (number,)}
+        try:
+            random = Random(file=str(path), duration=_ASSUMED_DURATION, **options)
+        except RattleboxError as error:
+            lines.append(f"{name}: cannot be read: {' '.join(error.complaint.split())[:200]}")
+            continue
+        (first, _), (last, _) = random.corners[0], random.corners[-1]
+        in_g = f" = {random.rms / STANDARD_GRAVITY:.4g} g" if random.unit == "m/s^2" else ""
+        lines.append(
+            f"{name}: {several(len(random.corners), 'line')} from {first:.6g} to {last:.6g} Hz, {random.rms:.4g} "
+            f"{random.unit}{in_g} RMS"
+        )
+        if not fields:
+            fields, notes = {"duration": _ASSUMED_DURATION, **options}, tuple(random.notes())
+            table = "load" if random.unit == "N" else "base" if random.unit == "m/s^2" else "motion"
+    if len(names) > _LISTED:
+        lines.append(f"... and {len(names) - _LISTED} more")
+    if not fields:
+        fields, table = {"duration": _ASSUMED_DURATION, "unit": "g"}, "base"
+        fields.update({} if len(names) == 1 else {"columns": (1,)})
+        notes = ("assumed: unit = 'g', since the file states none that is known: set that of the signal",)
+    toml = [
+        f"[{table}]",
+        'kind = "random"',
+        *(f"{key} = {_toml(value)}" for key, value in {"file": given, **fields}.items()),
+    ]
+    python = "".join(f", {key}={_python(value)}" for key, value in fields.items())
+    return FileContents(
+        given,
+        f"power spectral {'density' if len(names) == 1 else 'densities'}",
+        tuple(lines),
+        (f"assumed: duration = {_ASSUMED_DURATION!r}: set that of the run, or more", *notes),
+        "\n".join(toml),
+        f"rb.Random.from_file({json.dumps(given, ensure_ascii=False)}{python})",
     )
 
 

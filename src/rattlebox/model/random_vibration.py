@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -12,10 +14,15 @@ from numpy.typing import NDArray
 from pydantic import Field, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import ResourceError
+from rattlebox._util.frozen import complete
 
+from .density_files import read_density
 from .elementwise import Vector
-from .errors import Hint, at, nearest
-from .signals import UNIT_NAMES, UNITS, Points, Sampled
+from .errors import Hint, at, nearest, one_of
+from .file_signals import FileSignal
+from .files import absolute
+from .records import Column, as_columns
+from .signals import UNIT_NAMES, UNITS, Points
 from .units import (
     MOST_MEMORY,
     STANDARD_GRAVITY,
@@ -63,7 +70,7 @@ Density = Annotated[
 ]
 
 
-class Random(Sampled):
+class Random(FileSignal):
     """Gaussian random vibration with a given power spectral density.
 
     The signal consists of straight lines between points. Its expected density up to the highest frequency of `psd` is exact,
@@ -76,6 +83,14 @@ class Random(Sampled):
         is linear in log-log scales between points, and zero outside. Or a name: "gevs_qualification" (14.1 g RMS, 20 to
         2000 Hz, 0.16 g^2/Hz from 50 to 800 Hz) or "gevs_acceptance" (10.0 g RMS, half of that density), for components of
         up to 22.7 kg.
+    file
+        File with the density, instead of `psd`: a table of frequencies and densities (text, spreadsheet, NPY, NPZ, MAT), or
+        a power spectral density (type 9) of a universal file. The unit is that above the column or of the label, such
+        as "g^2/Hz" or "(m/s^2)^2/Hz"; a file that states none needs `unit`. The density is read as one-sided, unless the
+        file says "two-sided"; a line at 0 Hz is left out.
+    columns
+        Columns of frequency and density of a table, by number from 1 or by name, as of `rb.Record`; or number or name of
+        the function of a universal file. Needed if there are more.
     duration
         Length [s], at least that of the run; the last point is at the duration or the first after it.
     rate
@@ -114,11 +129,39 @@ class Random(Sampled):
     """
 
     positional: ClassVar[tuple[str, ...]] = ("psd", "duration", "rate")
+    file_fields: ClassVar[tuple[str, ...]] = ("psd",)
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("psd", "file"),)
     kind: Literal["random"] = "random"
     psd: Density
     duration: PositiveTime
     rate: PositiveFrequency | None = None
     seed: Annotated[Whole, Field(ge=0)] = 0
+    file: str | None = None
+    columns: tuple[Column, Column] | tuple[Column] | str | None = None
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _from_file(cls, values: Any, handler: Any) -> Random:
+        if not isinstance(values, dict) or values.get("file") is None:
+            if isinstance(values, dict) and values.get("columns") is not None:
+                raise Hint("columns need a file", 'file = "psd.csv"', ["columns"])
+            kept: Random = handler(values)
+            return kept
+        one_of('file = "psd.csv"', psd=values.get("psd"), file=values["file"])
+        given = values.get("unit")
+        with at("file"):
+            path = absolute(values["file"])
+        with at("columns"):
+            columns = values.get("columns")
+            if columns == "rows":
+                raise Hint("a density has no rows of samples", "columns = [1, 2]")
+            columns = as_columns(columns)
+        with at("file"):
+            corners, unit, notes = read_density(path, columns, given if isinstance(given, str) else None)
+        fields = {"psd": tuple(map(tuple, corners.tolist())), "unit": unit, "file": path, "columns": columns}
+        random: Random = handler({**values, **fields})
+        complete(random, _unit_as_given=given, _notes=notes)
+        return random
 
     @model_validator(mode="before")
     @classmethod
@@ -133,6 +176,42 @@ class Random(Sampled):
             return {**values, "unit": "m/s^2"}
         corners, unit = _densities(values["psd"], values.get("unit"))
         return {**values, "psd": tuple(map(tuple, corners.tolist())), "unit": unit}
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], duration: float | str, **options: Any) -> Random:
+        """Read a random vibration from a file with its power spectral density.
+
+        Parameters
+        ----------
+        path
+            The file; see `file`.
+        duration
+            Length [s].
+        **options
+            Other fields: columns, unit, rate, seed, point, direction.
+
+        Returns
+        -------
+        Random
+            The random vibration.
+
+        Raises
+        ------
+        DataError
+            If the file cannot be read, or does not state what its numbers are.
+        CaseError
+            If other fields are not valid.
+        """
+        return cls(file=os.fspath(path), duration=duration, **options)
+
+    def notes(self) -> Iterator[str]:
+        """Yield notes on assumptions about the file, with the RMS value that follows from them."""
+        yield from self._notes
+        if self.file is not None:
+            in_g = f" = {self.rms / STANDARD_GRAVITY:.4g} g" if self.unit == "m/s^2" else ""
+            first, last = self.corners[0, 0], self.corners[-1, 0]
+            name = " ".join(Path(self.file).name.split())
+            yield f"{name} is read as {self.rms:.4g} {self.unit}{in_g} RMS from {first:.6g} to {last:.6g} Hz"
 
     @property
     def is_lasting(self) -> bool:

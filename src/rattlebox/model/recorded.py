@@ -15,7 +15,6 @@ from pydantic import (
     PlainSerializer,
     PrivateAttr,
     WithJsonSchema,
-    model_serializer,
     model_validator,
 )
 
@@ -25,12 +24,12 @@ from rattlebox.exchange.read import ground_motion, measurement_files, strong_mot
 from rattlebox.exchange.read.formats import Format, no_signals, record_reader, signals_in
 
 from .as_written import MOST_ITEMS, Given
-from .base import FilePart
 from .elementwise import Vector
 from .errors import Hint, at, several
+from .file_signals import FileSignal
 from .files import absolute, check_finite, existing
 from .records import Column, Columns, as_columns, read_columns
-from .signals import UNIT_NAMES, UNITS, Sampled, Unit
+from .signals import UNIT_NAMES, UNITS, Unit
 from .units import SI, STANDARD_GRAVITY, Number, PositiveTime, factor_of, numbers, parse
 from .units_in_text import unit_above, units_in_lines
 
@@ -138,8 +137,9 @@ def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: An
     if form.needs_unit and unit is None and not signal.unit and not any(units_in_lines(signal.lines, UNITS)):
         raise DataError(f"{path} states no unit", 'unit = "g"')
     headings = [f"values ({signal.unit[:_SHOWN]})"] if signal.unit else []
+    over = [f"times ({signal.time_unit})"] if factor_of(signal.time_unit, ("s",)) else []
     times, values = np.asarray(signal.times, dtype=float), np.asarray(signal.values, dtype=float)
-    return Columns(times, check_finite(values, f"{path}: the values"), ([], headings), signal.lines, signal.notes)
+    return Columns(times, check_finite(values, f"{path}: the values"), (over, headings), signal.lines, signal.notes)
 
 
 def _words_on_text(columns: Columns) -> str:
@@ -176,7 +176,7 @@ def _as_time_zero(value: Any) -> Any:
     return value if value is None or value == "first" else parse(value, ("s",))[0]
 
 
-class Record(FilePart, Sampled):
+class Record(FileSignal):
     r"""A record with linear interpolation between its points; it must cover the whole run.
 
     Parameters
@@ -241,9 +241,7 @@ class Record(FilePart, Sampled):
     scale: Number = 1.0
     time_zero: Annotated[Literal["first"] | float | None, SI("s"), BeforeValidator(_as_time_zero)] = None
     name: str = ""
-    _unit_as_given: str | None = PrivateAttr(default=None)
     _unit_is_assumed: bool = PrivateAttr(default=False)
-    _notes: tuple[str, ...] = PrivateAttr(default=())
 
     @model_validator(mode="wrap")
     @classmethod
@@ -403,11 +401,6 @@ class Record(FilePart, Sampled):
         elif zero:
             yield f"the record begins at {first:.6g} s and is shifted: its time {zero:.6g} s is 0 s of the run (time_zero)"
 
-    def as_given(self) -> dict[str, Any]:
-        """Return the fields in the notation of the input: those of a file with the unit that the user states."""
-        fields = super().as_given()
-        return {**fields, "unit": self._unit_as_given} if self.file is not None else fields
-
     @classmethod
     def excluded_by(cls, name: str, value: Any) -> list[str]:
         """Return the fields that a value of a field excludes; a step excludes times."""
@@ -421,15 +414,6 @@ class Record(FilePart, Sampled):
                 'unit="m/s^2")'
             )
         return f"a record in {allowed[0]}"
-
-    @model_serializer(mode="wrap")
-    def _without_file_fields(self, handler: Any) -> Any:
-        data = handler(self)
-        if self.file is not None:
-            for name in self.file_fields:
-                data.pop(name, None)
-            data["unit"] = self._unit_as_given
-        return data
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Record:

@@ -302,6 +302,30 @@ def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) ->
     return check_finite(array.ravel(), f"{file}: {name}"), ()
 
 
+def read_pairs(path: str, columns: Sequence[Column] | None) -> Columns:
+    """Read two columns of which the first is not time, so that no line states a number of samples.
+
+    One column in `columns` is that of the values; the other one is then the first of the file.
+    """
+    with errors_of(path, "columns of numbers"):
+        file = existing(path)
+        if file.suffix.lower() in BINARY:
+            arrays = read_arrays(file)
+            if not arrays:
+                raise DataError(f"{file} contains no numbers", "two columns of numbers")
+            return Columns(*_select_arrays(file, arrays, columns))
+        text = _parse_text(file, requested=[str(column) for column in columns or ()], has_samples=False)
+        if columns is not None and len(columns) == 1:
+            columns = (1, *columns)
+        if columns is None and text.width != 2:
+            names = ", ".join(f"{k} {name}" if text.names else name for k, name in enumerate(text.labels, start=1))
+            raise DataError(f"{file} has {several(text.width, 'column')} ({names}), two are needed", "columns = [1, 2]")
+        indices = _column_indices(file, columns, text.labels, is_named=text.is_named)
+        first, second = numbers_of_columns(file, text.rows, indices).T
+        headings = text.above(indices[0]), text.above(indices[1])
+        return Columns(first, second, headings, tuple(text.lines), text.notes)
+
+
 def columns_of_text(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the name of each channel of a table of text, and the fields of a record that read it; dt None is unknown."""
     text = _parse_text(file)
@@ -521,18 +545,20 @@ def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tup
         return numbers_of_columns(file, text.rows, indices), [text.above(index) for index in indices]
 
 
-def _parse_text(file: Path, known: Sequence[str] = (), requested: Sequence[str] = ()) -> _Text:
-    """Return the table of a text file.
+def _parse_text(
+    file: Path, known: Sequence[str] = (), requested: Sequence[str] = (), *, has_samples: bool = True
+) -> _Text:
+    """Return the table of a text file; without `has_samples` no line states their number.
 
     The names are the last line above the data with as many cells and no number in them, or an earlier one (above a line of
     units) that contains more of the known or requested names.
     """
     quick = None if file.suffix.lower() in SHEETS else read_quickly(file)
-    text = quick and _layout(file, *quick, known, requested)
+    text = quick and _layout(file, *quick, known, requested, has_samples)
     if text and is_of_numbers(text.rows):
         return text
     lines, dialect = split_lines(file)
-    text = _layout(file, lines, np.empty((0, 0)), [], dialect, known, requested)
+    text = _layout(file, lines, np.empty((0, 0)), [], dialect, known, requested, has_samples)
     if text is None:
         raise DataError(f"{file} contains no numbers", _ANY)
     return text
@@ -546,6 +572,7 @@ def _layout(
     dialect: Dialect,
     known: Sequence[str],
     requested: Sequence[str],
+    has_samples: bool,
 ) -> _Text | None:
     """Return the table in the lines of a file, with the numbers of the rows below; None if the lines do not suffice."""
     # Where the rows begin.
@@ -577,7 +604,7 @@ def _layout(
     # What the lines above and the first row state about the sampling.
     step: float | None = None
     notes: tuple[str, ...] = ()
-    if counted := _number_of_samples(file, rows):
+    if has_samples and (counted := _number_of_samples(file, rows)):
         step, note = counted
         rows, notes = Rows(head[1:], below, last), (note,)
     step_is_noted = bool(notes)

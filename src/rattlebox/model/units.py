@@ -35,6 +35,7 @@ LARGEST = 1e30
 
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
+_SUPERSCRIPTS = {ord("²"): "^2", ord("³"): "^3", ord("⁴"): "^4"}
 _DENSITY = re.compile(r"^\s*\(?\s*([^()]+?)\s*\)?\s*\^2\s*/\s*Hz\s*$")
 
 _TON = re.compile(r"(?<![a-z_])(k|kilo|mega)?tons?(?![a-z_])", re.I)
@@ -210,6 +211,21 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
         )
     factor, unit = known
     return _finite(number * factor**2), unit
+
+
+def density_factor(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
+    """Return the factor of the unit of a density in a file to SI, and the SI unit of the signal; None if it is none."""
+    text = unit.translate(_SUPERSCRIPTS).replace("**", "^").replace("[", "(").replace("]", ")")
+    text = re.sub(r"\s*/\s*(?:hz|hertz)\b\.?", "/Hz", text.strip(), flags=re.I)
+    text = re.sub(r"[ _]*rms(?=[\d)^/ ])", "", text, flags=re.I)  # a density is a mean square
+    text = re.sub(r"(?<=[A-Za-z)])2(?=[)/ ])", "^2", text)
+    text = re.sub(r"(?<=[A-Za-z)])([34])(?=[)/ ]|$)", r"^\1", text)
+    text = re.sub(r"^\((.*\^2)\)/Hz$", r"\1/Hz", text)
+    text = re.sub(r"^([^()/^]+)\^2 ?/ ?s\^4/Hz$", r"(\1/s^2)^2/Hz", text)
+    try:
+        return parse_density(f"1 {text}", units) if text else None  # type: ignore[return-value]
+    except Hint:
+        return None
 
 
 def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:

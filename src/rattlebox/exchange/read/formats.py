@@ -37,11 +37,13 @@ class SignalInFile:
     Attributes
     ----------
     times, values : (n,) float
-        Times [s], and values in `unit`.
+        Times [s] or in `time_unit`, and values in `unit`.
     name
         Name by which `columns` of a record selects it.
     unit
         Unit as the file writes it, such as "g" or "m/s^2"; "" if the file states none.
+    time_unit
+        Unit of the times as the file writes it, if they may be in another one than s.
     lines
         Numbers and texts of the lines above the values, in which a unit may be.
     notes
@@ -54,9 +56,36 @@ class SignalInFile:
     values: NDArray[np.float64]
     name: str = ""
     unit: str = ""
+    time_unit: str = ""
     lines: tuple[tuple[int, str], ...] = ()
     notes: tuple[str, ...] = ()
     is_derived: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class DensityInFile:
+    """A power spectral density in a file.
+
+    Attributes
+    ----------
+    frequencies, densities : (n,) float
+        Frequencies in `frequency_unit`, and mean squares per frequency in `unit`.
+    name
+        Name by which `columns` of a random vibration selects it.
+    unit
+        Unit as the file writes it, such as "g^2/Hz"; "" if the file states none.
+    frequency_unit
+        Unit of the frequencies as the file writes it; "" stands for Hz.
+    lines
+        Numbers and texts of the lines above the values, in which conventions may be.
+    """
+
+    frequencies: NDArray[np.float64]
+    densities: NDArray[np.float64]
+    name: str = ""
+    unit: str = ""
+    frequency_unit: str = ""
+    lines: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -153,6 +182,9 @@ modes_reader: Formats[Callable[[Path, ModesRequest], ModesInFile | Mapping[str, 
 
 record_reader: Formats[Callable[[Path], Iterable[SignalInFile]]] = Formats("records")
 """Decorator of functions of a path that return the time histories in a file."""
+
+density_reader: Formats[Callable[[Path], Iterable[DensityInFile]]] = Formats("power spectral densities")
+"""Decorator of functions of a path that return the power spectral densities in a file; tables need none."""
 
 
 @record_reader(".csv", ".txt", ".tsv", *BINARY_TABLES)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 
-from .formats import ModesRequest, SignalInFile, modes_reader, record_reader
+from .formats import DensityInFile, ModesRequest, SignalInFile, density_reader, modes_reader, record_reader
 from .guarded import errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
@@ -33,6 +37,7 @@ _QUANTITIES = {
 _GEOMETRY = (15, 2411, 2420)  # nodes, nodes, coordinate systems
 _TURN = 1e-3  # largest deviation of axes from perpendicular unit vectors
 _LISTED = 12  # modes in a note
+_SHOWN = 200  # characters of a message of the library
 _FUNCTIONS = {
     0: "general function", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 4: "frequency response function",
     5: "transmissibility", 6: "coherence", 7: "auto correlation", 8: "cross correlation", 9: "power spectral density",
@@ -42,7 +47,25 @@ _FUNCTIONS = {
     24: "shock response spectrum", 25: "impulse response filter", 26: "multiple coherence", 27: "order function",
 }  # fmt: skip
 """Names of the types of functions in the set 58."""
+_GENERAL, _TIME_RESPONSE, _FREQUENCY_RESPONSE, _DENSITY = 0, 1, 4, 9
+_USES = {
+    _TIME_RESPONSE: "rb.Record.from_file",
+    _FREQUENCY_RESPONSE: "rb.analysis.read_frequency_response",
+    _DENSITY: "rb.Random.from_file",
+}
+"""Functions that read types of functions; the other types are refused."""
+_EXPORTS = {
+    2: "an export of the power spectral density (type 9): an auto spectrum does not state its bandwidth",
+    3: "an export of the frequency response function (type 4)",
+    5: "an export of the frequency response function (type 4)",
+    10: "an export of the power spectral density (type 9): an energy spectral density does not state its duration",
+    12: "an export of the time history (type 1), of which the spectrum was computed",
+    24: "an export of the time history (type 1): many shocks have the same response spectrum",
+}
+"""Advice on other types."""
 _OVER_FREQUENCY = 18  # type of data of an abscissa
+_D_EXPONENT = re.compile(rb"(?m)^[ \t0-9+.DEde-]*\d[Dd][+-]\d[ \t0-9+.DEde-]*\r?$")
+"""A line of numbers of which one has the exponent D of Fortran."""
 _TAIL = 4096  # bytes that contain the last line
 _LARGEST_IMAGINARY = 1e-6  # largest imaginary part of a real mode, over the largest component
 LARGEST_SCATTER = 10.0
@@ -70,6 +93,21 @@ class Function:
     source_unit: str = ""
     quantities: tuple[int, int] = (0, 0)
     over: int = 0
+    abscissa_unit: str = ""
+    texts: tuple[str, ...] = ()
+
+    @property
+    def is_history(self) -> bool:
+        """Whether it is a time history."""
+        is_over_time = self.over != _OVER_FREQUENCY and not np.iscomplexobj(self.values)
+        return self.kind in (_GENERAL, _TIME_RESPONSE) and is_over_time
+
+    def words(self) -> str:
+        """Return the name of the type of the function."""
+        words = _FUNCTIONS.get(self.kind, f"function of type {self.kind}")
+        if self.kind in (_GENERAL, _TIME_RESPONSE) and not self.is_history:
+            words += " of complex values" if np.iscomplexobj(self.values) else " over frequency"
+        return words
 
 
 def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()) -> list[dict[str, Any]]:
@@ -79,11 +117,11 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
         stream.seek(-min(path.stat().st_size, _TAIL), 2)
         end = stream.read().rstrip().rsplit(b"\n", 1)[-1].strip()
     pyuff = optional_import("pyuff", "uff", "a modal table in CSV")
-    with errors_of(path, "a universal file"), warnings.catch_warnings():
+    with errors_of(path, "a universal file"), warnings.catch_warnings(), _with_exponents_e(path) as copy:
         warnings.simplefilter("ignore")
-        file = pyuff.UFF(str(path))
+        file = pyuff.UFF(str(copy))
         types = [int(kind) for kind in file.get_set_types()]
-        sets = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds + further]
+        sets = [_read_set(path, file, number, kind) for number, kind in enumerate(types) if kind in kinds + further]
     if not types:
         raise DataError(
             f"{path} contains no complete data set of a universal file", "the complete file, with -1 around each set"
@@ -99,6 +137,33 @@ def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()
             "an export with mode shapes (sets 55 or 2414) or with functions (set 58)",
         )
     return sets
+
+
+@contextmanager
+def _with_exponents_e(path: Path) -> Iterator[Path]:
+    """Yield the file, or a copy with exponents E in place of those of Fortran, which the library does not read."""
+    content = path.read_bytes()
+    replaced = _D_EXPONENT.sub(lambda line: line[0].replace(b"D", b"E").replace(b"d", b"e"), content)
+    if replaced == content:
+        yield path
+        return
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / path.name
+        copy.write_bytes(replaced)
+        yield copy
+
+
+def _read_set(path: Path, file: Any, number: int, kind: int) -> dict[str, Any]:
+    """Return a data set; the library does not say where an error is."""
+    try:
+        block: dict[str, Any] = file.read_sets(number)
+    except Exception as error:
+        cause = " ".join(str(error.__cause__ or error.__context__ or error).split())[:_SHOWN]
+        raise DataError(
+            f"{path}: the data set {number + 1}, of type {kind}, cannot be read" + (f": {cause}" if cause else ""),
+            "the file as the program wrote it",
+        ) from None
+    return block
 
 
 def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile:
@@ -396,6 +461,8 @@ def read_functions(path: Path) -> list[Function]:
                     source_unit=_label(block, "orddenom"),
                     quantities=(int(block["ordinate_spec_data_type"]), int(block["orddenom_spec_data_type"])),
                     over=int(block.get("abscissa_spec_data_type", 0)),
+                    abscissa_unit=_label(block, "abscissa"),
+                    texts=tuple(str(block.get(f"id{k}", "")) for k in range(1, 6)),
                 )
             )
         return functions
@@ -405,18 +472,58 @@ def read_functions(path: Path) -> list[Function]:
 def time_histories(path: Path) -> list[SignalInFile]:
     """Return the time histories among the functions of a universal file."""
     every = read_functions(path)
-    functions = [
-        each
-        for each in every
-        if each.kind in (0, 1) and not np.iscomplexobj(each.values) and each.over != _OVER_FREQUENCY
-    ]
-    if not functions:
-        kinds = [_FUNCTIONS.get(each.kind, f"function of type {each.kind}") for each in every]
-        found = ", ".join(f"{kinds.count(kind)} x {kind}" for kind in dict.fromkeys(kinds))
-        raise DataError(f"{path} contains no time history, but {found}", "a function of type 1, over time, in a set 58")
     return [
-        SignalInFile(each.abscissa, np.asarray(each.values, dtype=float), each.name, each.unit) for each in functions
+        SignalInFile(
+            each.abscissa,
+            np.asarray(each.values, dtype=float),
+            each.name,
+            each.unit,
+            each.abscissa_unit,
+        )
+        for each in every
+        if each.is_history
+    ] or _refuse(path, every, _TIME_RESPONSE)
+
+
+@density_reader(".uff", ".unv", ".uf")
+def densities(path: Path) -> list[DensityInFile]:
+    """Return the power spectral densities among the functions of a universal file."""
+    every = read_functions(path)
+    chosen = [each for each in every if each.kind == _DENSITY] or _refuse(path, every, _DENSITY)
+    for each in chosen:
+        if each.over not in (0, _OVER_FREQUENCY):
+            raise DataError(f"{path}: the density {each.name!r} is not over frequency", "a density over frequency")
+        if np.iscomplexobj(each.values) and np.abs(np.imag(each.values)).max(initial=0.0) > 0:
+            raise DataError(f"{path}: the density {each.name!r} is complex", "the density of one signal, which is real")
+    return [
+        DensityInFile(
+            each.abscissa,
+            np.real(each.values).astype(float),
+            each.name,
+            each.unit,
+            each.abscissa_unit,
+            tuple(enumerate(each.texts, start=1)),
+        )
+        for each in chosen
     ]
+
+
+def frequency_responses(path: Path) -> list[Function]:
+    """Return the frequency response functions among the functions of a universal file."""
+    every = read_functions(path)
+    return [each for each in every if each.kind == _FREQUENCY_RESPONSE] or _refuse(path, every, _FREQUENCY_RESPONSE)
+
+
+def _refuse(path: Path, functions: list[Function], wanted: int) -> NoReturn:
+    """Raise for a file without functions of the wanted type: which it has, and what reads them."""
+    words = [each.words() for each in functions]
+    found = ", ".join(f"{words.count(word)} x {word}" for word in dict.fromkeys(words))
+    kinds = sorted({_TIME_RESPONSE if each.is_history else each.kind for each in functions} - {wanted})
+    readers = dict.fromkeys(f"{_USES[kind]} for a {_FUNCTIONS[kind]}" for kind in kinds if kind in _USES)
+    exports = dict.fromkeys(_EXPORTS[kind] for kind in kinds if kind in _EXPORTS)
+    name = "time history" if wanted == _TIME_RESPONSE else _FUNCTIONS[wanted]
+    advice = "; ".join([*readers, *exports]) or f"an export of the {name} (type {wanted}) in a set 58"
+    raise DataError(f"{path} contains no {name}, but {found}", advice)
 
 
 @modes_reader(".uff", ".unv", ".uf")
