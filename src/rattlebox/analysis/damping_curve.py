@@ -20,21 +20,11 @@ if TYPE_CHECKING:
 
 
 class SmoothDecay(NamedTuple):
-    """Amplitude and phase of a free decay, averaged over one cycle, without the first and last three cycles.
+    """Amplitude and phase of a free decay, averaged over one cycle, without the first and last three cycles."""
 
-    Attributes
-    ----------
-    time : (T,) float
-        Times [s].
-    log_amplitude : (T,) float
-        Logarithm of the envelope.
-    phase : (T,) float
-        Phase of the oscillation [rad].
-    """
-
-    time: FloatArray
-    log_amplitude: FloatArray
-    phase: FloatArray
+    time: FloatArray  # Times [s], (T,)
+    log_amplitude: FloatArray  # Logarithm of the envelope, (T,)
+    phase: FloatArray  # Phase of the oscillation [rad], (T,)
 
 
 def smooth_decay(time: ArrayLike, values: ArrayLike) -> SmoothDecay:

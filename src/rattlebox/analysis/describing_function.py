@@ -46,23 +46,15 @@ class MassTable:
     The mass is interpolated by monotone piecewise cubics (PCHIP) over the logarithm of the amplitude, and linearly over the
     logarithm of the frequency. There is no extrapolation.
 
-    Attributes
-    ----------
-    frequency : (J,) float
-        Rising frequencies [Hz].
-    amplitude : (K,) float
-        Rising amplitudes of the cavity, two or more: displacements [m] or accelerations [m/s^2].
-    mass : (K, J) complex
-        Apparent mass m' - i m'' [kg]; NaN where it is unknown.
-
     References
     ----------
     F. N. Fritsch, J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, doi:10.1137/0905021.
     """
 
-    frequency: FloatArray
+    frequency: FloatArray  # Rising frequencies [Hz], (J,)
+    # Rising amplitudes of the cavity, two or more: displacements [m] or accelerations [m/s^2], (K,)
     amplitude: FloatArray
-    mass: ComplexArray
+    mass: ComplexArray  # Apparent mass m' - i m'' [kg]; NaN where it is unknown, (K, J)
     is_acceleration: bool
 
     @property
@@ -144,18 +136,10 @@ class MassTable:
 
 @dataclass(frozen=True, eq=False)
 class MassCurves:
-    """Apparent mass of a damper over the amplitude at F frequencies.
+    """Apparent mass of a damper over the amplitude at F frequencies."""
 
-    Attributes
-    ----------
-    nodes : (K,) float
-        Natural logarithms of the amplitudes of the table.
-    coefficients : (F, K - 1, 4) complex
-        Coefficients of the cubic in each interval, highest power first [kg].
-    """
-
-    nodes: FloatArray
-    coefficients: ComplexArray
+    nodes: FloatArray  # Natural logarithms of the amplitudes of the table, (K,)
+    coefficients: ComplexArray  # Coefficients of the cubic in each interval, highest power first [kg], (F, K - 1, 4)
 
     @cached_property
     def grid(self) -> FloatArray:
@@ -211,24 +195,13 @@ class MassCurves:
 
 @dataclass(frozen=True, eq=False)
 class Solutions:
-    """Steady motions of the cavities of P dampers at L levels and F frequencies, the largest of up to S motions first.
+    """Steady motions of the cavities of P dampers at L levels and F frequencies, the largest of up to S motions first."""
 
-    Attributes
-    ----------
-    acceleration : (L, F, S, P) complex
-        Acceleration of each cavity [m/s^2]; NaN where there are fewer solutions.
-    is_unstable : (L, F, S) bool
-        Whether the motion lies between two folds, where a disturbance grows.
-    is_below, is_above : (L, F) bool
-        Whether there is also a motion below or above the amplitudes of the table.
-    is_lost : (L, F) bool
-        Whether a motion was not found, because the table has no masses there or the search failed.
-    """
-
-    acceleration: ComplexArray
-    is_unstable: NDArray[np.bool_]
-    is_below: NDArray[np.bool_]
+    acceleration: ComplexArray  # Acceleration of each cavity [m/s^2]; NaN where there are fewer solutions, (L, F, S, P)
+    is_unstable: NDArray[np.bool_]  # Whether the motion lies between two folds, where a disturbance grows, (L, F, S)
+    is_below: NDArray[np.bool_]  # Whether there is also a motion below or above the amplitudes of the table, (L, F)
     is_above: NDArray[np.bool_]
+    # Whether a motion was not found, because the table has no masses there or the search failed, (L, F)
     is_lost: NDArray[np.bool_]
 
     def with_rows(self, rows: NDArray[np.intp], others: Solutions) -> Solutions:
@@ -326,17 +299,11 @@ def solve_near(
 
 @dataclass(frozen=True, eq=False)
 class _System:
-    """Cavities at the frequencies within a table.
-
-    Attributes
-    ----------
-    rows : (F,) int
-        Numbers of the frequencies in the curves.
-    """
+    """Cavities at the frequencies within a table."""
 
     table: MassTable
     curves: MassCurves
-    rows: NDArray[np.intp]
+    rows: NDArray[np.intp]  # Numbers of the frequencies in the curves, (F,)
     frequency: FloatArray
     gain: ComplexArray
     drive: ComplexArray
@@ -348,25 +315,13 @@ class _System:
 
 @dataclass
 class _UnorderedSolutions:
-    """Solutions in any order, and flags for solutions that were not computed.
+    """Solutions in any order, and flags for solutions that were not computed."""
 
-    Attributes
-    ----------
-    level, row : (N,) int
-        Numbers of level and frequency.
-    motion : (N, P) complex
-        Accelerations of the cavities.
-    unstable : (N,) bool
-        Whether the motion is between two folds.
-    below, above, lost : (L, F) bool
-        See `Solutions`.
-    """
-
-    level: NDArray[np.intp]
+    level: NDArray[np.intp]  # Numbers of level and frequency, (N,)
     row: NDArray[np.intp]
-    motion: ComplexArray
-    unstable: NDArray[np.bool_]
-    below: NDArray[np.bool_]
+    motion: ComplexArray  # Accelerations of the cavities, (N, P)
+    unstable: NDArray[np.bool_]  # Whether the motion is between two folds, (N,)
+    below: NDArray[np.bool_]  # See `Solutions`, (L, F)
     above: NDArray[np.bool_]
     lost: NDArray[np.bool_]
 

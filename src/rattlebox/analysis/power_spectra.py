@@ -22,15 +22,9 @@ MIN_BINS = 4
 
 @dataclass(frozen=True)
 class _Segments:
-    """Segments of a signal for Welch's average.
+    """Segments of a signal for Welch's average."""
 
-    Attributes
-    ----------
-    rate
-        Sampling rate [Hz].
-    """
-
-    rate: float
+    rate: float  # Sampling rate [Hz]
     length: int
     shift: int
     count: int

@@ -14,26 +14,16 @@ from rattlebox.core import _core
 
 @dataclass(frozen=True)
 class BlockOutput:
-    """Quantities that `run_block` returns for each variant.
-
-    Attributes
-    ----------
-    shape
-        Mode shapes at the observed point [kg^-1/2]: (m,), or (m, ...) over the grid.
-    participation, residual_mass
-        Participation of the modes (m, ...) [kg^1/2] and residual mass [kg], for the force on the base; empty if unknown.
-    start, period
-        Time from which measures are evaluated [s] and length of a cycle [s]; numbers, or arrays that broadcast over the
-        grid.
-    times
-        Times of further samples [s], with which each variant is also returned as a run.
-    """
+    """Quantities that `run_block` returns for each variant."""
 
     measures: Sequence[str] = ()
+    # Mode shapes at the observed point [kg^-1/2]: (m,), or (m, ...) over the grid
     shape: ArrayLike = field(default_factory=lambda: np.zeros(0))
     base: float = 1.0
+    # Participation of the modes (m, ...) [kg^1/2] and residual mass [kg], for the force on the base; empty if unknown
     participation: ArrayLike = field(default_factory=lambda: np.zeros(0))
     residual_mass: ArrayLike = 0.0
+    # Time from which measures are evaluated [s] and length of a cycle [s]; numbers, or arrays that broadcast over the grid
     start: ArrayLike = 0.0
     period: ArrayLike = float("nan")
     samples: int = 2
@@ -41,6 +31,7 @@ class BlockOutput:
     last: int = 0
     state: bool = False
     batched: Sequence[str] = ()
+    # Times of further samples [s], with which each variant is also returned as a run
     times: NDArray[np.float64] | None = None
 
 

@@ -55,26 +55,14 @@ class CheckpointMismatch(DataError):
 
 @dataclass(frozen=True)
 class CheckpointData:
-    """Content of a checkpoint file.
-
-    Attributes
-    ----------
-    time
-        Simulated time that the run has reached [s].
-    seconds
-        Computing time so far [s].
-    positions
-        Start positions of the particles of each damper, (n, 3) [m].
-    state : (bytes,) uint8
-        State of the core.
-    """
+    """Content of a checkpoint file."""
 
     numbers: str
-    time: float
-    seconds: float
-    positions: tuple[NDArray[np.float64], ...]
+    time: float  # Simulated time that the run has reached [s]
+    seconds: float  # Computing time so far [s]
+    positions: tuple[NDArray[np.float64], ...]  # Start positions of the particles of each damper, (n, 3) [m]
     records: _core.Records
-    state: NDArray[np.uint8]
+    state: NDArray[np.uint8]  # State of the core, (bytes,)
 
 
 def is_checkpoint(path: Path) -> bool:

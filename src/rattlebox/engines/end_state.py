@@ -20,24 +20,13 @@ LOSSES = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 
 @dataclass(frozen=True)
 class EndState:
-    """State at the end of a particle run: particles, contacts with their history, and structure.
+    """State at the end of a particle run: particles, contacts with their history, and structure."""
 
-    Attributes
-    ----------
-    state : (bytes,) uint8
-        State of the core.
-    dt
-        Time step of the run [s].
-    positions
-        Initial positions of the particles of each damper, (n, 3) [m], for packing.
-    samples : dict of str to (1, ...) array
-        Last sample.
-    """
-
-    state: NDArray[np.uint8]
-    dt: float
+    state: NDArray[np.uint8]  # State of the core, (bytes,)
+    dt: float  # Time step of the run [s]
+    # Initial positions of the particles of each damper, (n, 3) [m], for packing
     positions: tuple[NDArray[np.float64], ...]
-    samples: Mapping[str, NDArray[Any]]
+    samples: Mapping[str, NDArray[Any]]  # Last sample
 
     @classmethod
     def of(cls, dem: _core.Dem, packed: _core.DemProblem, records: _core.Records) -> Self:

@@ -73,14 +73,9 @@ def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[n
 
 @dataclass(frozen=True)
 class ContactLimit:
-    """A value that contacts of a component should not exceed.
+    """A value that contacts of a component should not exceed."""
 
-    Attributes
-    ----------
-    quantity
-        "overlap" or "speed": of approach [m/s]. Overlaps are in m in impact dampers, over the radius in particle dampers.
-    """
-
+    # "overlap" or "speed": of approach [m/s]. Overlaps are in m in impact dampers, over the radius in particle dampers.
     quantity: Literal["overlap", "speed"]
     index: int
     value: float

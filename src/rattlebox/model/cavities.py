@@ -32,19 +32,11 @@ _MERIDIANS, _LATITUDES = 36, 17
 
 @dataclass(frozen=True)
 class Walls:
-    """Walls around the centre of a cavity.
-
-    Attributes
-    ----------
-    axis : (w, 3) float
-        Outward normal of a plane, axis of a cylinder's side; zeros for a sphere.
-    offset : (w,) float
-        Distance of a plane from the centre, radius of a cylinder or a sphere [m].
-    """
+    """Walls around the centre of a cavity."""
 
     names: tuple[str, ...]
-    axis: Vector
-    offset: Vector
+    axis: Vector  # Outward normal of a plane, axis of a cylinder's side; zeros for a sphere, (w, 3)
+    offset: Vector  # Distance of a plane from the centre, radius of a cylinder or a sphere [m], (w,)
     form: tuple[WallForm, ...]
 
     def distances(self, positions: Vector) -> Vector:

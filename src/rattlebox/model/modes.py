@@ -17,37 +17,26 @@ from .space import AXES, Triple, unit_vector
 class ModalModel:
     """Modes of a linear structure, with unit modal mass.
 
-    Attributes
-    ----------
-    decay, stiffness : (m,) float
-        Decay rate a [1/s] and squared natural frequency k [1/s^2].
-    shapes : dict of str to (m,) or (m, 3) float
-        Mass-normalised mode shapes at the named points [kg^-1/2]; with three components for a point in 3-D.
-    coupling : (m, m) float or None
-        Modal damping matrix D [1/s] without its diagonal, which is 2 decay; None for proportional damping. The
-        modes are those of the undamped structure.
-    participation : (m,) or (m, 3) float or None
-        Inertia of each mode per unit of base acceleration [kg^1/2]; three components for points in 3-D.
-    q0, p0 : (m,) float
-        Initial modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
-    total_mass : float, (3, 3) float or None
-        Mass r^T M r that moves with the base if the structure is rigid [kg]; a matrix if points move in 3-D.
-
     Notes
     -----
     q'' + 2 a q' + D q' + k q = phi^T F - p a_b, with the decay rates a, the coupling D, the stiffness k, the shapes phi, the
     participation p and the acceleration a_b of the base. `Modal` names the sources.
     """
 
-    decay: Vector
+    decay: Vector  # Decay rate a [1/s] and squared natural frequency k [1/s^2], (m,)
     stiffness: Vector
+    # Mass-normalised mode shapes at the named points [kg^-1/2]; with three components for a point in 3-D
     shapes: dict[str, Vector]
+    # Inertia of each mode per unit of base acceleration [kg^1/2]; three components for points in 3-D, (m,) or (m, 3)
     participation: Vector | None
-    q0: Vector
+    q0: Vector  # Initial modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s], (m,)
     p0: Vector
     spatial: frozenset[str] = frozenset()
+    # Modal damping matrix D [1/s] without its diagonal, which is 2 decay; None for proportional damping. The modes are those
+    # of the undamped structure, (m, m)
     coupling: Vector | None = None
     attached: frozenset[str] = frozenset()
+    # Mass r^T M r that moves with the base if the structure is rigid [kg]; a matrix if points move in 3-D
     total_mass: Any = None
 
     @property

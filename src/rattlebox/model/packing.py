@@ -455,17 +455,11 @@ def _sites(cavity: AnyCavity, radii: Vector, settles: bool) -> tuple[Vector, flo
 
 @dataclass(frozen=True)
 class Crowd:
-    """Summary of a set of particles, which may be too many for arrays.
-
-    Attributes
-    ----------
-    largest
-        Radius of the largest particle [m].
-    """
+    """Summary of a set of particles, which may be too many for arrays."""
 
     count: int
     volume: float
-    largest: float
+    largest: float  # Radius of the largest particle [m]
 
     @property
     def alike(self) -> bool:

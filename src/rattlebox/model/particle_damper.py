@@ -99,32 +99,20 @@ class PairLaws(Part):
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """The particles in a cavity, species after species.
+    """The particles in a cavity, species after species."""
 
-    Attributes
-    ----------
-    radius, mass, inertia : (n,) float
-        Radius [m], mass [kg], moment of inertia [kg m^2].
-    species : (n,) int
-        Index of the species.
-    """
-
-    radius: Vector
+    radius: Vector  # Radius [m], mass [kg], moment of inertia [kg m^2], (n,)
     mass: Vector
     inertia: Vector
-    species: Any
+    species: Any  # Index of the species, (n,)
 
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Initial state of the particles.
+    """Initial state of the particles."""
 
-    Attributes
-    ----------
-    position, velocity, spin : (n, 3) float
-        Position relative to the centre of the cavity [m], velocity relative to the base [m/s], angular velocity [rad/s].
-    """
-
+    # Position relative to the centre of the cavity [m], velocity relative to the base [m/s], angular velocity [rad/s], (n,
+    # 3)
     position: Vector
     velocity: Vector
     spin: Vector
@@ -146,22 +134,12 @@ class Entry:
 
 @dataclass(frozen=True)
 class ContactTable:
-    """Entries of all kinds of pairs in a damper.
-
-    Attributes
-    ----------
-    particle_entry : (k, k) int
-        Index of the entry of two species.
-    wall_entry : (k, w) int
-        Index of the entry of a species and a kind of wall.
-    wall_kind : (walls,) int
-        Kind of each wall.
-    """
+    """Entries of all kinds of pairs in a damper."""
 
     entries: tuple[Entry, ...]
-    particle_entry: Any
-    wall_entry: Any
-    wall_kind: Any
+    particle_entry: Any  # Index of the entry of two species, (k, k)
+    wall_entry: Any  # Index of the entry of a species and a kind of wall, (k, w)
+    wall_kind: Any  # Kind of each wall, (walls,)
 
 
 def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:

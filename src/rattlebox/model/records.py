@@ -62,18 +62,11 @@ _PROBED = 2000  # rows from which the layout is concluded
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Columns of times and values.
+    """Columns of times and values."""
 
-    Attributes
-    ----------
-    times, values : (n,) float
-        Times and values, in the units of the file.
-    headings
-        Text (names, units) above the times and above the values, from top to bottom.
-    """
-
-    times: Array
+    times: Array  # Times and values, in the units of the file, (n,)
     values: Array
+    # Text (names, units) above the times and above the values, from top to bottom
     headings: tuple[list[str], list[str]] = ([], [])
     lines: tuple[Line, ...] = ()
     notes: tuple[str, ...] = ()

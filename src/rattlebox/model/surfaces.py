@@ -18,15 +18,9 @@ _SHARP = np.cos(np.radians(20.0))
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A closed surface of polygons.
+    """A closed surface of polygons."""
 
-    Attributes
-    ----------
-    points : (n, 3) float
-        Corners, from the centre of the cavity [m].
-    """
-
-    points: Vector
+    points: Vector  # Corners, from the centre of the cavity [m], (n, 3)
     polygons: Polygons
 
     @cached_property

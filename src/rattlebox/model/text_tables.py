@@ -39,23 +39,14 @@ def decode(content: bytes) -> tuple[str, str] | None:
 
 @dataclass(frozen=True)
 class Dialect:
-    """How the rows of a table of text are written.
+    """How the rows of a table of text are written."""
 
-    Attributes
-    ----------
-    delimiter
-        Character between columns; None for blanks.
-    has_comma, has_fortran, has_complex
-        Whether numbers have a decimal comma, an exponent such as D-03, or a real and an imaginary part.
-    quoted
-        Whether cells may be in quotation marks.
-    """
-
-    delimiter: str | None
+    delimiter: str | None  # Character between columns; None for blanks
+    # Whether numbers have a decimal comma, an exponent such as D-03, or a real and an imaginary part
     has_comma: bool = False
     has_fortran: bool = False
     has_complex: bool = False
-    quoted: bool = False
+    quoted: bool = False  # Whether cells may be in quotation marks
 
     @property
     def is_plain(self) -> bool:

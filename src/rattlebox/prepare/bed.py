@@ -35,18 +35,12 @@ BULK_POINTS = 2**19
 
 @dataclass(frozen=True)
 class BedMeasures:
-    """Fill of a cavity, by the volume of its particles and by the volume of their bed.
-
-    Attributes
-    ----------
-    height
-        Height of the bed above the lowest point of the cavity [m]; NaN without gravity.
-    """
+    """Fill of a cavity, by the volume of its particles and by the volume of their bed."""
 
     count: int
     fill_ratio: float
     bed_fill: float
-    height: float
+    height: float  # Height of the bed above the lowest point of the cavity [m]; NaN without gravity
     density: float
     bulk_density: float
     bulk_error: float

@@ -68,20 +68,14 @@ def contact_samples(case: Case) -> int:
 
 @dataclass(frozen=True)
 class Batch:
-    """Packed variants of a grid that differ in numbers only.
-
-    Attributes
-    ----------
-    points
-        Mode shapes at each point of the structure, (m, ...) over the grid.
-    inertia
-        Participation of the modes in the motion of the base, (m, ...) [kg^1/2], and "residual_mass" (1, ...) [kg] of the
-        truncated modes; empty if unknown.
-    """
+    """Packed variants of a grid that differ in numbers only."""
 
     packed: _core.Problem
     indices: tuple[NDArray[np.intp], ...]
+    # Mode shapes at each point of the structure, (m, ...) over the grid
     points: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    # Participation of the modes in the motion of the base, (m, ...) [kg^1/2], and "residual_mass" (1, ...) [kg] of the
+    # truncated modes; empty if unknown
     inertia: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     obstacle: NotMergeable | None = None
 

@@ -42,19 +42,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case with particle dampers, and the results of its preparation.
-
-    Attributes
-    ----------
-    positions
-        Initial positions of the particles of each damper, (n, 3) [m].
-    """
+    """A case with particle dampers, and the results of its preparation."""
 
     case: Case
     notes: tuple[str, ...]
     step: Step
     tables: tuple[ContactTable, ...]
-    positions: tuple[Array, ...]
+    positions: tuple[Array, ...]  # Initial positions of the particles of each damper, (n, 3) [m]
     fills: Mapping[str, float]
 
 

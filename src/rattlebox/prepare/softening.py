@@ -61,18 +61,10 @@ _LARGEST = 1e6
 
 @dataclass(frozen=True)
 class CavityMotion:
-    """Motion of a cavity.
+    """Motion of a cavity."""
 
-    Attributes
-    ----------
-    main
-        Frequency of the largest acceleration [Hz]; 0 without motion.
-    highest
-        Highest frequency with at least a tenth of that acceleration [Hz].
-    """
-
-    main: float
-    highest: float
+    main: float  # Frequency of the largest acceleration [Hz]; 0 without motion
+    highest: float  # Highest frequency with at least a tenth of that acceleration [Hz]
     acceleration: float
     is_prescribed: bool
 
@@ -223,21 +215,13 @@ def _rounded(value: float) -> float:
 
 @dataclass(frozen=True)
 class Effect:
-    """Effect of softening on a damper in a run.
-
-    Attributes
-    ----------
-    resonance
-        Resonance of the bed under its own weight [Hz].
-    frequency
-        Highest frequency of the motion [Hz].
-    """
+    """Effect of softening on a damper in a run."""
 
     softening: float
-    resonance: float
+    resonance: float  # Resonance of the bed under its own weight [Hz]
     change: float
     share: float
-    frequency: float
+    frequency: float  # Highest frequency of the motion [Hz]
 
     def warnings(self, where: str) -> list[str]:
         """Return the warnings; `where` names the damper in them."""

@@ -61,43 +61,25 @@ may be a period of the motion; multiples of the golden ratio are in step with no
 
 @dataclass(frozen=True)
 class Limit:
-    """A duration that the step must resolve: of a contact, a wave, or a period.
+    """A duration that the step must resolve: of a contact, a wave, or a period."""
 
-    Attributes
-    ----------
-    duration
-        Duration [s].
-    step
-        Longest automatic step [s].
-    bound
-        Longest step that is accepted [s]; infinite for any.
-    """
-
-    duration: float
-    step: float
-    bound: float
+    duration: float  # Duration [s]
+    step: float  # Longest automatic step [s]
+    bound: float  # Longest step that is accepted [s]; infinite for any
     what: str
     is_contact: bool = False
 
 
 @dataclass(frozen=True)
 class Step:
-    """Time step of a run.
+    """Time step of a run."""
 
-    Attributes
-    ----------
-    dt
-        Time step [s].
-    speeds
-        Largest expected approach speed in each damper [m/s].
-    """
-
-    dt: float
+    dt: float  # Time step [s]
     every: int
     count: int
     limit: Limit
     shortest: Limit
-    speeds: tuple[float, ...]
+    speeds: tuple[float, ...]  # Largest expected approach speed in each damper [m/s]
     motions: tuple[CavityMotion, ...] = ()
 
 

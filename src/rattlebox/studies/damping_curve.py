@@ -55,22 +55,14 @@ _FAST = 0.05
 
 @dataclass(frozen=True)
 class CurveMode:
-    """The mode whose damping is computed.
-
-    Attributes
-    ----------
-    omega
-        Natural angular frequency [rad/s].
-    axis : (3,) float or None
-        Direction of the motion of a point with three directions.
-    """
+    """The mode whose damping is computed."""
 
     number: int
-    omega: float
+    omega: float  # Natural angular frequency [rad/s]
     ratio: float
     point: str
     shape: float
-    axis: FloatArray | None
+    axis: FloatArray | None  # Direction of the motion of a point with three directions, (3,)
 
     @property
     def frequency(self) -> float:
@@ -354,21 +346,13 @@ def ratios_of_decays(
 
 
 class _Row(NamedTuple):
-    """Result of a run: the reason if it failed, its warnings and exceeded limits, and its values.
-
-    Attributes
-    ----------
-    values
-        Damping ratios, or the work in a cycle [J].
-    largest
-        Largest amplitude of a decay [m].
-    """
+    """Result of a run: the reason if it failed, its warnings and exceeded limits, and its values."""
 
     failure: str
     warnings: tuple[str, ...]
     exceeded: tuple[str, ...]
-    values: FloatArray
-    largest: float = math.inf
+    values: FloatArray  # Damping ratios, or the work in a cycle [J]
+    largest: float = math.inf  # Largest amplitude of a decay [m]
 
 
 def _decay(run: Run, mode: CurveMode, levels: FloatArray, way: Way) -> _Row:

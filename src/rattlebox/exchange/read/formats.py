@@ -32,59 +32,29 @@ Read = TypeVar("Read", bound=Callable[..., Any])
 
 @dataclass(frozen=True, eq=False)
 class SignalInFile:
-    """A time history in a file.
+    """A time history in a file."""
 
-    Attributes
-    ----------
-    times, values : (n,) float
-        Times [s] or in `time_unit`, and values in `unit`.
-    name
-        Name by which `columns` of a record selects it.
-    unit
-        Unit as the file writes it, such as "g" or "m/s^2"; "" if the file states none.
-    time_unit
-        Unit of the times as the file writes it, if they may be in another one than s.
-    lines
-        Numbers and texts of the lines above the values, in which a unit may be.
-    notes
-        Notes on assumptions, which a run reports.
-    is_derived
-        Whether it is computed from another one of the file, and therefore not read unless `columns` selects it.
-    """
-
-    times: NDArray[np.float64]
+    times: NDArray[np.float64]  # Times [s] or in `time_unit`, and values in `unit`, (n,)
     values: NDArray[np.float64]
-    name: str = ""
-    unit: str = ""
-    time_unit: str = ""
-    lines: tuple[tuple[int, str], ...] = ()
-    notes: tuple[str, ...] = ()
+    name: str = ""  # Name by which `columns` of a record selects it
+    unit: str = ""  # Unit as the file writes it, such as "g" or "m/s^2"; "" if the file states none
+    time_unit: str = ""  # Unit of the times as the file writes it, if they may be in another one than s
+    lines: tuple[tuple[int, str], ...] = ()  # Numbers and texts of the lines above the values, in which a unit may be
+    notes: tuple[str, ...] = ()  # Notes on assumptions, which a run reports
+    # Whether it is computed from another one of the file, and therefore not read unless `columns` selects it
     is_derived: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class DensityInFile:
-    """A power spectral density in a file.
+    """A power spectral density in a file."""
 
-    Attributes
-    ----------
-    frequencies, densities : (n,) float
-        Frequencies in `frequency_unit`, and mean squares per frequency in `unit`.
-    name
-        Name by which `columns` of a random vibration selects it.
-    unit
-        Unit as the file writes it, such as "g^2/Hz"; "" if the file states none.
-    frequency_unit
-        Unit of the frequencies as the file writes it; "" stands for Hz.
-    lines
-        Numbers and texts of the lines above the values, in which conventions may be.
-    """
-
-    frequencies: NDArray[np.float64]
+    frequencies: NDArray[np.float64]  # Frequencies in `frequency_unit`, and mean squares per frequency in `unit`, (n,)
     densities: NDArray[np.float64]
-    name: str = ""
-    unit: str = ""
-    frequency_unit: str = ""
+    name: str = ""  # Name by which `columns` of a random vibration selects it
+    unit: str = ""  # Unit as the file writes it, such as "g^2/Hz"; "" if the file states none
+    frequency_unit: str = ""  # Unit of the frequencies as the file writes it; "" stands for Hz
+    # Numbers and texts of the lines above the values, in which conventions may be
     lines: tuple[tuple[int, str], ...] = ()
 
 

@@ -28,18 +28,10 @@ _DIGITS = 12  # from which a number of samples is absurd
 
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
-    """Evenly spaced samples of a ground acceleration, or of a ground displacement.
+    """Evenly spaced samples of a ground acceleration, or of a ground displacement."""
 
-    Attributes
-    ----------
-    step
-        Time between samples [s].
-    values : (n,) float
-        Samples, in `unit`.
-    """
-
-    step: float
-    values: NDArray[np.float64]
+    step: float  # Time between samples [s]
+    values: NDArray[np.float64]  # Samples, in `unit`, (n,)
     unit: str
     lines: tuple[tuple[int, str], ...] = ()
 

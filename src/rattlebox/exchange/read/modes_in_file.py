@@ -19,35 +19,19 @@ _LARGEST_ROUNDING = 1e-6  # largest negative eigenvalue that is rounding, over t
 
 @dataclass(frozen=True, eq=False)
 class ModesInFile:
-    """Modes of a structure in the units of a file.
+    """Modes of a structure in the units of a file."""
 
-    Attributes
-    ----------
-    frequencies : (m,) float
-        Natural frequencies [Hz].
-    shapes : dict of str to (m,) or (m, 3) float
-        Mode shapes at points, by name or node number; three components at a node.
-    modal_masses : (m,) float or None
-        Modal masses in the file's unit of mass; None for mass-normalised shapes.
-    damping_ratios : (m,) float or None
-        Damping ratios, if the file states them.
-    participation : (m,) or (m, 3) float or None
-        Participation phi^T M r in the file's unit of mass, or in its root for mass-normalised shapes.
-    total_mass : (3,) float or None
-        Mass that a rigid motion of the base along x, y and z moves, in the file's unit of mass, if the file states it.
-    mass_unit
-        The file's unit of mass [kg]; None if the file does not state it.
-    unfit
-        Numbers of modes that cannot be used, from 1 on, and why; they are an error unless others are chosen.
-    """
-
-    frequencies: FloatArray
-    shapes: dict[str, FloatArray]
+    frequencies: FloatArray  # Natural frequencies [Hz], (m,)
+    shapes: dict[str, FloatArray]  # Mode shapes at points, by name or node number; three components at a node
+    # Modal masses in the file's unit of mass; None for mass-normalised shapes, (m,)
     modal_masses: FloatArray | None = None
-    damping_ratios: FloatArray | None = None
+    damping_ratios: FloatArray | None = None  # Damping ratios, if the file states them, (m,)
+    # Participation phi^T M r in the file's unit of mass, or in its root for mass-normalised shapes, (m,) or (m, 3)
     participation: FloatArray | None = None
+    # Mass that a rigid motion of the base along x, y and z moves, in the file's unit of mass, if the file states it, (3,)
     total_mass: FloatArray | None = None
-    mass_unit: float | None = None
+    mass_unit: float | None = None  # The file's unit of mass [kg]; None if the file does not state it
+    # Numbers of modes that cannot be used, from 1 on, and why; they are an error unless others are chosen
     unfit: Mapping[int, str] = field(default_factory=dict)
     notes: tuple[str, ...] = field(default=())
 

@@ -75,20 +75,12 @@ _LARGEST_PHASE = 45.0  # largest deviation of modal A from that of a normal mode
 
 @dataclass(frozen=True, eq=False)
 class Function:
-    """A measured function of a set 58 or 58b.
-
-    Attributes
-    ----------
-    abscissa : (n,) float
-        Times [s] or frequencies [Hz].
-    values : (n,) float or complex
-        Values, in `unit`, or `unit` over `source_unit`.
-    """
+    """A measured function of a set 58 or 58b."""
 
     name: str
     kind: int
-    abscissa: FloatArray
-    values: Any
+    abscissa: FloatArray  # Times [s] or frequencies [Hz], (n,)
+    values: Any  # Values, in `unit`, or `unit` over `source_unit`, (n,)
     unit: str
     source_unit: str = ""
     quantities: tuple[int, int] = (0, 0)

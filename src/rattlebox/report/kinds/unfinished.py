@@ -19,16 +19,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class UnfinishedRun:
-    """A run that was stopped before its end.
-
-    Attributes
-    ----------
-    time, seconds
-        Simulated time and computing time so far [s].
-    """
+    """A run that was stopped before its end."""
 
     case_toml: str
-    time: float
+    time: float  # Simulated time and computing time so far [s]
     seconds: float
     snapshots: Snapshots | None = None
 

@@ -37,21 +37,13 @@ _MOST = 3
 
 @dataclass(frozen=True, eq=False)
 class Space:
-    """Ranges of parameters. Points in it are in units of the ranges: 0 for the smallest, 1 for the largest value.
-
-    Attributes
-    ----------
-    low, high : (d,) float
-        Smallest and largest values.
-    is_log : (d,) bool
-        Whether a range is logarithmic.
-    """
+    """Ranges of parameters. Points in it are in units of the ranges: 0 for the smallest, 1 for the largest value."""
 
     paths: list[str]
     units: list[str]
-    low: FloatArray
+    low: FloatArray  # Smallest and largest values, (d,)
     high: FloatArray
-    is_log: NDArray[np.bool_]
+    is_log: NDArray[np.bool_]  # Whether a range is logarithmic, (d,)
     known: dict[str, tuple[float, float]]
 
     @classmethod
@@ -185,16 +177,10 @@ _WORTHWHILE = 0.7
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Fit of simulated to measured values in a region of the space.
-
-    Attributes
-    ----------
-    low, high : (d,) float
-        Corners of the region, as points of the space.
-    """
+    """Fit of simulated to measured values in a region of the space."""
 
     space: Space
-    low: FloatArray
+    low: FloatArray  # Corners of the region, as points of the space, (d,)
     high: FloatArray
     agreement: Agreement
 

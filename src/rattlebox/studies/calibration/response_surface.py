@@ -33,21 +33,11 @@ def least_points(parameters: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """Polynomials in the parameters, one for each of M results.
+    """Polynomials in the parameters, one for each of M results."""
 
-    Attributes
-    ----------
-    powers : (T, d) int
-        Powers of the parameters in each term.
-    coefficients : (T, M) float
-        Coefficients; those of terms above the degree of a polynomial are zero.
-    errors : (N, M) float
-        Differences of the results from the polynomials through all other points.
-    """
-
-    powers: NDArray[np.int64]
-    coefficients: FloatArray
-    errors: FloatArray
+    powers: NDArray[np.int64]  # Powers of the parameters in each term, (T, d)
+    coefficients: FloatArray  # Coefficients; those of terms above the degree of a polynomial are zero, (T, M)
+    errors: FloatArray  # Differences of the results from the polynomials through all other points, (N, M)
     freedom: int
 
     @classmethod
@@ -117,19 +107,12 @@ class Known(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Agreement:
-    """Agreement of surfaces with measurements, chi^2 over the parameters.
-
-    Attributes
-    ----------
-    measured, error : (M,) float
-        Measured values, and their standard uncertainties.
-    sets : (M,) int
-        Number of the measurement to which each value belongs. Simulated values of a measurement scatter together.
-    """
+    """Agreement of surfaces with measurements, chi^2 over the parameters."""
 
     surfaces: Surfaces
-    measured: FloatArray
+    measured: FloatArray  # Measured values, and their standard uncertainties, (M,)
     error: FloatArray
+    # Number of the measurement to which each value belongs. Simulated values of a measurement scatter together, (M,)
     sets: NDArray[np.int64]
     known: Sequence[Known] = ()
 
@@ -192,18 +175,10 @@ class Agreement:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """chi^2 on a grid.
+    """chi^2 on a grid."""
 
-    Attributes
-    ----------
-    axes : list of (K,) float
-        Grid along each parameter, in units of its range.
-    chi2 : (K, ...) float
-        chi^2.
-    """
-
-    axes: list[FloatArray]
-    chi2: FloatArray
+    axes: list[FloatArray]  # Grid along each parameter, in units of its range
+    chi2: FloatArray  # chi^2, (K, ...)
 
     @classmethod
     def of(cls, agreement: Agreement, low: FloatArray, high: FloatArray) -> Region:

@@ -39,18 +39,10 @@ _MISSED = 0.1
 
 
 class Impacts(NamedTuple):
-    """Impacts of one measurement.
+    """Impacts of one measurement."""
 
-    Attributes
-    ----------
-    speed : (N,) float
-        Approach speed [m/s].
-    restitution : (N,) float
-        Restitution.
-    """
-
-    speed: FloatArray
-    restitution: FloatArray
+    speed: FloatArray  # Approach speed [m/s], (N,)
+    restitution: FloatArray  # Restitution, (N,)
     error: float
 
 
@@ -171,17 +163,11 @@ def restitution_of(data: Sequence[Contacts]) -> xarray.Dataset:
 
 
 class Trend(NamedTuple):
-    """Power law e ~ v^q through the restitutions.
-
-    Attributes
-    ----------
-    slowest, fastest
-        Range of the approach speeds [m/s].
-    """
+    """Power law e ~ v^q through the restitutions."""
 
     exponent: float
     half: float
-    slowest: float
+    slowest: float  # Range of the approach speeds [m/s]
     fastest: float
     is_significant: bool
 

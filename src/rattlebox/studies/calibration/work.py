@@ -52,16 +52,10 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Decay:
-    """Simulation of a ring-down.
-
-    Attributes
-    ----------
-    levels : (M,) float
-        Amplitudes as displacements [m].
-    """
+    """Simulation of a ring-down."""
 
     data: RingDown
-    levels: FloatArray
+    levels: FloatArray  # Amplitudes as displacements [m], (M,)
 
     @classmethod
     def of(cls, data: RingDown, case: Case) -> Decay:

@@ -73,19 +73,11 @@ class Curve:
 
 @dataclass
 class Evaluation:
-    """Result of the runs of a trial.
+    """Result of the runs of a trial."""
 
-    Attributes
-    ----------
-    values, intervals : (objectives,) float
-        Objectives that need runs, and half of the widths of their 95 % intervals.
-    packings : (objectives, P) float
-        Their values for each packing.
-    """
-
-    values: Vector
+    values: Vector  # Objectives that need runs, and half of the widths of their 95 % intervals, (objectives,)
     intervals: Vector
-    packings: Vector
+    packings: Vector  # Their values for each packing, (objectives, P)
     missing: float = 0.0
     warnings: int = 0
     reason: str = ""
@@ -93,13 +85,7 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class DesignSearch:
-    """A design search: variables, objectives and the runs of a trial.
-
-    Attributes
-    ----------
-    limit
-        Largest mass of the dampers [kg].
-    """
+    """A design search: variables, objectives and the runs of a trial."""
 
     case: Case
     variables: list[DesignVariable]
@@ -108,7 +94,7 @@ class DesignSearch:
     packings: ParsedAxes | None
     count: int
     robust: Robust
-    limit: float | None
+    limit: float | None  # Largest mass of the dampers [kg]
     curve: Curve | None
     options: dict[str, Any]
     where: dict[str, Any] = field(default_factory=dict)

@@ -38,38 +38,21 @@ _SOURCE = "a file of rb.loss_map(...).to_netcdf"
 
 @dataclass(frozen=True, eq=False)
 class LossTable:
-    """A loss map over K amplitudes and J frequencies.
-
-    Attributes
-    ----------
-    mass
-        Mass of the particles [kg]; NaN if it is unknown.
-    interval : (K, J, 2) float or None
-        Half of the 95 % intervals of m' and m'' [kg].
-    harmonics : (K, J, N) float or None
-        Harmonics 2 to N + 1 of the force over the acceleration of the cavity [kg].
-    variation : (K, J) float or None
-        Variation of the first harmonic of the force from cycle to cycle over the acceleration of the cavity [kg].
-    softening, softening_change : (K, J) float or None
-        Softening of each run, and its estimated effect on the loss in a cycle over m V^2; NaN where it is unknown.
-    is_doubtful : (K, J) bool
-        Whether the run exceeded a validity limit.
-    axis : (3,) float or None
-        Direction of the motion; None if it has none, as for impact dampers.
-    clearance
-        Smallest clearance of impact dampers without gravity, whose balls may stay at rest [m]; else 0.
-    """
+    """A loss map over K amplitudes and J frequencies."""
 
     masses: MassTable
-    mass: float
-    interval: FloatArray | None
+    mass: float  # Mass of the particles [kg]; NaN if it is unknown
+    interval: FloatArray | None  # Half of the 95 % intervals of m' and m'' [kg], (K, J, 2)
+    # Harmonics 2 to N + 1 of the force over the acceleration of the cavity [kg], (K, J, N)
     harmonics: FloatArray | None
+    # Variation of the first harmonic of the force from cycle to cycle over the acceleration of the cavity [kg], (K, J)
     variation: FloatArray | None
+    # Softening of each run, and its estimated effect on the loss in a cycle over m V^2; NaN where it is unknown, (K, J)
     softening: FloatArray | None
     softening_change: FloatArray | None
-    is_doubtful: NDArray[np.bool_]
-    axis: FloatArray | None
-    clearance: float
+    is_doubtful: NDArray[np.bool_]  # Whether the run exceeded a validity limit, (K, J)
+    axis: FloatArray | None  # Direction of the motion; None if it has none, as for impact dampers, (3,)
+    clearance: float  # Smallest clearance of impact dampers without gravity, whose balls may stay at rest [m]; else 0
     case: str
     limits: str
 
@@ -240,28 +223,14 @@ LEAST_SHARE = 0.95
 
 @dataclass(frozen=True, eq=False)
 class Transfer:
-    """Responses of a structure without dampers to a unit level, and to unit forces of P dampers, at F frequencies.
-
-    Attributes
-    ----------
-    frequency : (F,) float
-        Frequencies [Hz].
-    shapes : (P, m) float
-        Mode shapes at the dampers.
-    force : (m,) float
-        Modal force of a unit level.
-    base : (P,) float
-        Acceleration of the base along each damper at a unit level.
-    observed : (m,) float
-        Mode shapes at the observed point.
-    """
+    """Responses of a structure without dampers to a unit level, and to unit forces of P dampers, at F frequencies."""
 
     model: ModalModel
-    frequency: FloatArray
-    shapes: FloatArray
-    force: FloatArray
-    base: FloatArray
-    observed: FloatArray
+    frequency: FloatArray  # Frequencies [Hz], (F,)
+    shapes: FloatArray  # Mode shapes at the dampers, (P, m)
+    force: FloatArray  # Modal force of a unit level, (m,)
+    base: FloatArray  # Acceleration of the base along each damper at a unit level, (P,)
+    observed: FloatArray  # Mode shapes at the observed point, (m,)
 
     @cached_property
     def _modal(self) -> ComplexArray:
@@ -308,47 +277,23 @@ class Transfer:
 
 @dataclass(frozen=True, eq=False)
 class MapResponse:
-    """Response with a number of dampers at some points: arrays over (L, F) and (L, F, S), of modes over (m, K).
+    """Response with a number of dampers at some points: arrays over (L, F) and (L, F, S), of modes over (m, K)."""
 
-    Attributes
-    ----------
-    amplitude : (L, F, S) complex
-        Displacement of the observed point [m].
-    cavity_amplitude : (L, F, S) float
-        Largest amplitude of a damper in the unit of the map.
-    share : (L, F, S) float
-        Share of the mean square velocity of the dampers in the first harmonic.
-    is_unstable : (L, F, S) bool
-        Whether the motion lies between two folds.
-    flags : (L, F) int
-        Bits of `FLAGS`.
-    interpolation_error : (L, F) float
-        Relative change of the largest amplitude with half of the map.
-    amplitude_interval : (L, F) float
-        Half of the 95 % interval of the largest amplitude that follows from those of the map [m].
-    peak, peak_frequency, peak_error : (L,) float
-        Largest amplitude [m], its frequency [Hz], and its relative change with half of the map.
-    peak_interval : (L,) float
-        Half of the 95 % interval of the peak that follows from those of the map [m].
-    softening_error : (L,) float
-        Relative change of the peak without the estimated effect of softening.
-    mode_frequency, damping_ratio, damping_ratio_interval : (m, K) float
-        Natural frequency [Hz] and damping ratio of the modes, and half of the 95 % interval of the latter.
-    """
-
-    amplitude: ComplexArray
-    cavity_amplitude: FloatArray
+    amplitude: ComplexArray  # Displacement of the observed point [m], (L, F, S)
+    cavity_amplitude: FloatArray  # Largest amplitude of a damper in the unit of the map, (L, F, S)
     mass_ratio: float
-    share: FloatArray
-    is_unstable: NDArray[np.bool_]
-    flags: NDArray[np.int16]
-    interpolation_error: FloatArray
+    share: FloatArray  # Share of the mean square velocity of the dampers in the first harmonic, (L, F, S)
+    is_unstable: NDArray[np.bool_]  # Whether the motion lies between two folds, (L, F, S)
+    flags: NDArray[np.int16]  # Bits of `FLAGS`, (L, F)
+    interpolation_error: FloatArray  # Relative change of the largest amplitude with half of the map, (L, F)
+    # Half of the 95 % interval of the largest amplitude that follows from those of the map [m], (L, F)
     amplitude_interval: FloatArray
-    peak: FloatArray
+    peak: FloatArray  # Largest amplitude [m], its frequency [Hz], and its relative change with half of the map, (L,)
     peak_frequency: FloatArray
     peak_error: FloatArray
-    peak_interval: FloatArray
-    softening_error: FloatArray
+    peak_interval: FloatArray  # Half of the 95 % interval of the peak that follows from those of the map [m], (L,)
+    softening_error: FloatArray  # Relative change of the peak without the estimated effect of softening, (L,)
+    # Natural frequency [Hz] and damping ratio of the modes, and half of the 95 % interval of the latter, (m, K)
     mode_frequency: FloatArray
     damping_ratio: FloatArray
     damping_ratio_interval: FloatArray

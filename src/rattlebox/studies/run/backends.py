@@ -294,20 +294,12 @@ SETTLING = 10.0
 
 @dataclass(frozen=True)
 class Budget:
-    """Predicted cost of a study.
-
-    Attributes
-    ----------
-    cpu_time
-        Processor time [s].
-    wall_time
-        Wall time on the workers of the study [s].
-    """
+    """Predicted cost of a study."""
 
     trials: int
     runs: int
-    cpu_time: float
-    wall_time: float
+    cpu_time: float  # Processor time [s]
+    wall_time: float  # Wall time on the workers of the study [s]
     workers: int
 
     def __str__(self) -> str:
@@ -337,23 +329,13 @@ class RunGroup(NamedTuple):
 
 
 class _Timed(NamedTuple):
-    """Cost of a run.
-
-    Attributes
-    ----------
-    settling
-        Processor time in which the beds settle [s].
-    setup
-        Other processor time before the first step and after the last [s].
-    stepping
-        Processor time of all steps [s].
-    """
+    """Cost of a run."""
 
     particles: int
     steps: int
-    settling: float
-    setup: float
-    stepping: float
+    settling: float  # Processor time in which the beds settle [s]
+    setup: float  # Other processor time before the first step and after the last [s]
+    stepping: float  # Processor time of all steps [s]
     share: float
 
 

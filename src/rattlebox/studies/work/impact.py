@@ -32,20 +32,12 @@ _NUMBERS = 2**23
 
 @dataclass
 class ImpactEngine:
-    """Variants of a case with impact dampers.
-
-    Attributes
-    ----------
-    motion, last
-        Whether to return the motion of each variant, and the number of its last impacts to return.
-    state
-        Whether to return the state at its end, from which another variant can start.
-    """
+    """Variants of a case with impact dampers."""
 
     variants: Variants
-    motion: bool = False
+    motion: bool = False  # Whether to return the motion of each variant, and the number of its last impacts to return
     last: int = 0
-    state: bool = False
+    state: bool = False  # Whether to return the state at its end, from which another variant can start
 
     has_states = False  # the state is an output
 

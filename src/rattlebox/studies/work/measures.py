@@ -26,31 +26,17 @@ if TYPE_CHECKING:
 
 
 class Measure(NamedTuple):
-    """Declaration of a measure.
+    """Declaration of a measure."""
 
-    Attributes
-    ----------
-    units
-        SI unit, "1" for pure numbers.
-    long_name
-        Meaning in a few words, fit for an axis label.
-    samples
-        Whether it is computed from samples of the motion, whose spacing limits its accuracy.
-    cyclic
-        Whether it is defined per cycle and requires a harmonic load or motion.
-    average
-        Relation between the measure of a steady motion and its values in parts of the window: "mean", "root mean square"
-        or "total"; "" for peaks, shares and times, which have no interval.
-    of_impacts, of_base_force, of_loss_in_cycle, of_first_harmonic, of_acceleration
-        Whether it needs the impact log, which particle runs do not have; the force on the base; the energy that dampers
-        take in a cycle; the first harmonic of force and motion of the cavity; or accelerations at both ends of each step.
-    """
-
-    units: str
-    long_name: str
-    samples: bool = False
-    cyclic: bool = False
+    units: str  # SI unit, "1" for pure numbers
+    long_name: str  # Meaning in a few words, fit for an axis label
+    samples: bool = False  # Whether it is computed from samples of the motion, whose spacing limits its accuracy
+    cyclic: bool = False  # Whether it is defined per cycle and requires a harmonic load or motion
+    # Relation between the measure of a steady motion and its values in parts of the window: "mean", "root mean square" or
+    # "total"; "" for peaks, shares and times, which have no interval
     average: str = ""
+    # Whether it needs the impact log, which particle runs do not have; the force on the base; the energy that dampers take
+    # in a cycle; the first harmonic of force and motion of the cavity; or accelerations at both ends of each step
     of_impacts: bool = False
     of_base_force: bool = False
     of_loss_in_cycle: bool = False

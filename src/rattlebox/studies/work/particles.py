@@ -54,15 +54,10 @@ class ParticleEngine:
 
     Functions of a Run get the run from which the measures are evaluated. Its samples are those of the output of the case,
     unless `samples` or `cycles` is given.
-
-    Attributes
-    ----------
-    extensions
-        How often a run may be continued by the evaluated cycles, until its motion is steady.
     """
 
     variants: Variants
-    extensions: int = 0
+    extensions: int = 0  # How often a run may be continued by the evaluated cycles, until its motion is steady
 
     has_states = True  # of a size of their own
     block = 1

@@ -324,14 +324,9 @@ HIGHEST = 8
 
 @dataclass(frozen=True)
 class ForceHarmonics:
-    """Harmonics of the force on the content of a shaken cavity, and how its first harmonic varies from cycle to cycle.
+    """Harmonics of the force on the content of a shaken cavity, and how its first harmonic varies from cycle to cycle."""
 
-    Attributes
-    ----------
-    softening
-        Whether contacts may be softened: then also the softening of each run, and its estimated effect on the loss.
-    """
-
+    # Whether contacts may be softened: then also the softening of each run, and its estimated effect on the loss
     softening: bool
 
     @property
@@ -432,15 +427,9 @@ def steady_motion(
 
 @dataclass(frozen=True)
 class SteadyMotion:
-    """First harmonic, period and kind of the motion of the observed point under a harmonic load.
+    """First harmonic, period and kind of the motion of the observed point under a harmonic load."""
 
-    Attributes
-    ----------
-    phase
-        Phase of the load [rad].
-    """
-
-    phase: float
+    phase: float  # Phase of the load [rad]
     tolerance: float
     cycles: int
 

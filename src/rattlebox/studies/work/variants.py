@@ -184,18 +184,12 @@ _function_lock = Lock()  # functions of users need not be thread-safe
 
 @dataclass(frozen=True)
 class Variants:
-    """Variants of a case, the window in which they are evaluated, and the measures of each.
-
-    Attributes
-    ----------
-    skip
-        Time from which measures are evaluated [s].
-    """
+    """Variants of a case, the window in which they are evaluated, and the measures of each."""
 
     case: Case
     grid: Grid
     measures: Sequence[str | UserMeasure] = ()
-    skip: float = 0.0
+    skip: float = 0.0  # Time from which measures are evaluated [s]
     cycles: tuple[int, int] | None = None
     samples: int | None = None
     point: str | None = None

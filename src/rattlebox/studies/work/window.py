@@ -37,27 +37,17 @@ _NOTHING = np.zeros(0)
 
 @dataclass(frozen=True)
 class Window:
-    """Part of a run over which measures are evaluated.
-
-    Attributes
-    ----------
-    start
-        Start of the window [s].
-    displacement, velocity, base_acceleration : (T,) float
-        Displacement [m] and velocity [m/s] of the observed point, and acceleration of the base in its direction [m/s^2].
-    shape : (M,) float
-        Mode shape of the observed point [kg^-1/2].
-    frequency
-        Frequency of the first harmonic load or motion [Hz]; NaN if there is none or its amplitude is zero.
-    """
+    """Part of a run over which measures are evaluated."""
 
     run: Run
     full_run: Run
-    start: float
+    start: float  # Start of the window [s]
+    # Displacement [m] and velocity [m/s] of the observed point, and acceleration of the base in its direction [m/s^2], (T,)
     displacement: FloatArray
     velocity: FloatArray
     base_acceleration: FloatArray
-    shape: FloatArray
+    shape: FloatArray  # Mode shape of the observed point [kg^-1/2], (M,)
+    # Frequency of the first harmonic load or motion [Hz]; NaN if there is none or its amplitude is zero
     frequency: float
 
     @classmethod

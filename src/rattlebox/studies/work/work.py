@@ -97,28 +97,15 @@ class ChainEngine(Engine, Protocol):
 
 
 class Signals(NamedTuple):
-    """Motions of one or several runs, from which a reduction computes numbers.
+    """Motions of one or several runs, from which a reduction computes numbers."""
 
-    Attributes
-    ----------
-    time : (T,) float
-        Times, in s or in cycles.
-    frequency : float
-        Frequency of the load, in the reciprocal unit of time.
-    rate : (n, 1) float
-        Units of time per second.
-    displacement, momentum : (n, T) float
-        Displacement of the observed point [m], and momentum of all balls or particles [kg m/s].
-    diagnostics
-        Diagnostics of a particle run.
-    """
-
-    time: NDArray[np.float64]
-    frequency: float
-    rate: Any
+    time: NDArray[np.float64]  # Times, in s or in cycles, (T,)
+    frequency: float  # Frequency of the load, in the reciprocal unit of time
+    rate: Any  # Units of time per second, (n, 1)
+    # Displacement of the observed point [m], and momentum of all balls or particles [kg m/s], (n, T)
     displacement: NDArray[np.float64]
     momentum: Callable[[], NDArray[np.float64]]
-    diagnostics: Mapping[str, Any]
+    diagnostics: Mapping[str, Any]  # Diagnostics of a particle run
 
 
 class Reduction(Protocol):
