@@ -6,7 +6,6 @@ import io
 import re
 import tomllib
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from rattlebox.cli.demo import BARE, DAMPED, demo_cases
 from rattlebox.model.base import Part
 from rattlebox.model.contacts import Contact
 from rattlebox.model.friction import Friction
-from rattlebox.model.methods import AnyMethod
+from rattlebox.model.methods import Method
 from rattlebox.model.restitutions import Restitution
 
 ROOT = Path(__file__).parents[2]
@@ -24,9 +23,8 @@ DOCS = ROOT / "docs"
 LAWS = [
     law
     for laws in (
-        *(base.kinds.values() for base in (Contact, Restitution, Friction)),
+        *(base.kinds.values() for base in (Contact, Restitution, Friction, Method)),
         [rb.Rolling],
-        get_args(get_args(AnyMethod)[0]),
     )
     for law in laws
     if law is not rb.Tabulated  # a table of the user has no source

@@ -300,6 +300,76 @@ def test_a_class_that_lacks_a_method_is_refused_at_import() -> None:
                 raise AssertionError
 
 
+def test_a_packing_or_method_that_lacks_a_part_is_refused_at_import() -> None:
+    """A packing without positions and a method without settings are refused when they are defined.
+
+    A packing of an unknown kind started at undefined positions, and an unknown method ran as the event-driven one.
+    """
+    from rattlebox.model.methods import ImpactMethod
+    from rattlebox.model.packing import Bed, Packing
+
+    with pytest.raises(TypeError, match=r"Stack must define place, as each Packing does"):
+
+        class Stack(Packing):
+            kind: str = "stack"
+
+    with pytest.raises(TypeError, match=r"Vibrated must define is_dense, as each Packing does"):
+
+        class Vibrated(Bed):
+            kind: str = "vibrated"
+
+    with pytest.raises(TypeError, match=r"Implicit must define has_stepper, settings, as each Method does"):
+
+        class Implicit(ImpactMethod):
+            kind: str = "implicit"
+
+
+STACK = """
+import numpy as np, rattlebox as rb
+from typing import Literal
+from rattlebox.model.packing import Bed, Packing
+class Stack(Packing):
+    kind: Literal["stack"] = "stack"
+    def place(self, cavity, radii, *, settles=True):
+        heights = 2 * np.cumsum(radii) - radii - cavity.lengths[2] / 2
+        return np.stack([0 * radii, 0 * radii, heights + 1e-4], axis=1)
+class Vibrated(Bed):
+    kind: Literal["vibrated"] = "vibrated"
+    @property
+    def is_dense(self): return True
+"""
+
+
+def test_packings_of_another_package_start_where_they_say(tmp_path: Path) -> None:
+    """A run, a drawing and the measures of the bed start from the positions of a new packing, given or computed.
+
+    Kinds of packings were asked for by name in seven files, so that a new one had no positions.
+    """
+    (tmp_path / "case.toml").write_text(
+        CASE.replace('"prism", side = "50 mm", length = "35 mm"', '"box", size = ["40 mm", "40 mm", "60 mm"]')
+        .replace("count = 30", "count = 8")
+        .replace("softening = 100", 'softening = 100\nfriction = 0.3\npacking = { kind = "stack" }')
+    )
+    result = program(
+        tmp_path,
+        STACK
+        + """
+from rattlebox.prepare.particles import prepare
+stacked = rb.Case.from_file("case.toml")
+for case in (stacked, stacked.replaced({"damper.packing": {"kind": "vibrated", "seed": 3}})):
+    run = rb.simulate(case, progress=False)
+    damper = case.particle_dampers[0]
+    (start,) = prepare(case).positions
+    bed = rb.measure_bed(damper)
+    assert run.status == "finished" and np.isfinite(start).all() and bed.count == 8, (run.status, bed)
+    rb.plot_case(case)
+    if case is stacked: assert np.array_equal(start, damper.packing.place(damper.cavity, damper.contents.radius))
+    else: assert bed.height < 0.02, bed
+""",
+    )
+    assert result.returncode == 0, result.stderr
+
+
 def test_a_kind_has_one_class() -> None:
     """A second class of a kind is refused when it is defined."""
     from rattlebox.model.restitutions import Coefficients, Restitution

@@ -256,6 +256,11 @@ class ImpactDamper(Part):
     """Fields whose numbers are fractions of the gap."""
 
     @property
+    def has_adjusted_dashpots(self) -> bool:
+        """True: the effective mass of the structure is that of the walls."""
+        return True
+
+    @property
     def has_random_start(self) -> bool:
         """Whether repeated runs can start differently: a row of balls can start anywhere."""
         return True

@@ -117,6 +117,11 @@ class Harmonic(Signal):
         """Period [s]."""
         return 1 / self.frequency, "period of a harmonic"
 
+    @property
+    def is_resolved(self) -> bool:
+        """True: by default a period has 20 steps."""
+        return True
+
     def mean_harmonic(self, duration: float) -> tuple[float, float]:
         """Return frequency [Hz] and amplitude."""
         return self.frequency, abs(self.amplitude)

@@ -3,19 +3,50 @@
 from __future__ import annotations
 
 import operator
+from abc import abstractmethod
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from .base import Part
+from .contacts import Contact, FixedDamping
 from .elementwise import Vector
 from .errors import Hint, at
-from .restitutions import AnyRestitution
+from .kinds import AnyKind
+from .pairs import Pair
+from .restitutions import AnyRestitution, Restitution
 from .units import Number, PositiveFrequency, PositiveTime, Whole, numbers, parse
 
 
-class EventDriven(Part):
+class Method(Part):
+    """Base class of numerical methods."""
+
+    field_names: ClassVar[tuple[str, ...]] = ("method",)
+    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kind: str
+
+    @property
+    @abstractmethod
+    def has_stepper(self) -> bool:
+        """Whether the method can advance a case step by step in the time loop of another program."""
+
+    def hard_restitution(self, contact: Contact, pair: Pair) -> Restitution | FixedDamping | None:
+        """Return the restitution of impacts that take no time; None if contacts have a duration."""
+        return None
+
+
+class ImpactMethod(Method):
+    """Base class of methods of impact dampers."""
+
+    kind: str
+
+    @abstractmethod
+    def settings(self) -> tuple[str, dict[str, Any]]:
+        """Return the name of the method in the core and its settings, by name."""
+
+
+class EventDriven(ImpactMethod):
     r"""Exact flights and contacts integrated with error control: the default method of impact dampers.
 
     Parameters
@@ -47,14 +78,23 @@ class EventDriven(Part):
     nodes).
     """
 
-    field_names: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["event_driven"] = "event_driven"
     tolerance: Annotated[Number, Field(ge=1e-14, le=1e-3)] = 1e-12
     max_events: Annotated[Whole, Field(ge=1)] = 10_000_000
     collocation: bool = True
 
+    @property
+    def has_stepper(self) -> bool:
+        """True."""
+        return True
 
-class TwoStep(Part):
+    def settings(self) -> tuple[str, dict[str, Any]]:
+        """Return the tolerance, the limit of events and the choice of collocation."""
+        values = {"tolerance": self.tolerance, "max_events": self.max_events, "collocation": self.collocation}
+        return "event_driven", values
+
+
+class TwoStep(ImpactMethod):
     r"""Fixed steps, long in flight and short in contact, as in discrete-element programs; for comparison.
 
     Parameters
@@ -77,14 +117,23 @@ class TwoStep(Part):
     doi:10.1016/0771-050X(80)90013-3.
     """
 
-    field_names: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["two_step"] = "two_step"
     dt_flight: PositiveTime = 5e-6
     dt_contact: PositiveTime = 3e-8
     inner: Literal["rk4", "dopri5"] = "rk4"
 
+    @property
+    def has_stepper(self) -> bool:
+        """False: its steps are not those of the other program."""
+        return False
 
-class Newton(Part):
+    def settings(self) -> tuple[str, dict[str, Any]]:
+        """Return both steps and the choice of the inner solution."""
+        steps = {"dt_flight": self.dt_flight, "dt_contact": self.dt_contact}
+        return "two_step", {**steps, "adaptive_inner": self.inner == "dopri5"}
+
+
+class Newton(ImpactMethod):
     r"""Instantaneous (hard) impacts, for comparison with theory.
 
     Parameters
@@ -120,18 +169,30 @@ class Newton(Part):
     True
     """
 
-    field_names: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["newton"] = "newton"
     restitution: AnyRestitution | None = None
     stick: Annotated[Number, Field(ge=0, le=0.1)] = 1e-6
     max_events: Annotated[Whole, Field(ge=1)] = 10_000_000
+
+    @property
+    def has_stepper(self) -> bool:
+        """True."""
+        return True
+
+    def hard_restitution(self, contact: Contact, pair: Pair) -> Restitution | FixedDamping:
+        """Return the restitution of the method; by default that of the contact."""
+        return self.restitution or contact.equivalent_restitution(pair)
+
+    def settings(self) -> tuple[str, dict[str, Any]]:
+        """Return the threshold of sticking and the limit of events."""
+        return "newton", {"stick": self.stick, "max_events": self.max_events}
 
 
 def _step(value: Any) -> Any:
     return value if value == "auto" else parse(value, ("s",))[0]
 
 
-class Dem(Part):
+class Dem(Method):
     r"""Discrete-element method with fixed steps: the method of particle dampers.
 
     Parameters
@@ -166,7 +227,6 @@ class Dem(Part):
     (velocity Verlet).
     """
 
-    field_names: ClassVar[tuple[str, ...]] = ("method",)
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("checkpoint", "checkpoint_every"),)
     kind: Literal["dem"] = "dem"
     dt: Annotated[
@@ -192,8 +252,13 @@ class Dem(Part):
             raise Hint("checkpoint and checkpoint_every exclude each other", "one of them", ["checkpoint_every"])
         return self
 
+    @property
+    def has_stepper(self) -> bool:
+        """True."""
+        return True
 
-AnyMethod = Annotated[EventDriven | TwoStep | Newton | Dem, Field(discriminator="kind")]
+
+AnyMethod = Annotated[Method, AnyKind()]
 
 
 DEFAULT_SNAPSHOTS = 101

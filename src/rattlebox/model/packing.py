@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
@@ -45,10 +46,80 @@ class Packing(Part):
     kinds: ClassVar[dict[str, type[Any]]] = {}
     kind: str
 
+    @abstractmethod
+    def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
+        """Return positions for spheres.
+
+        Parameters
+        ----------
+        cavity
+            Cavity around the spheres.
+        radii
+            Radii of the spheres, (n,) [m].
+        settles
+            Whether there is gravity, so that the error may suggest a settled packing.
+
+        Returns
+        -------
+        (n, 3) float
+            Positions relative to the centre of the cavity [m]; NaN if `is_computed`.
+
+        Raises
+        ------
+        Hint
+            If the spheres do not fit.
+        """
+
+    @property
+    def is_computed(self) -> bool:
+        """Whether the positions are those of a `Bed`, which is computed before the run."""
+        return False
+
+    @property
+    def is_dense(self) -> bool:
+        """Whether particles are packed as densely as random ones can be: a bed as large as the cavity fills all of it."""
+        return False
+
     @property
     def is_random(self) -> bool:
         """Whether another seed gives other initial positions."""
         return False
+
+    @property
+    def stated_count(self) -> int | None:
+        """Number of particles, if the packing states their positions."""
+        return None
+
+    @property
+    def stated_radii(self) -> Vector | None:
+        """Radii of the particles, (n,) [m], if the packing states them."""
+        return None
+
+    def notes(self) -> Iterator[str]:
+        """Yield what a user should know about assumptions, such as the unit of a file."""
+        yield from ()
+
+    @property
+    def where(self) -> str:
+        """Field that messages about positions name; empty if the packing itself is meant."""
+        return ""
+
+    def motion(self, count: int) -> tuple[Vector, Vector]:
+        """Return velocities [m/s] and angular velocities [rad/s] to add to that of the damper, (n, 3) each; default 0."""
+        return np.zeros((count, 3)), np.zeros((count, 3))
+
+    def check(self, cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> None:
+        """Raise if the packing does not suit particles whose volume is less than that of the cavity."""
+
+    def too_many(self, cavity: AnyCavity, crowd: Crowd) -> Hint:
+        """Return the error for particles whose volume is at least that of the cavity."""
+        times = crowd.count * crowd.volume / cavity.volume
+        return Hint(
+            f"{crowd.count} particles do not fit: their volume is {times:.3g} times that of the cavity; "
+            f"{holds_at_random(cavity, crowd)}",
+            fewer_at_random(cavity, crowd),
+            ["particles"],
+        )
 
     def repeated(self, index: int) -> Self:
         """Return the packing of one of several identical dampers: the same for index 0, others with their own seeds."""
@@ -110,27 +181,7 @@ class Lattice(Packing):
         return self.noise > 0
 
     def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
-        """Return positions for spheres.
-
-        Parameters
-        ----------
-        cavity
-            Cavity around the spheres.
-        radii
-            Radii of the spheres, (n,) [m].
-        settles
-            Whether there is gravity, so that the error may suggest a settled packing.
-
-        Returns
-        -------
-        (n, 3) float
-            Positions relative to the centre of the cavity [m].
-
-        Raises
-        ------
-        Hint
-            If the lattice has too few sites.
-        """
+        """Return the positions of sites, displaced at random."""
         generator = np.random.default_rng(self.seed)
         sites, cell = _sites(cavity, radii, settles)
         chosen = generator.permutation(len(sites))[: radii.size]
@@ -139,18 +190,46 @@ class Lattice(Packing):
         reach = self.noise * (cell / 2 - radii) * generator.random(radii.size) ** (1 / 3)
         return np.asarray(sites[chosen] + reach[:, None] * direction)
 
+    def too_many(self, cavity: AnyCavity, crowd: Crowd) -> Hint:
+        """Return the error with the number of sites."""
+        return lattice_is_full(cavity, crowd, settles=False)
+
 
 class Bed(Packing):
-    """Base class of packings that are computed before the run."""
+    """Base class of packings that are computed before the run: inserted at random, then settled if there is gravity."""
 
     kind: str
     seed: Annotated[Whole, Field(ge=0)] = 0
     at_rest: Annotated[Number, Field(gt=0, le=0.1)] = 1e-3
 
     @property
+    @abstractmethod
+    def is_dense(self) -> bool:
+        """Whether particles are inserted as densely as they can be."""
+
+    @property
+    def is_computed(self) -> bool:
+        """True."""
+        return True
+
+    @property
     def is_random(self) -> bool:
         """True."""
         return True
+
+    def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
+        """Return NaN: `rattlebox.prepare.settle` computes the positions."""
+        return np.full((radii.size, 3), np.nan)
+
+    def check(self, cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> None:
+        """Raise if the particles cannot be inserted at random."""
+        filled = crowd.count * crowd.volume / cavity.volume
+        if filled > RANDOM_CLOSE_PACKING and crowd.count > 1:
+            raise Hint(
+                f"{crowd.count} particles would fill {100 * filled:.3g} % of the cavity; {holds_at_random(cavity, crowd)}",
+                fewer_at_random(cavity, crowd),
+                ["particles"],
+            )
 
 
 class Settled(Bed):
@@ -193,6 +272,24 @@ class Settled(Bed):
 
     kind: Literal["settled"] = "settled"
 
+    @property
+    def is_dense(self) -> bool:
+        """False: particles are poured, and the bed has a free surface."""
+        return False
+
+    def check(self, cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> None:
+        """Raise if nothing pulls the particles down, or if they cannot be inserted at random."""
+        if not settles:
+            held = crowd.on_lattice(cavity)
+            some = "" if held >= crowd.count else f" with at most {held} of them"
+            dense = 'packing = { kind = "compacted" }, ' if crowd.count <= crowd.at_random(cavity) else ""
+            raise Hint(
+                "particles do not settle without gravity",
+                f'{dense}packing = {{ kind = "lattice" }}{some}, or gravity = [0, 0, -9.81]',
+                ["packing"],
+            )
+        super().check(cavity, crowd, settles=settles)
+
     def bulk_density(self, friction: float) -> float:
         """Return the volume of particles over that of their bed, far from walls, with a coefficient of friction.
 
@@ -231,6 +328,11 @@ class Compacted(Bed):
     """
 
     kind: Literal["compacted"] = "compacted"
+
+    @property
+    def is_dense(self) -> bool:
+        """True."""
+        return True
 
 
 def _table(columns: int, unit: str, what: str) -> Any:
@@ -303,8 +405,39 @@ class Positions(FilePart, Packing):
 
     @property
     def where(self) -> str:
-        """Field with the positions, for messages."""
+        """Field with the positions."""
         return "file" if self.file else "positions"
+
+    @property
+    def stated_count(self) -> int:
+        """Number of positions."""
+        return len(self.positions)
+
+    @property
+    def stated_radii(self) -> Vector | None:
+        """The radii, if they are given."""
+        return None if self.radii is None else np.array(self.radii)
+
+    def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
+        """Return the positions; raise if spheres overlap by more than contacts do, or extend beyond the cavity."""
+        positions = np.array(self.positions)
+        with at("packing", self.where):
+            check_packing(cavity, positions, radii, PRESSED)
+        return positions
+
+    def notes(self) -> Iterator[str]:
+        """Yield the unit that is assumed for a file."""
+        if self.file is not None:
+            farthest = float(np.abs(self.positions).max())
+            yield f"{Path(self.file).name} states no unit; m is assumed, with coordinates up to {farthest:.4g} m"
+
+    def motion(self, count: int) -> tuple[Vector, Vector]:
+        """Return the velocities and spins; 0 where they are not given."""
+        velocity, spin = super().motion(count)
+        return (
+            velocity if self.velocities is None else np.array(self.velocities),
+            spin if self.spins is None else np.array(self.spins),
+        )
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Positions:
@@ -553,6 +686,7 @@ def lattice_is_full(cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> Hint:
         f"{crowd.count} particles do not fit: a lattice of spheres of {2e3 * crowd.largest:.4g} mm holds {most} "
         "in this cavity",
         f"{settled}{most} of them, smaller ones, or a larger cavity",
+        ["particles"],
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import ResourceError, named
-from rattlebox._util.narrow import instance
+from rattlebox._util.narrow import present
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount
 
@@ -28,20 +28,11 @@ from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, 
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
 from .packing import (
-    PRESSED,
-    RANDOM_CLOSE_PACKING,
     AnyPacking,
-    Bed,
     Crowd,
     Lattice,
-    Positions,
-    Settled,
     bed_density,
-    check_packing,
     check_size,
-    fewer_at_random,
-    holds_at_random,
-    lattice_is_full,
 )
 from .pairs import Body, Pair
 from .particles import MAX_PARTICLES, Particles, as_species
@@ -309,7 +300,7 @@ class ParticleDamper(Part):
                     "another name",
                     [*place, "name"],
                 )
-            if not species.has_amount and (not isinstance(self.packing, Positions) or len(labels) > 1):
+            if not species.has_amount and (self.packing.stated_count is None or len(labels) > 1):
                 raise Hint("count, mass, fill_ratio or bed_fill is needed", "count = 200", place)
             if species.bed_fill is not None and len(labels) > 1:
                 raise Hint(
@@ -317,7 +308,7 @@ class ParticleDamper(Part):
                     "fill_ratio = 0.3",
                     [*place, "bed_fill"],
                 )
-            radii = isinstance(self.packing, Positions) and self.packing.radii is not None
+            radii = self.packing.stated_radii is not None
             if species.has_size == radii:
                 raise Hint(
                     "the size is given here and by the radii of the packing; only one of them is allowed"
@@ -384,7 +375,7 @@ class ParticleDamper(Part):
 
     def _check_room(self) -> None:
         """Raise, before arrays are allocated, if the particles exceed the volume of the cavity or the memory."""
-        if isinstance(self.packing, Positions):
+        if self.packing.stated_count is not None:
             return
         crowds = [species.crowd(self.cavity.volume, self._density(species)) for species in self.particles]
         count = sum(crowd.count for crowd in crowds)
@@ -398,7 +389,7 @@ class ParticleDamper(Part):
             and 2 * largest < self.cavity.lengths.min()
             and largest**3 * 4 / 3 * math.pi < self.cavity.volume
         ):
-            raise self._too_many(whole)
+            raise self.packing.too_many(self.cavity, whole)
         count *= self.number * max(1, len(self.points))
         if count * _BYTES > memory():
             raise ResourceError(
@@ -407,18 +398,6 @@ class ParticleDamper(Part):
                 ["particles"],
             )
 
-    def _too_many(self, crowd: Crowd) -> Hint:
-        if isinstance(self.packing, Lattice):
-            hint = lattice_is_full(self.cavity, crowd, settles=False)
-            return Hint(hint.complaint, hint.suggestion, ["particles"])
-        times = crowd.count * crowd.volume / self.cavity.volume
-        return Hint(
-            f"{crowd.count} particles do not fit: their volume is {times:.3g} times that of the cavity; "
-            f"{holds_at_random(self.cavity, crowd)}",
-            fewer_at_random(self.cavity, crowd),
-            ["particles"],
-        )
-
     def _check_filling(self) -> None:
         contents = self.contents
         largest = int(contents.radius.argmax())
@@ -426,27 +405,15 @@ class ParticleDamper(Part):
             check_size(self.cavity, float(contents.radius[largest]))
         filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
         crowd = Crowd.of(contents.radius)
-        if filled >= 1 and not isinstance(self.packing, Lattice):  # A lattice has a separate message.
-            raise self._too_many(crowd)
-        if isinstance(self.packing, Bed):
-            if isinstance(self.packing, Settled) and not any(self.gravity):
-                held = crowd.on_lattice(self.cavity)
-                some = "" if held >= crowd.count else f" with at most {held} of them"
-                dense = 'packing = { kind = "compacted" }, ' if crowd.count <= crowd.at_random(self.cavity) else ""
-                raise Hint(
-                    "particles do not settle without gravity",
-                    f'{dense}packing = {{ kind = "lattice" }}{some}, or gravity = [0, 0, -9.81]',
-                    ["packing"],
-                )
-            if filled > RANDOM_CLOSE_PACKING and contents.radius.size > 1:
-                raise Hint(
-                    f"{contents.radius.size} particles would fill {100 * filled:.3g} % of the cavity; "
-                    f"{holds_at_random(self.cavity, crowd)}",
-                    fewer_at_random(self.cavity, crowd),
-                    ["particles"],
-                )
-        else:
-            _ = self.start
+        if filled >= 1:
+            raise self.packing.too_many(self.cavity, crowd)
+        self.packing.check(self.cavity, crowd, settles=any(self.gravity))
+        _ = self.start
+
+    @property
+    def has_adjusted_dashpots(self) -> bool:
+        """False: a particle is much lighter than the structure."""
+        return False
 
     @property
     def has_random_start(self) -> bool:
@@ -484,14 +451,12 @@ class ParticleDamper(Part):
         """The particles, species after species."""
         numbers = [self._number(index) for index in range(len(self.particles))]
         species = np.repeat(np.arange(len(numbers)), numbers)
-        given = self.packing.radii if isinstance(self.packing, Positions) else None
-        if given is not None:
-            radius = np.array(given)
-        else:
+        radius = self.packing.stated_radii
+        if radius is None:
             sizes = [each.diameters(n) / 2 for each, n in zip(self.particles, numbers, strict=True)]
             radius = np.concatenate(sizes)
-        if isinstance(self.packing, Positions) and radius.size != len(self.packing.positions):
-            rows = len(self.packing.positions)
+        rows = self.packing.stated_count
+        if rows is not None and radius.size != rows:
             raise Hint(
                 f"{several(radius.size, 'particle')}, but {several(rows, 'position')}",
                 f"a row for each particle, or count = {rows}",
@@ -504,7 +469,7 @@ class ParticleDamper(Part):
     def _number(self, index: int) -> int:
         species = self.particles[index]
         if not species.has_amount:
-            return len(instance(self.packing, Positions).positions)
+            return present(self.packing.stated_count)
         with at(*self._place(index)):
             return species.number(self.cavity.volume, self._density(species))
 
@@ -538,21 +503,10 @@ class ParticleDamper(Part):
         Hint
             If particles overlap, extend beyond the cavity, or do not fit.
         """
-        packing, radius = self.packing, self.contents.radius
-        velocity: Vector = np.tile(self.velocity, (radius.size, 1))
-        spin: Vector = np.zeros_like(velocity)
-        if isinstance(packing, Positions):
-            positions = np.array(packing.positions)
-            with at("packing", packing.where):
-                check_packing(self.cavity, positions, radius, PRESSED)
-            velocity += 0.0 if packing.velocities is None else np.array(packing.velocities)
-            spin += 0.0 if packing.spins is None else np.array(packing.spins)
-        elif isinstance(packing, Lattice):
-            with at("particles"):
-                positions = packing.place(self.cavity, radius, settles=any(self.gravity))
-        else:
-            positions = np.full_like(velocity, np.nan)
-        return Start(positions, velocity, spin)
+        radius = self.contents.radius
+        positions = self.packing.place(self.cavity, radius, settles=any(self.gravity))
+        velocity, spin = self.packing.motion(radius.size)
+        return Start(positions, np.array(self.velocity) + velocity, spin)
 
     # ---- contacts
 

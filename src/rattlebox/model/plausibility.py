@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +11,6 @@ from .dampers import ImpactDamper
 from .elementwise import Vector
 from .harmonics import Harmonic, SineSweep
 from .materials import Material
-from .packing import Positions
 from .recorded import Record
 from .shocks import Shock
 from .signals import Sampled, Signal
@@ -71,11 +69,8 @@ def _note_assumptions(case: Case) -> Iterator[str]:
         yield from (f"note: {name}: {note}" for note in signal.notes())
 
     for index, damper in enumerate(case.particle_dampers):
-        packing = damper.packing
-        if isinstance(packing, Positions) and packing.file is not None:
-            farthest = float(np.abs(packing.positions).max())
-            name, file = " ".join(damper.label(index).split()), Path(packing.file).name
-            yield f"note: {name}: {file} states no unit; m is assumed, with coordinates up to {farthest:.4g} m"
+        name = " ".join(damper.label(index).split())
+        yield from (f"note: {name}: {note}" for note in damper.packing.notes())
 
 
 def _check_peaks(case: Case) -> Iterator[str]:

@@ -164,6 +164,11 @@ class Signal(Part):
         """
 
     @property
+    def is_resolved(self) -> bool:
+        """Whether steps of the output resolve the signal; others, such as pulses, are averaged over each step."""
+        return False
+
+    @property
     def shortest_time(self) -> tuple[float, str] | None:
         """Time that a step must resolve [s], with its name; None if the signal is smooth between its samples."""
         return None

@@ -16,9 +16,8 @@ from rattlebox._util.quantities import amount
 
 from ..model.cavities import Cavity
 from ..model.dampers import ImpactDamper
-from ..model.packing import Bed
 from ..model.particle_damper import ParticleDamper
-from ..prepare.settle import settle
+from ..prepare.settle import start_positions
 from .spheres import draw_spheres
 from .style import FAINT, INK, SERIES_COLOURS, pen, series_colour
 from .technical import SOLID, arrow, dimension, text
@@ -152,17 +151,12 @@ def _contents(damper: ParticleDamper) -> list[str]:
     return [f"{balls} of {size}", f"{mass}, {amount(share, '%', 3)} of the volume"]
 
 
-def positions_at_start(damper: ParticleDamper) -> Array:
-    """Return the initial positions of the particles, (n, 3) [m]; those of a settled bed are computed."""
-    return settle(damper) if isinstance(damper.packing, Bed) else damper.start.position
-
-
 def _draw_particles(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
     species = damper.contents.species
     colours = np.array([_rgb(series_colour(k)) for k in species])
     extent = (-half_x, half_x, -half_z, half_z)
     width = max(16, round(_PIXELS * min(1.0, half_x / half_z)))
-    places = positions_at_start(damper) @ _FRONT.T
+    places = start_positions(damper) @ _FRONT.T
     picture = draw_spheres(places, damper.contents.radius, colours, extent, width, "plain")
     axes.imshow(picture, extent=extent, zorder=2, interpolation="antialiased")
 

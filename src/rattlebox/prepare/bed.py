@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox.model.errors import at
-from rattlebox.model.packing import Bed, Compacted, Crowd
-from rattlebox.prepare.settle import VOLUME_POINTS, settle
+from rattlebox.model.packing import Crowd
+from rattlebox.prepare.settle import VOLUME_POINTS, start_positions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -85,13 +85,14 @@ def bed_note(damper: ParticleDamper, name: str, fill: float) -> Iterator[str]:
     """Yield a note if a bed does not fill its cavity as `bed_fill` states, and a warning if a full one has sunk."""
     asked = damper.particles[0].bed_fill
     friction = damper.largest_friction
-    if asked == 1 and isinstance(damper.packing, Compacted) and damper.up is not None and friction < MIN_FRICTION:
+    is_computed, is_dense = damper.packing.is_computed, damper.packing.is_dense
+    if asked == 1 and is_dense and damper.up is not None and friction < MIN_FRICTION:
         yield (
             f"warning: the bed of {name} fills {100 * fill:.3g} % of the cavity, not 100 %: with a coefficient of friction "
             f"of {friction:g}, below {MIN_FRICTION:g}, it sinks under gravity and leaves a gap at the top, in which "
             "particles move; try: count with more of them, or the friction of the real particles"
         )
-    elif asked is not None and isinstance(damper.packing, Bed) and abs(fill - asked) > TOLERANCE:
+    elif asked is not None and is_computed and abs(fill - asked) > TOLERANCE:
         count = damper.contents.radius.size
         more = "more" if fill < asked else "fewer"
         yield (
@@ -107,7 +108,7 @@ def loose_note(damper: ParticleDamper, name: str, fill: float, acceleration: flo
     """
     is_full = damper.particles[0].bed_fill == 1 or fill > FULL
     weight = float(np.linalg.norm(damper.gravity))
-    if is_full and isinstance(damper.packing, Bed) and acceleration > weight:
+    if is_full and damper.packing.is_computed and acceleration > weight:
         level = f"at {acceleration / weight:.2g} times gravity" if weight else "without gravity"
         yield (
             f"warning: the full bed of {name} is loose: randomly packed particles have room to move, and {level} they do so "
@@ -158,7 +159,7 @@ def measure_bed(damper: ParticleDamper) -> BedMeasures:
     (394, 0.49, True)
     """
     with at("packing"):
-        positions = settle(damper) if isinstance(damper.packing, Bed) else damper.start.position
+        positions = start_positions(damper)
     cavity, contents = damper.cavity, damper.contents
     fill_ratio = 4 / 3 * math.pi * float(np.sum(contents.radius**3)) / cavity.volume
     fill, height = (math.nan, math.nan) if damper.up is None else bed_level(damper, positions)

@@ -16,7 +16,7 @@ from rattlebox.model.case import Case
 from rattlebox.model.contact_pairs import contact_pairs
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
-from rattlebox.model.methods import Newton, TwoStep
+from rattlebox.model.methods import Method
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
 from rattlebox.model.structures import SDOF, Fixed, Shaker
@@ -63,7 +63,11 @@ class PackedComponent:
 
 
 def damper_case(
-    damper: ImpactDamper | ParticleDamper, method: Any, motion: Signal | None, structure_mass: Any, duration: Any
+    damper: ImpactDamper | ParticleDamper,
+    method: Method | None,
+    motion: Signal | None,
+    structure_mass: Any,
+    duration: Any,
 ) -> Case:
     """Return the case of a damper alone.
 
@@ -77,7 +81,7 @@ def damper_case(
     """
     structure: SDOF | Shaker | Fixed = Fixed() if motion is None else Shaker(motion=motion)
     if structure_mass is not None:
-        if isinstance(damper, ParticleDamper):
+        if not damper.has_adjusted_dashpots:
             raise Hint(
                 "structure_mass adjusts the contacts of impact dampers only: a particle is much lighter than the structure",
                 "no structure_mass",
@@ -96,8 +100,8 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     velocity
         Initial velocity of the attachment of a damper alone [m/s]: a number, or three components for particles.
     """
-    if isinstance(case.method, TwoStep):
-        raise Hint("the two-step method has no stepper", "method = EventDriven(), or Newton()")
+    if not case.method.has_stepper:
+        raise Hint(f"the method {case.method.kind} has no stepper", "method = EventDriven(), or Newton()")
     if alone and len(_dampers(case)) != 1:
         raise Hint(f"a damper alone is needed, but the case has {len(_dampers(case))}", "a stepper for each of them")
     return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)
@@ -128,7 +132,7 @@ def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
         points,
         _names(case),
         1,
-        _exchange_notes(case) if alone else (),
+        _exchange_notes(case, _steps_of_impacts(case), LIGHT) if alone else (),
     )
 
 
@@ -155,6 +159,8 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
     line = case.particle_dampers[0].direction  # of points that move along a line
     rows = [list(map(float, row)) for name in points for row in case.modes.space_shape(name, line).T]
     data = _packed(_idle(problem), alone, tuple(start), rows)
+    # Particles do not act on the structure at once, so that only a mass that may diverge needs a note.
+    notes = _exchange_notes(case, "steps much shorter than a contact", HEAVY) if alone else ()
     return PackedComponent(
         data,
         alone,
@@ -162,7 +168,7 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
         points,
         _names(case),
         3,
-        (*prepared.notes, *(_exchange_notes(case) if alone else ())),
+        (*prepared.notes, *notes),
         prepared,
     )
 
@@ -175,30 +181,38 @@ def _packed(problem: Any, *arguments: Any) -> bytes:
         raise Hint(str(error), "a law of Rattlebox, such as rb.PowerLaw or rb.TabulatedNormal") from None
 
 
-def _exchange_notes(case: Case) -> tuple[str, ...]:
-    """Return a note on the steps and exchanges that a damper alone needs, if the mass of its structure is known."""
+def _exchange_notes(case: Case, steps: str, share: float) -> tuple[str, ...]:
+    """Return a note on the exchanges that a damper alone needs, if the mass of its structure is known.
+
+    Parameters
+    ----------
+    steps
+        Words for the steps that the contacts of the damper need.
+    share
+        Smallest mass in the damper over the effective mass of the structure that is worth a note.
+    """
     (damper,) = case.dampers
-    is_ball = isinstance(damper, ImpactDamper)
-    masses = damper.masses if isinstance(damper, ImpactDamper) else damper.contents.mass
-    ratio = float(np.sum(masses)) * case.modes.mobility(damper.point)
-    if not isinstance(damper, ImpactDamper):
-        steps = "steps much shorter than a contact"
-    elif isinstance(case.method, Newton):
-        steps = "contacts with a duration, method = EventDriven(), and steps much shorter than it"
-    else:
-        law = _core.normal_law(*damper.contact.coefficients(contact_pairs(case, 0)[0]))
-        steps = f"steps much shorter than a contact, which lasts {quantity(law.contact_time(1.0), 's', 2)} at 1 m/s"
+    ratio = damper.mass * case.modes.mobility(damper.point)
     if ratio > HEAVY:
         return (
             f"warning: {ratio:.2g} times the effective mass of the structure is in {damper.label(0)}, and one exchange in "
             f"each step may diverge; try: {steps}, or repeated steps with a relaxation of {1 / (1 + ratio):.2g}",
         )
-    if ratio > LIGHT and is_ball:
+    if ratio > share:
         return (
             f"{100 * ratio:.2g} % of the effective mass of the structure is in {damper.label(0)}: with one exchange in each "
             f"step, impulses are too large by up to this share; try: {steps}",
         )
     return ()
+
+
+def _steps_of_impacts(case: Case) -> str:
+    """Return words for the steps that the contacts of a ball need."""
+    contact, pair = case.impact_dampers[0].contact, contact_pairs(case, 0)[0]
+    if case.method.hard_restitution(contact, pair) is not None:
+        return "contacts with a duration, method = EventDriven(), and steps much shorter than it"
+    law = _core.normal_law(*contact.coefficients(pair))
+    return f"steps much shorter than a contact, which lasts {quantity(law.contact_time(1.0), 's', 2)} at 1 m/s"
 
 
 def _idle(problem: Any) -> Any:

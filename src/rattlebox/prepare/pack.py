@@ -22,7 +22,7 @@ from rattlebox.model.contact_pairs import contact_pairs
 from rattlebox.model.contacts import FixedDamping
 from rattlebox.model.elementwise import stacked
 from rattlebox.model.errors import Hint
-from rattlebox.model.methods import EventDriven, Newton, TwoStep
+from rattlebox.model.methods import ImpactMethod
 from rattlebox.model.pairs import Pair
 from rattlebox.model.paths import Place, part_at, place_of, replaced
 from rattlebox.model.restitutions import Constant
@@ -317,14 +317,13 @@ def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> _core.Con
     damper = case.impact_dampers[damper_index]
     between_balls = 0 < place < len(damper.balls)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
-    if isinstance(case.method, Newton):
-        rebound: Restitution | None = case.method.restitution or _hard(law.equivalent_restitution(pair))
-        normal: _core.NormalForce = _core.LinearForce(
-            stiffness=1.0, mass=pair.mass, damping=0.0, zero_overlap=0.0, fixed_contact_time=0.0
-        )
-    else:
+    hard = case.method.hard_restitution(law, pair)
+    if hard is None:
         rebound = law.impact_restitution
         normal = _core.normal_law(*law.coefficients(pair))
+    else:  # the core does not read the force of impacts that take no time
+        rebound = _hard(hard)
+        normal = _core.LinearForce(stiffness=1.0, mass=pair.mass, damping=0.0, zero_overlap=0.0, fixed_contact_time=0.0)
     return _core.Contact(mass=pair.mass, normal=normal, restitution=pack_restitution(rebound, pair))
 
 
@@ -337,24 +336,5 @@ def _hard(equivalent: Restitution | FixedDamping) -> Restitution:
 
 
 def _settings(case: Case) -> _core.Settings:
-    method = case.method
-    if isinstance(method, TwoStep):
-        return _core.Settings(
-            method=_core.Method.two_step,
-            duration=case.duration,
-            dt_flight=method.dt_flight,
-            dt_contact=method.dt_contact,
-            adaptive_inner=method.inner == "dopri5",
-        )
-    if isinstance(method, Newton):
-        return _core.Settings(
-            method=_core.Method.newton, duration=case.duration, stick=method.stick, max_events=method.max_events
-        )
-    method = instance(method, EventDriven)
-    return _core.Settings(
-        method=_core.Method.event_driven,
-        duration=case.duration,
-        tolerance=method.tolerance,
-        max_events=method.max_events,
-        collocation=method.collocation,
-    )
+    name, values = instance(case.method, ImpactMethod).settings()
+    return _core.Settings(method=_core.Method[name], duration=case.duration, **values)

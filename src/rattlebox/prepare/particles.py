@@ -13,13 +13,12 @@ from rattlebox._util.exceptions import RattleboxError
 from rattlebox.core import _core
 from rattlebox.model.errors import at
 from rattlebox.model.methods import EventDriven, Output
-from rattlebox.model.packing import Bed
 from rattlebox.model.particle_case import direction_of_base, inertia_along
 from rattlebox.prepare.bed import bed_level, bed_note, loose_note
 from rattlebox.prepare.laws import pack_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
 from rattlebox.prepare.pressed import pressed_notes
-from rattlebox.prepare.settle import pack_walls, settle
+from rattlebox.prepare.settle import pack_walls, settle, start_positions
 from rattlebox.prepare.softening import ENDURING, cavity_motion, choose_softening
 from rattlebox.prepare.time_step import (
     Step,
@@ -123,7 +122,7 @@ def pack_particles(prepared: Prepared) -> _core.DemProblem:
 def settle_all(case: Case, proceed: Callable[[], bool]) -> bool:
     """Compute the settled packings of a case in advance; `prepare` reads them from the cache of `settle`."""
     return all(
-        not isinstance(damper.packing, Bed) or settle(damper, proceed) is not None for damper in case.particle_dampers
+        not damper.packing.is_computed or settle(damper, proceed) is not None for damper in case.particle_dampers
     )
 
 
@@ -167,11 +166,11 @@ def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | Non
     """Return the initial positions of the particles of each damper; settled ones are taken from `known` if it is given."""
     positions = []
     for index, (damper, shape) in enumerate(zip(case.particle_dampers, shapes, strict=True)):
-        displacement = case.modes.q0 @ shape
-        position = damper.start.position + displacement
-        if isinstance(damper.packing, Bed):
+        if known is not None and damper.packing.is_computed:
+            position = known[index]
+        else:
             with at(*(("dampers", index) if len(shapes) > 1 else ("damper",)), "packing"):
-                position = settle(damper) + displacement if known is None else known[index]
+                position = start_positions(damper) + case.modes.q0 @ shape
         positions.append(_array(position))
     return positions
 
@@ -186,7 +185,7 @@ def _fills(
     fills = {"fill_ratio": solid / volume}
     notes: list[str] = []
     beds = [math.nan for _ in dampers]
-    if all(isinstance(damper.packing, Bed) and damper.up is not None for damper in dampers):
+    if all(damper.packing.is_computed and damper.up is not None for damper in dampers):
         beds = [bed_level(damper, centres)[0] for damper, centres in zip(dampers, positions, strict=True)]
         fills["bed_fill"] = sum(bed * damper.cavity.volume for bed, damper in zip(beds, dampers, strict=True)) / volume
         for index, (damper, bed) in enumerate(zip(dampers, beds, strict=True)):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import TOUCHING, Positions, overlapping
+from rattlebox.model.packing import TOUCHING, overlapping
 from rattlebox.prepare.time_step import pack_normal
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
     speed
         Largest expected approach speed [m/s].
     """
-    if not isinstance(damper.packing, Positions):
+    if damper.packing.stated_count is None:
         return
     contents, centres = damper.contents, damper.start.position
     radii, masses, species = contents.radius, contents.mass, contents.species
@@ -83,8 +83,6 @@ def _law(damper: ParticleDamper, entry: Entry, radius: float, mass: float) -> No
 
 def _too_deep(damper: ParticleDamper, depth: float, usual: float, speed: float, one: int, other: int) -> Hint:
     """Return the error for an overlap that no impact makes."""
-    packing = damper.packing
-    where = packing.where if isinstance(packing, Positions) else "positions"
     bodies = (
         f"particles {min(one, other)} and {max(one, other)} overlap" if other >= 0 else f"particle {one} is in a wall"
     )
@@ -94,5 +92,5 @@ def _too_deep(damper: ParticleDamper, depth: float, usual: float, speed: float, 
         f"{1e3 * usual:.3g} mm{softer}; the contact would throw them apart",
         "positions of spheres that do not overlap; or, for the end of a run, its velocities and the softening of its "
         "contacts",
-        ["packing", where],
+        ["packing", damper.packing.where],
     )

@@ -16,7 +16,6 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.packing import (
     TOUCHING,
     Bed,
-    Compacted,
     Crowd,
     check_packing,
     fewer_at_random,
@@ -53,6 +52,11 @@ ATTEMPTS = 4  # insertions with different random numbers into a cavity that is n
 VOLUME_POINTS = 2**16  # points at which volumes in a cavity are computed
 
 
+def start_positions(damper: ParticleDamper) -> Array:
+    """Return the initial positions of the particles relative to the centre of the cavity, (n, 3) [m]; beds are computed."""
+    return settle(damper) if damper.packing.is_computed else damper.start.position
+
+
 @overload
 def settle(damper: ParticleDamper) -> Array: ...
 @overload
@@ -73,10 +77,7 @@ def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -
         return _beds[key].copy()
     radii = damper.contents.radius
     try:
-        if isinstance(packing, Compacted):
-            places = compact(damper, proceed)
-        else:
-            places = insert(damper.cavity, radii, packing.seed, proceed)
+        places = compact(damper, proceed) if packing.is_dense else insert(damper.cavity, radii, packing.seed, proceed)
         if damper.up is not None:
             bed = _SettlingBed(damper, proceed)
             places = bed.expand(bed.fall(places, packing.at_rest), damper.cavity)
@@ -109,7 +110,7 @@ def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) 
     Below the lid, particles have the density of `rattlebox.model.packing.random_density`. If they cannot be inserted, the
     volume below the lid grows by 3 % until they can. `push_apart` names the method and its source.
     """
-    cavity, radii, seed = damper.cavity, damper.contents.radius, instance(damper.packing, Compacted).seed
+    cavity, radii, seed = damper.cavity, damper.contents.radius, instance(damper.packing, Bed).seed
     fill = 1.0 if damper.up is None else _compacted_fill(cavity, radii, damper.up)
     while fill < 1:
         try:

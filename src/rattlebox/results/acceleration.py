@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.space import unit_vector
 
 from .damper_force import mean_damper_force
@@ -113,13 +112,13 @@ def accelerations_of_steps(arrays: RunArrays, case: Case, shapes: FloatArray) ->
     """
     modes, time = case.modes, arrays.time
     step = np.diff(time)
-    sampled = arrays.load * np.array([isinstance(signal, Harmonic) for signal in case.loads], dtype=float)
+    sampled = arrays.load * np.array([signal.is_resolved for signal in case.loads], dtype=float)
     still = np.zeros_like(arrays.cavity_force)
     at = force_on_modes(case, sampled, arrays.base_acceleration, still, ())
     at = at - internal_force(modes, arrays.modal_displacement, arrays.modal_velocity)
     pulses = np.zeros((step.size, len(case.loads)))
     for index, signal in enumerate(case.loads):
-        if not isinstance(signal, Harmonic):
+        if not signal.is_resolved:
             pulses[:, index] = np.diff(signal.motion(time)[1]) / step  # a velocity is the integral of the signal
     if arrays.engine == "dem":
         cavities = [modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
