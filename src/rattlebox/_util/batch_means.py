@@ -21,10 +21,7 @@ ENOUGH_DECAY = 2 * _LEAST_DECAY
 def shortest_window(decay: ArrayLike) -> float:
     """Return the shortest window in which a linear motion has an interval [s].
 
-    Parameters
-    ----------
-    decay : (m,) array_like
-        Decay rates of the modes [1/s]. Those of zero belong to modes that never come to rest, and are left out.
+    `decay`: decay rates of the modes [1/s]. Those of zero belong to modes that never come to rest, and are left out.
     """
     rates = np.asarray(decay, dtype=float)
     rates = rates[rates > 0]
@@ -118,20 +115,10 @@ def mean_interval(values: ArrayLike) -> Interval:
 def half_widths(series: NDArray[np.float64], least: ArrayLike = 0.0) -> tuple[FloatArray, NDArray[np.intp]]:
     """Return half of the width of the 95 % interval of the mean of each of many series, and its number of batches.
 
-    Parameters
-    ----------
-    series : (K, N) float
-        Series, see `mean_interval`. Those with a number that is not finite have no interval.
-    least
-        Smallest number of values for an interval of each series, where the correlation is known; they may still agree by
-        0.1 % in ten parts.
-
-    Returns
-    -------
-    half : (K,) float
-        Half widths; NaN without an interval.
-    batches : (K,) int
-        Numbers of independent batches; 0 without an interval.
+    `series`: series, see `mean_interval`. Those with a number that is not finite have no interval, (K, N). `least`:
+    smallest number of values for an interval of each series, where the correlation is known; they may still agree by 0.1 %
+    in ten parts. Returns half widths; NaN without an interval, (K,); and numbers of independent batches; 0 without an
+    interval, (K,).
     """
     rows, length = series.shape
     half, batches = np.full(rows, np.nan), np.zeros(rows, np.intp)

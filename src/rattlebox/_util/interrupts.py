@@ -28,10 +28,7 @@ _deadline = _Deadline()
 def deadline(end: float) -> Iterator[None]:
     """Set a time after which `raise_if_pressed` raises in this block and this thread.
 
-    Parameters
-    ----------
-    end
-        Time by `time.monotonic` [s].
+    `end`: time by `time.monotonic` [s].
     """
     before = _deadline.time
     _deadline.time = min(before, end)

@@ -78,10 +78,7 @@ def progress_bar(progress: Progress, what: str, *, delay: float = _DELAY) -> Ite
 
     A bar is drawn in notebooks, and on the standard error if that is a terminal; inside another bar none is drawn.
 
-    Parameters
-    ----------
-    delay
-        Time after which the bar appears [s].
+    `delay`: time after which the bar appears [s].
     """
     report = Report(progress, what, delay)
     try:

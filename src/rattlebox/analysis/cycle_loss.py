@@ -82,10 +82,7 @@ class CycleLoss:
 def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] | None = None) -> CycleLoss:
     """Compute the loss of dampers over the last cycles of a run.
 
-    Parameters
-    ----------
-    frequency
-        Frequency of the motion [Hz].
+    `frequency`: frequency of the motion [Hz].
 
     Notes
     -----

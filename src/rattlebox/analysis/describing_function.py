@@ -86,10 +86,7 @@ class MassTable:
     def curves(self, frequency: FloatArray, *, store: bool = True) -> MassCurves:
         """Return the apparent mass over the amplitude at frequencies.
 
-        Parameters
-        ----------
-        frequency : (F,) float
-            Frequencies within the table [Hz].
+        `frequency`: frequencies within the table [Hz], (F,).
         """
         key = frequency.tobytes()
         curves = self._latest.get(key)
@@ -159,18 +156,9 @@ class MassCurves:
     def evaluate(self, rows: NDArray[np.intp], log_amplitude: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """Return the apparent mass and its derivative with respect to the logarithm of the amplitude.
 
-        Parameters
-        ----------
-        rows : (R,) int
-            Numbers of frequencies.
-        log_amplitude : (R, ...) float
-            Natural logarithms of amplitudes.
-
-        Returns
-        -------
-        tuple of (R, ...) complex
-            Mass [kg] and derivative [kg]. Outside of the table the derivative decays to zero within a few per cent of the
-            amplitude, so that branches of solutions can be followed there; these solutions are not used.
+        `rows`: numbers of frequencies, (R,). `log_amplitude`: natural logarithms of amplitudes, (R, ...). Returns mass [kg]
+        and derivative [kg]. Outside of the table the derivative decays to zero within a few per cent of the amplitude, so
+        that branches of solutions can be followed there; these solutions are not used.
         """
         x = self.nodes
         inner = np.minimum(np.maximum(log_amplitude, x[0]), x[-1])
@@ -227,16 +215,9 @@ def solve(
 ) -> Solutions:
     """Return all steady motions in the first harmonic within the table.
 
-    Parameters
-    ----------
-    frequency : (F,) float
-        Frequencies [Hz]; outside of the table there are no solutions.
-    gain : (F, P, P) complex
-        Accelerations of the cavities per unit force on each of them, without dampers [1/kg].
-    drive : (F, P) complex
-        Accelerations of the cavities at level 1 without dampers.
-    levels : (L,) float
-        Levels of the load or base motion, above zero.
+    `frequency`: frequencies [Hz]; outside of the table there are no solutions, (F,). `gain`: accelerations of the cavities
+    per unit force on each of them, without dampers [1/kg], (F, P, P). `drive`: accelerations of the cavities at level 1
+    without dampers, (F, P). `levels`: levels of the load or base motion, above zero, (L,).
 
     Notes
     -----
@@ -577,20 +558,9 @@ def damping_of_modes(
 ) -> tuple[FloatArray, FloatArray]:
     """Return natural frequency and damping ratio of each mode with dampers, over the amplitude.
 
-    Parameters
-    ----------
-    stiffness : (m,) float
-        Squared natural frequencies of the structure [1/s^2].
-    damping : (m, m) float
-        Modal damping matrix D [1/s].
-    shapes : (P, m) float
-        Mass-normalised mode shapes at the cavities [kg^-1/2].
-
-    Returns
-    -------
-    tuple of (m, K) float
-        Frequency [Hz] and damping ratio, where the cavity with the largest motion has the amplitudes of the table. NaN
-        outside of the table.
+    `stiffness`: squared natural frequencies of the structure [1/s^2], (m,). `damping`: modal damping matrix D [1/s],
+    (m, m). `shapes`: mass-normalised mode shapes at the cavities [kg^-1/2], (P, m). Returns frequency [Hz] and damping
+    ratio, where the cavity with the largest motion has the amplitudes of the table. NaN outside of the table.
 
     Notes
     -----

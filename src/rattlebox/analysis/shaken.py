@@ -211,21 +211,10 @@ def force_harmonics(
 ) -> tuple[FloatArray, FloatArray]:
     """Compute the harmonics of the force on the particles, and the variation of the first one from cycle to cycle.
 
-    Parameters
-    ----------
-    times : (T,) float
-        Evenly spaced times that span whole cycles [s].
-    momentum : (..., T) float
-        Momentum of the particles along the motion of the cavity [kg m/s].
-    frequency
-        Frequency of the motion [Hz].
-
-    Returns
-    -------
-    harmonics : (..., count - 1) float
-        Amplitudes of the harmonics 2 to `count` [N]; NaN with fewer than three samples in a cycle of the harmonic.
-    variation : (...) float
-        Root mean square of the difference between the complex amplitude of the first harmonic in one cycle and its mean [N].
+    `times`: evenly spaced times that span whole cycles [s], (T,). `momentum`: momentum of the particles along the motion of
+    the cavity [kg m/s], (..., T). `frequency`: frequency of the motion [Hz]. Returns amplitudes of the harmonics 2 to
+    `count` [N]; NaN with fewer than three samples in a cycle of the harmonic, (..., count - 1); and root mean square of the
+    difference between the complex amplitude of the first harmonic in one cycle and its mean [N], (...).
 
     Notes
     -----

@@ -91,23 +91,10 @@ def first_harmonic(
 ) -> Any:
     """Fit a mean and a harmonic to samples.
 
-    Parameters
-    ----------
-    time : (N,) float
-        Times of the samples [s].
-    values : (N,) or (N, K) float
-        Samples.
-    weights : (N,) float
-        Weights of the samples in an integral over whole cycles [s].
-    frequency
-        Frequency of the harmonic [Hz].
-    gain : (N,) float
-        Amplitude in the samples of a harmonic of amplitude one: sinc(frequency step) for means over steps.
-
-    Returns
-    -------
-    () or (K,) complex
-        Amplitude A of x(t) = mean + Re(A exp(2 pi i frequency t)).
+    `time`: times of the samples [s], (N,). `values`: samples, (N,) or (N, K). `weights`: weights of the samples in an
+    integral over whole cycles [s], (N,). `frequency`: frequency of the harmonic [Hz]. `gain`: amplitude in the samples of a
+    harmonic of amplitude one: sinc(frequency step) for means over steps, (N,). Returns amplitude A of x(t) = mean + Re(A
+    exp(2 pi i frequency t)), () or (K,).
 
     Notes
     -----

@@ -229,12 +229,9 @@ def _balls(run: rb.Run, rows: slice) -> Arrays:
 def view_of_snapshots(path: Path, first: int = 0) -> bytes:
     """Return the particles of the snapshots of a run from a number on, also while it runs.
 
-    Returns
-    -------
-    bytes
-        Body with `position` (frames, particles, 3) and `shift` of the cavities (frames, cavities, 3) [m], `speed` [m/s] and
-        `spin` [rad/s] (frames, particles), `radius` [m], `species` and `cavity`, and `time` [s]. Long runs have every n-th
-        snapshot from 0 on.
+    Returns body with `position` (frames, particles, 3) and `shift` of the cavities (frames, cavities, 3) [m], `speed` [m/s]
+    and `spin` [rad/s] (frames, particles), `radius` [m], `species` and `cavity`, and `time` [s]. Long runs have every n-th
+    snapshot from 0 on.
     """
     try:
         snapshots = rb.Snapshots(path)

@@ -47,14 +47,11 @@ def run_block(
 ) -> dict[str, NDArray[Any]] | None:
     """Run a range of the variants of a batch.
 
-    Returns
-    -------
-    dict of str to array, or None
-        Arrays by name, variants along the first axis: `status` and each measure (n,); `displacement` and `velocity`
-        (n, samples), `relative_position` and `relative_velocity` (n, samples, balls) of the motion; `last_time`,
-        `last_approach_speed`, `last_contact` (n, last); `state` (n, 2 (modes + balls)); `batches` (measures, n, 64) and
-        `batch_length` (n, 64) [s] of the parts, NaN for parts that there are not. Everything but the
-        status is NaN for runs that did not finish. `runs`, a list, with `times`. None if `progress` stopped the block.
+    Returns arrays by name, variants along the first axis: `status` and each measure (n,); `displacement` and `velocity` (n,
+    samples), `relative_position` and `relative_velocity` (n, samples, balls) of the motion; `last_time`,
+    `last_approach_speed`, `last_contact` (n, last); `state` (n, 2 (modes + balls)); `batches` (measures, n, 64) and
+    `batch_length` (n, 64) [s] of the parts, NaN for parts that there are not. Everything but the status is NaN for runs
+    that did not finish. `runs`, a list, with `times`. None if `progress` stopped the block.
     """
     grid = list(shape) or [1]
     window = _core.Window(

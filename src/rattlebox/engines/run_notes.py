@@ -288,14 +288,8 @@ def particle_notes(
 ) -> Iterator[str]:
     """Yield warnings about particle dampers without contacts, and about extrapolated force curves.
 
-    Parameters
-    ----------
-    first_touches
-        Number of contacts that began, (dampers, partners).
-    contacts
-        Number of contacts at the samples, (T, dampers, partners).
-    centre_of_mass
-        Centre of mass of the particles in each cavity, (T, dampers, 3) [m].
+    `first_touches`: number of contacts that began, (dampers, partners). `contacts`: number of contacts at the samples, (T,
+    dampers, partners). `centre_of_mass`: centre of mass of the particles in each cavity, (T, dampers, 3) [m].
     """
     for index, (name, damper) in enumerate(_named(case.particle_dampers)):
         yield from _beyond_measurement(name, _deepest_measured(damper, overlaps[index]))

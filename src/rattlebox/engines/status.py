@@ -78,14 +78,9 @@ def final_status(
 ) -> Status:
     """Return the status of a run that reached its end.
 
-    Parameters
-    ----------
-    mass
-        Mass of all balls or particles [kg]. A residual below their kinetic energy at 1 nm/s counts as rounding.
-    permitted
-        Energy error that the tolerance permits in all steps [J], allowed in addition to the limit, up to 1 %.
-    rounding
-        Residual that counts as rounding, as part of the largest energy of the run.
+    `mass`: mass of all balls or particles [kg]. A residual below their kinetic energy at 1 nm/s counts as rounding.
+    `permitted`: energy error that the tolerance permits in all steps [J], allowed in addition to the limit, up to 1 %.
+    `rounding`: residual that counts as rounding, as part of the largest energy of the run.
     """
     if not np.isfinite(ledger.residual).all():
         return Status.not_finite
@@ -116,14 +111,8 @@ def describe(
 ) -> tuple[str, str]:
     """Return the name of a status, and a message with what happened and what to try.
 
-    Parameters
-    ----------
-    time
-        Time at which the run stopped [s].
-    value
-        Approach speed at that contact [m/s], or the energy residual.
-    step
-        Time step of a 3-D run [s].
+    `time`: time at which the run stopped [s]. `value`: approach speed at that contact [m/s], or the energy residual.
+    `step`: time step of a 3-D run [s].
     """
     happened, advice = MESSAGES[status], ADVICE.get(status, {})
     hint = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))

@@ -237,10 +237,7 @@ class Beam(DampedModes):
 def wave_numbers(ends: Ends, count: int, mu: float = 0.0) -> Vector:
     """Compute the dimensionless wave numbers beta L of the lowest elastic modes of a beam.
 
-    Returns
-    -------
-    (count,) float
-        Wave numbers, ascending, to rounding.
+    Returns wave numbers, ascending, to rounding, (count,).
 
     Notes
     -----

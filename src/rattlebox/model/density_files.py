@@ -33,19 +33,8 @@ _ANGULAR = re.compile(r"rad\s*/\s*s|\bomega\b|ω", re.I)
 def read_density(path: str, columns: Sequence[Column] | None, unit: str | None) -> tuple[Array, str, tuple[str, ...]]:
     """Read a one-sided power spectral density.
 
-    Parameters
-    ----------
-    unit
-        Unit of the signal, whose square per Hz is that of the density, as the user states it.
-
-    Returns
-    -------
-    (n, 2) float
-        Frequencies [Hz] and densities in SI units.
-    str
-        SI unit of the signal.
-    tuple of str
-        Notes on assumptions.
+    `unit`: unit of the signal, whose square per Hz is that of the density, as the user states it. Returns frequencies [Hz]
+    and densities in SI units, (n, 2); and SI unit of the signal; and notes on assumptions.
     """
     file = existing(path)
     found = _density(file, columns)

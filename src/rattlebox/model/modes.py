@@ -95,17 +95,8 @@ class ModalModel:
     def harmonic_response(self, omega: Vector, forces: Vector) -> NDArray[np.complex128]:
         """Return the complex amplitudes of the modal displacements for harmonic modal forces.
 
-        Parameters
-        ----------
-        omega : (F,) float
-            Angular frequencies [rad/s].
-        forces : (m, n) float
-            Amplitudes of modal forces of n loads.
-
-        Returns
-        -------
-        (F, m, n) complex
-            Modal displacements q.
+        `omega`: angular frequencies [rad/s], (F,). `forces`: amplitudes of modal forces of n loads, (m, n). Returns modal
+        displacements q, (F, m, n).
 
         Notes
         -----

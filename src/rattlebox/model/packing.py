@@ -621,12 +621,7 @@ class Crowd:
 def random_density(cavity: AnyCavity, diameter: float, fill: float = 1.0, up: Vector | None = None) -> float:
     """Return the largest density at which spheres between walls and a lid are readily inserted at random.
 
-    Parameters
-    ----------
-    diameter
-        Diameter of the spheres [m].
-    up
-        Unit vector against gravity, (3,); None if there is no lid.
+    `diameter`: diameter of the spheres [m]. `up`: unit vector against gravity, (3,); None if there is no lid.
 
     Notes
     -----
@@ -648,12 +643,7 @@ def random_density(cavity: AnyCavity, diameter: float, fill: float = 1.0, up: Ve
 def bed_density(cavity: AnyCavity, diameter: float, bulk: float, fill: float, up: Vector | None) -> float:
     """Return the usual density of a bed of spheres.
 
-    Parameters
-    ----------
-    diameter
-        Diameter of the spheres [m].
-    up
-        Unit vector against gravity, (3,); None without gravity.
+    `diameter`: diameter of the spheres [m]. `up`: unit vector against gravity, (3,); None without gravity.
 
     Notes
     -----
@@ -723,12 +713,7 @@ def check_size(cavity: AnyCavity, radius: float) -> None:
 def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector, allowed: float = TOUCHING) -> None:
     """Raise if spheres overlap or extend beyond the cavity.
 
-    Parameters
-    ----------
-    positions
-        Centres, (n, 3) [m].
-    radii
-        Radii, (n,) [m].
+    `positions`: centres, (n, 3) [m]. `radii`: radii, (n,) [m].
     """
     room = cavity.room(positions, radii)
     worst = int((room / radii).argmin())
@@ -764,21 +749,8 @@ def _where_inside(cavity: AnyCavity, positions: Vector, radii: Vector, worst: in
 def overlapping(positions: Vector, radii: Vector, within: float = 0.0) -> tuple[Any, Any, Vector]:
     """Return the pairs of spheres that overlap.
 
-    Parameters
-    ----------
-    positions
-        Centres, (n, 3) [m].
-    radii
-        Radii, (n,) [m].
-    within
-        Largest distance between the surfaces of a pair [m].
-
-    Returns
-    -------
-    first, second : (p,) int
-        Indices of the pairs.
-    distance : (p,) float
-        Distance between the surfaces [m], negative for an overlap.
+    `positions`: centres, (n, 3) [m]. `radii`: radii, (n,) [m]. `within`: largest distance between the surfaces of a pair
+    [m]. Returns indices of the pairs, (p,); and distance between the surfaces [m], negative for an overlap, (p,).
     """
     from scipy.spatial import cKDTree
 

@@ -212,14 +212,8 @@ def _spectrum(record: Sampled) -> tuple[float, Vector, Vector] | None:
 def change_by_interpolation(rate: float, frequency: Vector, power: Vector, natural: float, decay: float) -> float:
     """Compute the relative change of the RMS response of a mode by straight lines between samples.
 
-    Parameters
-    ----------
-    rate
-        Sampling rate R [Hz].
-    frequency, power : (n,) float
-        Frequencies of the sampled signal [Hz], up to R / 2, and its power there.
-    natural, decay
-        Natural frequency f_0 and decay rate over 2 pi of the mode [Hz].
+    `rate`: sampling rate R [Hz]. `frequency` and `power`: frequencies of the sampled signal [Hz], up to R / 2, and its
+    power there, (n,). `natural` and `decay`: natural frequency f_0 and decay rate over 2 pi of the mode [Hz].
 
     Notes
     -----

@@ -152,10 +152,8 @@ class _Text:
 def read_columns(path: str, columns: Selection = None, step: float | None = None) -> Columns:
     """Read times and values from a file.
 
-    Parameters
-    ----------
-    step
-        Time between evenly spaced samples [s], the first at 0 s; None for a column of times, or a step in the first line.
+    `step`: time between evenly spaced samples [s], the first at 0 s; None for a column of times, or a step in the first
+    line.
     """
     with errors_of(path, "columns of numbers"):
         file = existing(path)
@@ -509,10 +507,7 @@ def _column_indices(
 def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     """Read all columns of a text file with numbers.
 
-    Returns
-    -------
-    dict of str to (n,) float
-        Columns by name, or by number from 1 if they have no names.
+    Returns columns by name, or by number from 1 if they have no names.
     """
     with errors_of(file, "columns of numbers"):
         text = _parse_text(file, known)
@@ -526,10 +521,7 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
 def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tuple[Array, list[list[str]]]:
     """Read some columns of a text file.
 
-    Returns
-    -------
-    (n, count) float
-        Numbers.
+    Returns numbers, (n, count).
     """
     with errors_of(path, "columns of numbers"):
         file = existing(path)

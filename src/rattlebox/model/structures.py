@@ -257,15 +257,8 @@ class DampedModes(StructurePart):
     def decay_rates(self, stiffness: Vector) -> Vector:
         """Return the decay rate of each mode [1/s]: damping ratio times natural angular frequency.
 
-        Parameters
-        ----------
-        stiffness : (m,) float
-            Squared natural angular frequencies [1/s^2].
-
-        Raises
-        ------
-        Hint
-            If the number of damping ratios differs from the number of modes.
+        `stiffness`: squared natural angular frequencies [1/s^2], (m,). Raises Hint if the number of damping ratios differs
+        from the number of modes.
         """
         if self.rayleigh is not None:
             return np.asarray((self.rayleigh[0] + self.rayleigh[1] * stiffness) / 2)

@@ -143,10 +143,7 @@ def _described(quantity: Any) -> str:
 def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     """Read a quantity.
 
-    Parameters
-    ----------
-    value
-        A number in SI, text such as "0.4 mm", a pair (number, unit) or a pint Quantity.
+    `value`: a number in SI, text such as "0.4 mm", a pair (number, unit) or a pint Quantity.
     """
     # A plain number is in SI units; true would be 1.
     if isinstance(value, (bool, np.bool_, bytes)):

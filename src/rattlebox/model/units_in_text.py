@@ -55,10 +55,8 @@ class Stated:
 def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str] | None:
     """Return the factor to SI and the SI unit from the header lines of a column; None if they have no unit.
 
-    Parameters
-    ----------
-    heads
-        Text above the column, from top to bottom: a name, a unit, or both, as in "a (g)", "t [ms]", "force in N" or "a/g".
+    `heads`: text above the column, from top to bottom: a name, a unit, or both, as in "a (g)", "t [ms]", "force in N" or
+    "a/g".
     """
     for head in reversed(heads):
         brackets = _BRACKETED.findall(head)

@@ -70,10 +70,7 @@ VIEWS: dict[str, tuple[float, float]] = {
 def view_axes(view: str | tuple[float, float]) -> Array:
     """Return the directions to the right, up and towards the viewer, (3, 3), one per row.
 
-    Parameters
-    ----------
-    view
-        Name of a view, or azimuth from x towards y and elevation over the x-y plane [degrees].
+    `view`: name of a view, or azimuth from x towards y and elevation over the x-y plane [degrees].
     """
     try:
         azimuth, elevation = np.radians(np.asarray(VIEWS[view] if isinstance(view, str) else view, dtype=float))

@@ -41,20 +41,9 @@ def draw_spheres(
 ) -> NDArray[np.uint8]:
     """Draw spheres in parallel projection.
 
-    Parameters
-    ----------
-    places
-        Centres: right, up and towards the viewer, (n, 3).
-    radii
-        Radii in the unit of the places, (n,).
-    colours
-        Red, green, blue from 0 to 1, (n, 3).
-
-    Returns
-    -------
-    ndarray of uint8
-        Red, green, blue and opacity, (height, width, 4); the first row is at the top; only the background is
-        transparent.
+    `places`: centres: right, up and towards the viewer, (n, 3). `radii`: radii in the unit of the places, (n,). `colours`:
+    red, green, blue from 0 to 1, (n, 3). Returns red, green, blue and opacity, (height, width, 4); the first row is at the
+    top; only the background is transparent.
     """
     height = max(1, round(width * (extent[3] - extent[2]) / (extent[1] - extent[0])))
     draw = _pyvista if (renderer or default_renderer(len(places))) == "pyvista" else _plain

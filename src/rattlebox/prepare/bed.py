@@ -50,15 +50,8 @@ class BedMeasures:
 def bed_level(damper: ParticleDamper, positions: Array) -> tuple[float, float]:
     """Compute volume and height of a bed.
 
-    Parameters
-    ----------
-    positions
-        Positions of the particles relative to the centre of the cavity, (n, 3) [m].
-
-    Returns
-    -------
-    fill, height
-        Volume of the bed over that of the cavity, and its height [m].
+    `positions`: positions of the particles relative to the centre of the cavity, (n, 3) [m]. Returns volume of the bed over
+    that of the cavity, and its height [m].
 
     Notes
     -----

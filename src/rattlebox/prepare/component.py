@@ -71,13 +71,8 @@ def damper_case(
 ) -> Case:
     """Return the case of a damper alone.
 
-    Parameters
-    ----------
-    structure_mass
-        Effective mass of the structure at the attachment [kg], or None for a rigid one. The dashpots of impact dampers are
-        adjusted to it.
-    duration
-        Duration that the step must suit [s].
+    `structure_mass`: effective mass of the structure at the attachment [kg], or None for a rigid one. The dashpots of
+    impact dampers are adjusted to it. `duration`: duration that the step must suit [s].
     """
     structure: SDOF | Shaker | Fixed = Fixed() if motion is None else Shaker(motion=motion)
     if structure_mass is not None:
@@ -95,10 +90,7 @@ def damper_case(
 def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedComponent:
     """Pack a case for a stepper.
 
-    Parameters
-    ----------
-    velocity
-        Initial velocity of the attachment of a damper alone [m/s]: a number, or three components for particles.
+    `velocity`: initial velocity of the attachment of a damper alone [m/s]: a number, or three components for particles.
     """
     if not case.method.has_stepper:
         raise Hint(f"the method {case.method.kind} has no stepper", "method = EventDriven(), or Newton()")

@@ -102,11 +102,8 @@ class Batch:
 def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> _core.Problem:
     """Pack many variants of a case for the core.
 
-    Returns
-    -------
-    Problem
-        As `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has the axes of
-        the grid last, (n, ...). There are no sample times.
+    Returns as `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has the axes
+    of the grid last, (n, ...). There are no sample times.
     """
     first, *others = pack_parts(case, columns, shape)
     if others and first.obstacle:

@@ -54,11 +54,8 @@ class Prepared:
 def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
     """Choose the softening and the time step of a case, and compute its settled packings.
 
-    Parameters
-    ----------
-    positions
-        Initial positions of the particles of each damper, (n, 3) [m], from a checkpoint. By default, settled packings are
-        computed.
+    `positions`: initial positions of the particles of each damper, (n, 3) [m], from a checkpoint. By default, settled
+    packings are computed.
     """
     case, notes = resolve_softening(case)
     tables, step = _step(case)

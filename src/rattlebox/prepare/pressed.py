@@ -23,10 +23,7 @@ together overlap more than two alone, but not by more than this factor in comput
 def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, name: str) -> Iterator[str]:
     """Yield a note if given positions overlap; raise if they overlap more than impacts at the expected speed make them.
 
-    Parameters
-    ----------
-    speed
-        Largest expected approach speed [m/s].
+    `speed`: largest expected approach speed [m/s].
     """
     if damper.packing.stated_count is None:
         return

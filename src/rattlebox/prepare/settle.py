@@ -66,10 +66,7 @@ def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -
 
     The last few beds are cached: cases that differ only in motion or contacts start from the same one.
 
-    Returns
-    -------
-    (n, 3) float or None
-        Positions relative to the centre of the cavity [m]; None if `proceed` stopped it.
+    Returns positions relative to the centre of the cavity [m]; None if `proceed` stopped it, (n, 3).
     """
     packing = instance(damper.packing, Bed)
     key = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
@@ -100,10 +97,7 @@ class _Stopped(Exception):
 def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -> Array:
     """Compute positions of a dense random bed under a lid, which is as low as the density of the bed permits.
 
-    Returns
-    -------
-    (n, 3) float
-        Positions relative to the centre of the cavity [m].
+    Returns positions relative to the centre of the cavity [m], (n, 3).
 
     Notes
     -----
@@ -154,15 +148,7 @@ def insert(
 ) -> Array:
     """Compute random positions of spheres that do not overlap.
 
-    Parameters
-    ----------
-    radii
-        Radii of the spheres, (n,) [m].
-
-    Returns
-    -------
-    (n, 3) float
-        Positions relative to the centre of the cavity [m].
+    `radii`: radii of the spheres, (n,) [m]. Returns positions relative to the centre of the cavity [m], (n, 3).
 
     Notes
     -----
@@ -212,17 +198,8 @@ def push_apart(
 ) -> Array:
     """Push overlapping spheres apart and off the walls until no overlap is left.
 
-    Parameters
-    ----------
-    places
-        Positions, (n, 3) [m].
-    radii
-        Radii of the spheres, (n,) [m].
-
-    Returns
-    -------
-    (n, 3) float
-        Positions without overlaps [m].
+    `places`: positions, (n, 3) [m]. `radii`: radii of the spheres, (n,) [m]. Returns positions without overlaps [m],
+    (n, 3).
 
     Notes
     -----

@@ -72,12 +72,8 @@ class CavityMotion:
 def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.float64]) -> CavityMotion:
     """Estimate the motion of a cavity without particles.
 
-    Parameters
-    ----------
-    shape : (m, 3) float
-        Mode shapes at the cavity.
-    state : (T, m, 2) float
-        Modal displacements and velocities of the structure without particles.
+    `shape`: mode shapes at the cavity, (m, 3). `state`: modal displacements and velocities of the structure without
+    particles, (T, m, 2).
 
     Notes
     -----
@@ -101,10 +97,7 @@ def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.floa
 def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> float:
     """Return the lowest resonance of the bed of a damper, compressed under its own weight.
 
-    Returns
-    -------
-    float
-        Resonance [Hz]; 0 without gravity.
+    Returns resonance [Hz]; 0 without gravity.
 
     Notes
     -----
@@ -254,16 +247,9 @@ def effects(
 ) -> list[Effect]:
     """Compute the effect of softening on each damper of a run.
 
-    Parameters
-    ----------
-    velocity : (T, D, 3) float
-        Velocity of the cavities in the run, with that of the base [m/s].
-    lost, enduring : (D,) float
-        Loss in all contacts, and in enduring ones [J].
-    rolled : (D,) float
-        Loss by rolling resistance [J].
-    relative_speed : (D,) float
-        Root mean square speed of the particles relative to their cavity, times the square root of two [m/s].
+    `velocity`: velocity of the cavities in the run, with that of the base [m/s], (T, D, 3). `lost` and `enduring`: loss in
+    all contacts, and in enduring ones [J], (D,). `rolled`: loss by rolling resistance [J], (D,). `relative_speed`: root
+    mean square speed of the particles relative to their cavity, times the square root of two [m/s], (D,).
 
     Notes
     -----

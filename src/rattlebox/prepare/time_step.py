@@ -92,15 +92,8 @@ def evaluation_times(case: Case) -> Any:
 def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ...]:
     """Estimate the largest approach speed in each damper.
 
-    Parameters
-    ----------
-    cavity_velocities
-        Velocity of each cavity without particles at the `evaluation_times`, (T, 3) [m/s].
-
-    Returns
-    -------
-    tuple of float
-        Largest expected approach speeds [m/s].
+    `cavity_velocities`: velocity of each cavity without particles at the `evaluation_times`, (T, 3) [m/s]. Returns largest
+    expected approach speeds [m/s].
 
     Notes
     -----
@@ -132,10 +125,7 @@ def contact_limits(
 ) -> Iterator[Limit]:
     """Yield a limit for each kind of pair in a damper: its shortest contact at an approach speed.
 
-    Parameters
-    ----------
-    speed
-        Approach speed [m/s].
+    `speed`: approach speed [m/s].
 
     Notes
     -----
@@ -238,10 +228,7 @@ def _damping_ratio(entry: Entry, law: _core.NormalForce, speed: float) -> float:
 def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> list[Limit]:
     """Return the limits of the time step by contacts, Rayleigh waves, modes and loads.
 
-    Parameters
-    ----------
-    speeds
-        Largest expected approach speed in each damper [m/s].
+    `speeds`: largest expected approach speed in each damper [m/s].
 
     Notes
     -----
@@ -289,10 +276,7 @@ def _motion_limit(duration: float, fraction: float, what: str) -> Limit:
 def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> Step:
     """Choose the time step of a run: that of the case or the longest automatic one, shortened so that samples fall on steps.
 
-    Parameters
-    ----------
-    speeds
-        Largest expected approach speed in each damper [m/s].
+    `speeds`: largest expected approach speed in each damper [m/s].
     """
     method = instance(case.method, Dem)
     all_limits = limits(case, tables, speeds)
@@ -336,10 +320,7 @@ def step_diagnostics(
 ) -> tuple[dict[str, float], list[str]]:
     """Return diagnostics and notes on the time step after the run.
 
-    Parameters
-    ----------
-    speeds
-        Largest approach speed at a first touch, in each damper [m/s].
+    `speeds`: largest approach speed at a first touch, in each damper [m/s].
     """
     dampers = case.particle_dampers
     # The shortest contact at the speeds that have occurred, instead of those expected before the run.
@@ -422,10 +403,7 @@ def exceeded_limits(diagnostics: Mapping[str, float]) -> list[str]:
 def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float:
     """Return the softening at which the overlaps in a damper reach `MAX_OVERLAP`.
 
-    Parameters
-    ----------
-    speed
-        Largest expected approach speed [m/s].
+    `speed`: largest expected approach speed [m/s].
 
     Notes
     -----

@@ -42,21 +42,9 @@ def force_on_modes(
 ) -> FloatArray:
     """Return the modal force of loads, of a motion of the base, and of contacts.
 
-    Parameters
-    ----------
-    load : (T, L) float
-        Loads [N].
-    base : (T,) or (T, 3) float
-        Acceleration of the base [m/s^2]; three components in a 3-D run.
-    force : (T, D) or (T, D, 3) float
-        Contact force on each cavity [N].
-    shapes
-        Mode shapes at each cavity, (M,) or (M, 3) [kg^-1/2].
-
-    Returns
-    -------
-    (T, M) float
-        Modal force [kg^1/2 m/s^2].
+    `load`: loads [N], (T, L). `base`: acceleration of the base [m/s^2]; three components in a 3-D run, (T,) or (T, 3).
+    `force`: contact force on each cavity [N], (T, D) or (T, D, 3). `shapes`: mode shapes at each cavity, (M,) or (M, 3)
+    [kg^-1/2]. Returns modal force [kg^1/2 m/s^2], (T, M).
     """
     modes, three_d = case.modes, base.ndim == 2
     driven = np.zeros((len(base), modes.decay.size))
@@ -73,15 +61,8 @@ def force_on_modes(
 def base_at_points(case: Case, base: FloatArray) -> FloatArray:
     """Project a motion of the base on the direction of each point.
 
-    Parameters
-    ----------
-    base : (T,) or (T, 3) float
-        Displacement, velocity or acceleration of the base; three components in a 3-D run.
-
-    Returns
-    -------
-    (T, P) float
-        Component of the motion at each point.
+    `base`: displacement, velocity or acceleration of the base; three components in a 3-D run, (T,) or (T, 3). Returns
+    component of the motion at each point, (T, P).
     """
     modes = case.modes
     if base.ndim == 1:
@@ -94,15 +75,7 @@ def base_at_points(case: Case, base: FloatArray) -> FloatArray:
 def accelerations_of_steps(arrays: RunArrays, case: Case, shapes: FloatArray) -> FloatArray:
     """Return the acceleration relative to the base at the begin and at the end of each output step.
 
-    Parameters
-    ----------
-    shapes : (M, K) float
-        Mode shapes of K motions, for instance of points [kg^-1/2].
-
-    Returns
-    -------
-    (2, T - 1, K) float
-        Accelerations.
+    `shapes`: mode shapes of K motions, for instance of points [kg^-1/2], (M, K). Returns accelerations, (2, T - 1, K).
 
     Notes
     -----

@@ -18,10 +18,7 @@ def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
 
     Samples of `cavity_force` miss most of the short contacts.
 
-    Returns
-    -------
-    (T - 1, D) or (T - 1, D, 3) float
-        Force on each of D cavities [N]; three components in a 3-D run.
+    Returns force on each of D cavities [N]; three components in a 3-D run, (T - 1, D) or (T - 1, D, 3).
 
     Notes
     -----

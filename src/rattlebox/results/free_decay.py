@@ -28,10 +28,7 @@ class Decay(NamedTuple):
 def free_decay(arrays: RunArrays, amplitude: float | None = None, point: str | None = None) -> Decay | None:
     """Return the damping ratio of the free decay in a run.
 
-    Parameters
-    ----------
-    amplitude
-        Amplitude of the point [m]; default half of the largest one of the decay, or the middle of a shorter decay.
+    `amplitude`: amplitude of the point [m]; default half of the largest one of the decay, or the middle of a shorter decay.
 
     Notes
     -----

@@ -435,10 +435,7 @@ def _largest_of(what: str, all_values: tuple[dict[str, Value], ...], count: int 
 def largest_points(peaks: ArrayLike, count: int) -> list[int]:
     """Return the points of a structure with the largest motion, without those at rest.
 
-    Parameters
-    ----------
-    peaks
-        Largest displacement of each point, (P,) [m].
+    `peaks`: largest displacement of each point, (P,) [m].
     """
     highest = np.asarray(peaks, dtype=float)
     moves = ~(highest <= _ROUNDING * highest.max(initial=0.0, where=np.isfinite(highest)))

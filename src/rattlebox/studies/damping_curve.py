@@ -238,10 +238,7 @@ class Remarks:
 def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = None) -> FloatArray:
     """Return the amplitudes of a damping curve [m].
 
-    Parameters
-    ----------
-    omega
-        Angular frequency at which accelerations are converted [rad/s]; None if only displacements are allowed.
+    `omega`: angular frequency at which accelerations are converted [rad/s]; None if only displacements are allowed.
     """
 
     def displacement(amplitude: Any) -> float:
@@ -321,10 +318,7 @@ def ratios_of_decays(
 ) -> FloatArray:
     """Return the damping ratio of each start at each amplitude from free decays, (starts, A); NaN where none is known.
 
-    Parameters
-    ----------
-    levels : (A,) float
-        Amplitudes [m].
+    `levels`: amplitudes [m], (A,).
     """
     highest = float(band_edges(levels)[1][-1])
     amplitude = _MARGIN * highest

@@ -130,17 +130,8 @@ def read_full(path: Path, request: ModesRequest) -> ModesInFile:
 def lowest_modes(stiffness: Any, mass: Any, count: int) -> tuple[FloatArray, FloatArray]:
     """Compute the lowest modes of sparse matrices.
 
-    Parameters
-    ----------
-    stiffness, mass : (n, n) sparse array
-        K and M, symmetric.
-
-    Returns
-    -------
-    (m,) float
-        Squared angular frequencies [rad^2/s^2], ascending; those of rigid-body modes are exactly zero.
-    (n, m) float
-        Mass-normalised mode shapes.
+    `stiffness` and `mass`: K and M, symmetric. Returns squared angular frequencies [rad^2/s^2], ascending; those of
+    rigid-body modes are exactly zero, (m,); and mass-normalised mode shapes, (n, m).
 
     Notes
     -----

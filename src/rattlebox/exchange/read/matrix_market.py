@@ -28,10 +28,7 @@ _WHOLE = "the complete file"
 def read_matrix(path: Path) -> FloatArray:
     """Read a square real matrix.
 
-    Returns
-    -------
-    (n, n) float
-        The matrix, dense.
+    Returns the matrix, dense, (n, n).
 
     References
     ----------

@@ -121,10 +121,7 @@ class Calibration:
     def check_budget(self, budget: float | None) -> None:
         """Predict the time of all runs, and print it.
 
-        Parameters
-        ----------
-        budget
-            Longest wall time [s].
+        `budget`: longest wall time [s].
         """
         if budget is None and self.progress is not True:
             return

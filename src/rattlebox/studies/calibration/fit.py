@@ -197,12 +197,7 @@ class Fit:
     ) -> Fit:
         """Return the fit to simulated values.
 
-        Parameters
-        ----------
-        points : (N, d) float
-            Points of the space in the region.
-        simulated : (N, M) float
-            Values at these points.
+        `points`: points of the space in the region, (N, d). `simulated`: values at these points, (N, M).
         """
         low, high = corners
         surfaces = Surfaces.fit((points - low) / (high - low), simulated)

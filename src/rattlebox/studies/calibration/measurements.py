@@ -38,10 +38,7 @@ class Column(NamedTuple):
 def read_column(place: str | tuple[str | int, ...], values: Any, units: tuple[str, ...], least: float = 0.0) -> Column:
     """Return measured values in SI units.
 
-    Parameters
-    ----------
-    values
-        A list of numbers in SI units, texts with units, or quantities; a pair (numbers, unit); or a single value.
+    `values`: a list of numbers in SI units, texts with units, or quantities; a pair (numbers, unit); or a single value.
     """
     place = (place,) if isinstance(place, str) else place
     shared = None
@@ -90,10 +87,7 @@ def _pure(value: Any) -> float:
 def read_error(value: Any, measured: FloatArray, units: tuple[str, ...]) -> FloatArray:
     """Return the standard uncertainty of measured values.
 
-    Parameters
-    ----------
-    measured : (M,) float
-        The values.
+    `measured`: the values, (M,).
     """
     items = [value] if isinstance(value, str) else value
     if isinstance(items, (list, tuple)) and all(isinstance(each, str) and "%" in each for each in items):

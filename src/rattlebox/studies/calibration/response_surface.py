@@ -44,12 +44,7 @@ class Surfaces:
     def fit(cls, points: FloatArray, values: FloatArray) -> Surfaces:
         """Return the polynomials of the degree, 1 to 3, with the smallest leave-one-out errors, by least squares.
 
-        Parameters
-        ----------
-        points : (N, d) float
-            Parameters over their ranges, 0 to 1.
-        values : (N, M) float
-            Results.
+        `points`: parameters over their ranges, 0 to 1, (N, d). `values`: results, (N, M).
 
         Notes
         -----

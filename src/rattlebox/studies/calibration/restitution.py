@@ -88,10 +88,7 @@ def _error_of_ends(flights: FloatArray) -> float:
 def speed_after_fall(height: FloatArray, ball: Sphere, *, rising: bool = False) -> FloatArray:
     """Return the speed of a sphere after a fall from rest through air, or that with which it rises to a height [m/s].
 
-    Parameters
-    ----------
-    height : (N,) float
-        Heights [m].
+    `height`: heights [m], (N,).
 
     Notes
     -----

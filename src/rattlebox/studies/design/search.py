@@ -365,12 +365,7 @@ class DesignSearch:
     def _reduced(self, objective: Objective, values: Vector, half: Vector | None) -> tuple[float, float, Vector]:
         """Return an objective, half of the width of its interval, and its value for each packing.
 
-        Parameters
-        ----------
-        values : (levels, P) float
-            Its values.
-        half : (levels, P) float or None
-            Half of the widths of the intervals of its values.
+        `values`: its values, (levels, P). `half`: half of the widths of the intervals of its values, (levels, P).
         """
         sign = objective.sign
         each = sign * _REDUCTIONS[self.robust](sign * values, axis=0)

@@ -195,17 +195,9 @@ def read_objectives(objective: Any) -> list[Objective]:
 def pareto_front(values: NDArray[np.float64], feasible: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Return the numbers of the Pareto-optimal trials, the best in the first objective first.
 
-    Parameters
-    ----------
-    values : (trials, objectives) float
-        Objectives, to be minimised.
-    feasible : (trials,) bool
-        Whether each trial is feasible.
-
-    Returns
-    -------
-    (n,) int
-        Feasible trials that no other one dominates (see `rb.design`); only the best trial if there is one objective.
+    `values`: objectives, to be minimised, (trials, objectives). `feasible`: whether each trial is feasible, (trials,).
+    Returns feasible trials that no other one dominates (see `rb.design`); only the best trial if there is one objective,
+    (n,).
     """
     numbers = np.flatnonzero(feasible)
     if not numbers.size:

@@ -47,13 +47,10 @@ def read_axes(case: Case, axes: Axes, *, source: str = "axes") -> Grid:
 def parse_axes(case: Case, axes: Axes, *, source: str = "axes") -> ParsedAxes:
     """Parse the values of axes.
 
-    Parameters
-    ----------
-    axes
-        A mapping, a random design, replicas, parsed axes, or a list of these, whose dimensions form the grid. A mapping
-        has one dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
-        together; or `name: {path: values, ...}` for the same with a name of the dimension. Values are a list or an
-        array of numbers in SI units, text with units, names or parts; or `linspace`, `geomspace`.
+    `axes`: a mapping, a random design, replicas, parsed axes, or a list of these, whose dimensions form the grid. A mapping
+    has one dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
+    together; or `name: {path: values, ...}` for the same with a name of the dimension. Values are a list or an array of
+    numbers in SI units, text with units, names or parts; or `linspace`, `geomspace`.
     """
     try:
         return ParsedAxes(source, _Reader(case, source).directions(axes))

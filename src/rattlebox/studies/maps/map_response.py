@@ -128,19 +128,9 @@ class LossTable:
     def interpolate(self, values: FloatArray, frequency: FloatArray, amplitude: FloatArray) -> FloatArray:
         """Interpolate values of the map linearly in the logarithms of amplitude and frequency.
 
-        Parameters
-        ----------
-        values : (K, J, ...) float
-            Values over the map.
-        frequency : (F,) float
-            Frequencies [Hz]; those outside of the map are moved to its edge.
-        amplitude : (F, ...) float
-            Amplitudes of the cavity; the same holds for them.
-
-        Returns
-        -------
-        (F, ..., ...) float
-            Values at each amplitude.
+        `values`: values over the map, (K, J, ...). `frequency`: frequencies [Hz]; those outside of the map are moved to its
+        edge, (F,). `amplitude`: amplitudes of the cavity; the same holds for them, (F, ...). Returns values at each
+        amplitude, (F, ..., ...).
         """
         x = np.log(np.nan_to_num(amplitude, nan=self.masses.amplitude[0]))
         k, along = _place(np.log(self.masses.amplitude), x)
@@ -302,10 +292,7 @@ class MapResponse:
     def of(cls, transfer: Transfer, table: LossTable, number: int, levels: FloatArray) -> MapResponse:
         """Compute the response.
 
-        Parameters
-        ----------
-        levels : (L,) float
-            Levels.
+        `levels`: levels, (L,).
         """
         masses, model = table.masses, transfer.model
         system = transfer.frequency, number * transfer.gain, transfer.drive, levels
@@ -450,10 +437,7 @@ def _motions(
 def _with_rest(solutions: Solutions, at_rest: ComplexArray) -> tuple[Solutions, NDArray[np.bool_]]:
     """Return solutions with the motions of cavities whose balls are at rest, and which these are, (L, F, S).
 
-    Parameters
-    ----------
-    at_rest : (L, F, P) complex
-        Acceleration of the cavities with balls at rest [m/s^2]; NaN where balls cannot be at rest.
+    `at_rest`: acceleration of the cavities with balls at rest [m/s^2]; NaN where balls cannot be at rest, (L, F, P).
     """
     with np.errstate(invalid="ignore"):
         apart = np.abs(solutions.acceleration / at_rest[:, :, None, :] - 1).max(axis=-1)

@@ -354,10 +354,7 @@ def _two_digits(value: float) -> str:
 def time_of_particle_runs(groups: Sequence[RunGroup]) -> tuple[list[float], float]:
     """Predict the processor time of groups of particle runs.
 
-    Returns
-    -------
-    times : list of float
-        Processor time of all runs of each group [s].
+    Returns processor time of all runs of each group [s].
 
     Notes
     -----

@@ -210,10 +210,7 @@ class _Step:
     def open_states(self, end: _States, closed: NDArray[np.bool_]) -> _States:
         """Return states shortly before the end with all contacts open; the final states if there are none.
 
-        Parameters
-        ----------
-        closed
-            Chains with a closed contact in the final state, (chains,).
+        `closed`: chains with a closed contact in the final state, (chains,).
         """
         settings, waiting = self._packed.settings, closed
         nothing: dict[str, Any] = {"participation": np.zeros(0), "residual_mass": 0.0, "measures": (), "batched": ()}

@@ -143,10 +143,7 @@ RATIOS = {"loss_factor": ("damping_mass", "effective_mass")}
 def parts_needed(names: Iterable[str]) -> list[str]:
     """Return the measures whose parts the intervals of measures require.
 
-    Parameters
-    ----------
-    names
-        Names of measures with intervals.
+    `names`: names of measures with intervals.
     """
     return list(dict.fromkeys(part for name in names for part in RATIOS.get(name, (name,))))
 
@@ -161,10 +158,7 @@ RESERVED_NAMES = _VARIANT_NAMES | _IMPACT_NAMES | _DESIGN_NAMES
 def name_of(measure: Any) -> str:
     """Return the name of a measure, or of a function of a Run.
 
-    Parameters
-    ----------
-    measure
-        Name, function, partial or callable object.
+    `measure`: name, function, partial or callable object.
     """
     if isinstance(measure, partial):
         measure = measure.func
@@ -174,15 +168,7 @@ def name_of(measure: Any) -> str:
 def check_names(measures: Iterable[Any]) -> None:
     """Raise if two measures have the same name, or a function has a reserved name.
 
-    Parameters
-    ----------
-    measures
-        Names and functions.
-
-    Raises
-    ------
-    CaseError
-        If a name is not allowed.
+    `measures`: names and functions. Raises CaseError if a name is not allowed.
     """
     measures = list(measures)
     for measure in measures:
@@ -200,12 +186,7 @@ def check_names(measures: Iterable[Any]) -> None:
 def with_required(required: Sequence[str], measures: Any) -> list[Any]:
     """Return the measures that a study requires, and the further requested ones.
 
-    Parameters
-    ----------
-    required
-        Names of the required measures.
-    measures
-        Requested measures.
+    `required`: names of the required measures. `measures`: requested measures.
     """
     return [*required, *(name for name in measures if name not in required)]
 
@@ -220,14 +201,8 @@ CONTACTS = "impacts"
 def with_intervals(values: Values, output: BlockOutput, shortest: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
     """Return outputs in which the intervals of measures replace the batches.
 
-    Parameters
-    ----------
-    values
-        Outputs of `run_block`.
-    output
-        Requested quantities.
-    shortest : (n,) float
-        Shortest window for an interval of each variant whose damper does not act [s].
+    `values`: outputs of `run_block`. `output`: requested quantities. `shortest`: shortest window for an interval of each
+    variant whose damper does not act [s], (n,).
     """
     found = dict(values)
     if output.batched:
@@ -243,14 +218,8 @@ def with_intervals(values: Values, output: BlockOutput, shortest: NDArray[np.flo
 def shortest_windows(packed: _core.Problem, shape: Sequence[int], output: BlockOutput) -> NDArray[np.float64]:
     """Return the shortest window for an interval of the linear motion of each variant, see `shortest_window`, flat [s].
 
-    Parameters
-    ----------
-    packed
-        Variants.
-    shape
-        Shape of their grid.
-    output
-        Requested quantities, with the shapes of the modes at the observed point.
+    `packed`: variants. `shape`: shape of their grid. `output`: requested quantities, with the shapes of the modes at the
+    observed point.
     """
     modes = len(packed.mode_decay)
     if not modes:  # a cavity with a given motion
@@ -277,23 +246,10 @@ def interval_of(
 ) -> Any:
     """Return half of the width of the 95 % interval of a measure of steady motion.
 
-    Parameters
-    ----------
-    name
-        Name of the measure.
-    value : (K,) float
-        Measure over the whole window, for each run.
-    parts : dict of str to (K, N) float
-        Measures over consecutive parts of the window, padded with NaN; see `parts_needed`.
-    lengths : (K, N) float
-        Lengths of the parts [s].
-    shortest
-        Shortest window for an interval of each run [s], see `rattlebox._util.batch_means.shortest_window`.
-
-    Returns
-    -------
-    (K,) float
-        Half width in the unit of the measure; NaN if the window is too short or the motion is not steady.
+    `name`: name of the measure. `value`: measure over the whole window, for each run, (K,). `parts`: measures over
+    consecutive parts of the window, padded with NaN; see `parts_needed`. `lengths`: lengths of the parts [s], (K, N).
+    `shortest`: shortest window for an interval of each run [s], see `rattlebox._util.batch_means.shortest_window`. Returns
+    half width in the unit of the measure; NaN if the window is too short or the motion is not steady, (K,).
 
     Notes
     -----
@@ -360,12 +316,8 @@ def _interval_of_ratio(
 def interval_warning(found: xr.Dataset, case: Case) -> dict[str, str]:
     """Return the attribute `too_short` if measures of finished runs lack an interval; otherwise an empty dictionary.
 
-    Parameters
-    ----------
-    found
-        Result of a study.
-    case
-        Its case, whose least damped mode determines how long a motion is correlated at most.
+    `found`: result of a study. `case`: its case, whose least damped mode determines how long a motion is correlated at
+    most.
     """
     lacking = {}
     for name in map(str, found.data_vars):

@@ -351,10 +351,7 @@ def steady_run(
 ) -> Run:
     """Run a shaken case until the motion in its last cycles is steady.
 
-    Parameters
-    ----------
-    frequency
-        Frequency of the motion [Hz].
+    `frequency`: frequency of the motion [Hz].
     """
     more = case.model_copy(update={"duration": kept / frequency})
     end = None

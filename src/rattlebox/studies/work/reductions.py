@@ -65,13 +65,8 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
     Lengths are divided by the gap of the damper (of the first one for the structure), velocities by gap times angular
     frequency. In motions without impacts, in which balls drift freely, positions and velocities of balls are zero.
 
-    Parameters
-    ----------
-    maps
-        Strobes over a grid: `displacement`, `velocity` (..., sample), `relative_position`, `relative_velocity`
-        (..., sample, ball), `impacts` and `largest_approach_speed`.
-    period
-        Length of a cycle [s], broadcastable to the grid.
+    `maps`: strobes over a grid: `displacement`, `velocity` (..., sample), `relative_position`, `relative_velocity` (...,
+    sample, ball), `impacts` and `largest_approach_speed`. `period`: length of a cycle [s], broadcastable to the grid.
     """
     shape = maps.status.shape
     gaps = [np.broadcast_to(0.5 * np.asarray(d.clearance), shape) for d in packed.dampers for _ in d.mass]
@@ -93,10 +88,7 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
 def classify(strobes: Vector, tolerance: float, apart: float) -> Orbits:
     """Classify motions as periodic, transient or irregular.
 
-    Parameters
-    ----------
-    strobes : (..., sample, component) float
-        States over the range of the motion.
+    `strobes`: states over the range of the motion, (..., sample, component).
     """
     shape = strobes.shape[:-2]
     flat = strobes.reshape(-1, *strobes.shape[-2:])
@@ -145,10 +137,7 @@ def _classify(strobes: Vector, tolerance: float, apart: float) -> Orbits:
 def _settled(steps: Vector, strobes: Vector, n: int, tolerance: float) -> tuple[Mask, Mask, Vector]:
     """Return which motions have the period n, which contract towards one, and the multiplier per cycle of the latter.
 
-    Parameters
-    ----------
-    strobes : (k, sample, component) float
-        The states.
+    `strobes`: the states, (k, sample, component).
     """
     size = np.abs(steps).max(axis=2)
     # Close is not enough: a slow contraction has small differences far from its limit. The map tells how far.
@@ -271,20 +260,10 @@ def unsettled(orbits: Orbits, cycles: tuple[int, int], tolerance: float) -> dict
 def attractors(strobes: Vector, ranges: Vector, period: Whole, residual: Vector, apart: float) -> tuple[Whole, Whole]:
     """Group periodic motions by attractor, independent of their phase.
 
-    Parameters
-    ----------
-    strobes : (n, sample, component) float
-        States.
-    ranges : (n, component) float
-        Ranges of motion of the components.
-    period, residual : (n,)
-        Results of `classify`.
-
-    Returns
-    -------
-    tuple of array
-        Number of the attractor of each motion, (n,): 1 for the one with the most members, 0 for motions without a period
-        and beyond 256 attractors; and for each attractor the member with the smallest residual.
+    `strobes`: states, (n, sample, component). `ranges`: ranges of motion of the components, (n, component). `period` and
+    `residual`: results of `classify`, (n,). Returns number of the attractor of each motion, (n,): 1 for the one with the
+    most members, 0 for motions without a period and beyond 256 attractors; and for each attractor the member with the
+    smallest residual.
     """
     label = np.zeros(len(strobes), dtype=np.int64)
     best: list[int] = []
@@ -389,14 +368,8 @@ def steady_motion(
 ) -> dict[str, NDArray[Any]]:
     """Return the quantities of steady motions.
 
-    Parameters
-    ----------
-    displacement : (..., T) float
-        Displacement in whole cycles, both ends included [m].
-    others : (..., T, B) float
-        Further displacements that must repeat in a periodic motion [m].
-    phase
-        Phase of the load [rad].
+    `displacement`: displacement in whole cycles, both ends included [m], (..., T). `others`: further displacements that
+    must repeat in a periodic motion [m], (..., T, B). `phase`: phase of the load [rad].
     """
     cycles = (displacement.shape[-1] - 1) // samples
     turns = np.exp(-2j * np.pi * np.arange(samples) / samples)

@@ -361,10 +361,7 @@ def gather_values(
 ) -> NDArray[np.float64]:
     """Return a number, or a vector with the axes of the grid after its own, for some variants.
 
-    Returns
-    -------
-    (..., n, 1, ...) float
-        Values with one axis for the variants, or a number if they do not vary.
+    Returns values with one axis for the variants, or a number if they do not vary, (..., n, 1, ...).
     """
     array = np.asarray(values, dtype=float)
     if array.ndim == 0:

@@ -193,10 +193,7 @@ def cut_before(run: Run, start: float) -> Run:
 
     Work and losses of the result count from its start.
 
-    Parameters
-    ----------
-    start
-        First time of the result [s]; interpolated linearly between samples.
+    `start`: first time of the result [s]; interpolated linearly between samples.
     """
     arrays = run.arrays
     times = arrays.time
@@ -219,10 +216,7 @@ def cut_before(run: Run, start: float) -> Run:
 def cut_after(run: Run, end: float) -> Run:
     """Return a run without the samples after the first one at or after a time.
 
-    Parameters
-    ----------
-    end
-        The time [s].
+    `end`: the time [s].
     """
     arrays = run.arrays
     count = min(int(np.searchsorted(arrays.time, end * (1 - 1e-9))) + 1, arrays.time.size)
