@@ -9,6 +9,7 @@ from rattlebox._util.exceptions import RattleboxError as RattleboxError
 from rattlebox._util.exceptions import ResourceError as ResourceError
 from rattlebox._util.exceptions import StepError as StepError
 from rattlebox._util.exceptions import StoreError as StoreError
+from rattlebox.analysis.universal import to_uff as to_uff
 from rattlebox.core.component import component_library as component_library
 from rattlebox.core.component import include_dir as include_dir
 from rattlebox.core.external_law import load_law as load_law

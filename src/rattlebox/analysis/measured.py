@@ -47,9 +47,9 @@ def read_frequency_response(
     Parameters
     ----------
     path
-        Universal file (.uff, .unv, .uf) with functions of type 4 in sets 58 or 58b; or a text file (CSV and the like) with
-        three columns: frequency, real and imaginary part, or frequency, magnitude and phase. The headings say which: "imag"
-        or "phase" above the third column, "dB" for decibels, "rad" or "deg" for the phase, Hz or kHz.
+        Universal file (.uff, .unv, .uf) with functions of type 4 or 5 in sets 58 or 58b; or a text file (CSV and the like)
+        with three columns: frequency, real and imaginary part, or frequency, magnitude and phase. The headings say which:
+        "imag" or "phase" above the third column, "dB" for decibels, "rad" or "deg" for the phase, Hz or kHz.
     function
         Name or number (from 1) of the function of a universal file; needed if there are several.
     columns
@@ -200,10 +200,15 @@ def _bracketed(head: str) -> str:
     return head[start + 1 : max(head.rfind(")"), head.rfind("]"))].strip() if start >= 0 else ""
 
 
+def ratio_of_units(unit: str) -> tuple[str, str] | None:
+    """Return the units of response and source of a ratio such as "(m/s^2)/(N)"; None if it is no ratio."""
+    inverse, quotient = _INVERSE.match(unit.strip()), _QUOTIENT.match(unit.strip())
+    return (inverse[2], inverse[1]) if inverse else (quotient[1], quotient[2]) if quotient else None
+
+
 def _ratio_in_si(unit: str, where: str) -> tuple[float, str]:
     """Return the factor to SI and the SI unit of a response over a source."""
-    inverse, quotient = _INVERSE.match(unit.strip()), _QUOTIENT.match(unit.strip())
-    parts = (inverse[2], inverse[1]) if inverse else (quotient[1], quotient[2]) if quotient else None
+    parts = ratio_of_units(unit)
     if parts is not None:
         known = [factor_of(part.strip(), _SI) for part in parts]
         if known[0] and known[1]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict
 from itertools import product
 from pathlib import Path
@@ -15,9 +15,10 @@ from rattlebox._util.atomic_io import atomic_write, check_suffix, disk_errors, r
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import claim, list_files
 from rattlebox._util.owned_folder import digest_of
+from rattlebox.exchange.write.universal import GENERAL, TIME_RESPONSE, Function, Node, function_set, write_universal
 
 from .datasets import parts
-from .schema import groups
+from .schema import AXES, groups
 
 if TYPE_CHECKING:
     from .record import Record
@@ -71,6 +72,92 @@ def to_mat(run: Record, path: Path) -> Path:
     with atomic_write(path, _DISK_HINT) as name:
         savemat(name, content | {"units": units, "info": info}, long_field_names=True, appendmat=False)
     return path
+
+
+_HISTORIES = (
+    "displacement", "velocity", "acceleration", "absolute_acceleration", "base_displacement", "base_velocity",
+    "base_acceleration", "interface_force", "load",
+)  # fmt: skip
+"""Variables of the motion that measurement programs know."""
+
+_LETTERS = {"m": "d", "m/s": "v", "m/s^2": "a", "N": "f"}
+"""Quantities of SEP005, by unit."""
+
+
+def histories(run: Record, names: Iterable[str] | None = None) -> Iterator[tuple[str, str, NDArray[Any], str]]:
+    """Yield name, label, values and unit of each time history of the motion.
+
+    Variables that a run lacks, or cannot know, are left out of the default ones.
+    """
+    group, labels = "motion", run.arrays.labels
+    known = {v.name: (v, values) for v, values, _ in parts(run, group) if v.dims[:1] == ("time",)}
+    for name in _HISTORIES if names is None else names:
+        if name not in known:
+            if names is None:
+                continue
+            raise DataError(f"this run has no time history {name!r}", ", ".join(known))
+        v, values = known[name]
+        for index in product(*(range(len(labels[dim])) for dim in v.dims[1:])):
+            series = np.moveaxis(values, 0, -1)[index]
+            if names is not None or np.isfinite(series).all():
+                label = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], index, strict=True))
+                yield name, label, series, v.units
+
+
+def nodes_of(points: Iterable[str], nodes: Mapping[str, Node]) -> dict[str, Node]:
+    """Return the node and direction of each point; "tip x", "tip y" and "tip z" belong to one node, as does "tip".
+
+    Points without a given node are numbered in their order, from 1.
+    """
+    found: dict[str, Node] = {}
+    order: dict[str, int] = {}
+    used: dict[Node, str] = {}
+    for point in points:
+        name, _, axis = point.rpartition(" ")
+        direction = "xyz".find(axis) + 1 if name and axis in AXES else 0
+        own = name if direction else point
+        number = order.setdefault(own, len(order) + 1)
+        node = nodes.get(point) or nodes.get(own) or (number, 0)
+        found[point] = node[0], node[1] if point in nodes else direction or node[1]
+        other = used.setdefault(found[point], point)
+        if other != point:
+            raise DataError(
+                f"nodes: {other!r} and {point!r} are both node {node[0]} in one direction", "a node for each of them"
+            )
+    unknown = sorted(set(nodes) - set(found) - set(order))
+    if unknown:
+        raise DataError(f"nodes: there is no point {unknown[0]!r}", ", ".join(found) or "none")
+    return found
+
+
+def to_uff(run: Record, path: Path, variables: Iterable[str] | None, nodes: Mapping[str, Node]) -> Path:
+    """Write a universal file with a set 58b for each time history."""
+    sets = []
+    numbers = nodes_of(run.arrays.points, nodes)
+    for name, label, values, unit in histories(run, variables):
+        kind = TIME_RESPONSE if unit in _LETTERS else GENERAL
+        node = numbers.get(label, (0, 0))
+        full = f"{name} {label}".strip()
+        sets.append(function_set(Function(full, kind, run.arrays.time, "s", values, unit, response=node)))
+    return write_universal(path, sets)
+
+
+def to_sep005(run: Record, variables: Iterable[str] | None) -> list[dict[str, Any]]:
+    """Return the time histories in the form of SEP005."""
+    time = run.arrays.time
+    even = time[0] + np.arange(time.size) * ((time[-1] - time[0]) / max(time.size - 1, 1))
+    is_even = time.size > 1 and np.abs(even - time).max() <= 1e-9 * time[-1]
+    channels = []
+    for name, label, values, unit in histories(run, variables):
+        channel: dict[str, Any] = {"name": f"{name} {label}".strip(), "data": np.array(values, float), "unit_str": unit}
+        if unit in _LETTERS:
+            channel["quantity"] = _LETTERS[unit]
+        if is_even and time[0] == 0:
+            channel["fs"] = (time.size - 1) / float(time[-1])
+        else:  # in equal steps not from 0 s, or in others
+            channel["time"] = time.tolist()
+        channels.append(channel | {"group": "rattlebox"})
+    return channels
 
 
 def _header(name: str, label: str, units: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.html import paragraph
+from rattlebox.exchange.write.universal import universal_nodes
 
 from . import datasets, export, netcdf
 from .arrays import raise_absent
@@ -158,6 +160,83 @@ class Run(Record):
             If no space is left on the disk.
         """
         return export.to_csv(self, Path(folder))
+
+    def to_uff(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        variables: Iterable[str] | None = None,
+        nodes: Mapping[str, int | str] | None = None,
+    ) -> Path:
+        """Write a universal file with the time histories of the motion, one set 58b each, for programs of test laboratories.
+
+        Parameters
+        ----------
+        path
+            File to write (.uff, .unv). A file that Rattlebox did not write, or that has changed since, is not replaced.
+        variables
+            Names of variables of `motion`; default displacement, velocity and accelerations of points and base, force on the
+            base, and loads, those that the run has.
+        nodes
+            Nodes of the points: `{"tip": "21 z"}`, or `{"tip": 21}` for a point in 3-D; default 1, 2, ... in their order.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        DataError
+            If the file cannot be written or must not be replaced, or the run has no such variable.
+        ResourceError
+            If no space is left on the disk.
+
+        Notes
+        -----
+        The values are doubles and read back to the last bit. Times in equal steps are stored as start and step with the
+        digits that fit into twelve characters, about eight; others as doubles.
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> run = rb.simulate(rb.reference_case(duration=0.1))
+        >>> run.to_uff("run.uff", variables=["velocity"]).name
+        'run.uff'
+        """
+        return export.to_uff(self, Path(path), variables, universal_nodes(nodes))
+
+    def to_sep005(self, *, variables: Iterable[str] | None = None) -> list[dict[str, Any]]:
+        """Return the time histories of the motion as channels of SEP005, the form of the Python tools of SDyPy.
+
+        Parameters
+        ----------
+        variables
+            As for `to_uff`.
+
+        Returns
+        -------
+        list of dict
+            Channels with `name`, `data`, `unit_str`, `quantity`, `group`, and the sampling rate `fs` [Hz], or `time` [s] if
+            the output is not in equal steps from 0 s.
+
+        Raises
+        ------
+        DataError
+            If the run has no such variable.
+
+        References
+        ----------
+        SDyPy Enhancement Proposal 5, "A protocol for time series", https://github.com/sdypy/sdypy.
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> run = rb.simulate(rb.reference_case(duration=0.1))
+        >>> run.to_sep005(variables=["velocity"])[0]["unit_str"]
+        'm/s'
+        """
+        return export.to_sep005(self, variables)
 
     def report(self, path: str | os.PathLike[str], **options: Any) -> Path:
         """Write a report about the run: one HTML page that prints on A4; see `rattlebox.write_report`.

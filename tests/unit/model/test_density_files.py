@@ -163,24 +163,25 @@ def test_every_type_of_function(tmp_path: Path, kind: int) -> None:
     """Types of functions were refused with one sentence for all: each is read by one function or refused by its name."""
     path = tmp_path / "a.uff"
     values = np.array([0.0, 1.0, 2.0, 1.5, 0.5])
-    path.write_text(set58(kind, values + 0.5j if kind == 4 else values, "g", over=17 if kind == 1 else 18))
+    path.write_text(set58(kind, values + 0.5j if kind in (4, 5) else values, "g", over=17 if kind == 1 else 18))
     readers = {
         1: lambda: rb.Record.from_file(path),
         4: lambda: rb.analysis.read_frequency_response(path, unit="g/N"),
+        5: lambda: rb.analysis.read_frequency_response(path, unit="1"),
         9: lambda: rb.Random.from_file(path, "1 s", unit="g"),
     }
     names = {1: "time response", 4: "frequency response function", 9: "power spectral density"}
     for reads, call in readers.items():
-        if reads == kind:
+        if reads == kind or {reads, kind} == {4, 5}:
             call()
             continue
         with pytest.raises(rb.DataError) as error:
             call()
         name = KINDS.get(kind, names.get(kind, "function of type 28"))
         assert f"but 1 x {name}" in str(error.value)
-        used = {1: "rb.Record.from_file", 4: "rb.analysis.read_frequency_response", 9: "rb.Random.from_file"}.get(
-            kind, "an export"
-        )
+        uses = {1: "rb.Record.from_file", 9: "rb.Random.from_file"}
+        uses |= dict.fromkeys((4, 5), "rb.analysis.read_frequency_response")
+        used = uses.get(kind, "an export")
         assert f"try: {used}" in str(error.value)
 
 

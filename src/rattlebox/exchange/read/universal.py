@@ -47,17 +47,17 @@ _FUNCTIONS = {
     24: "shock response spectrum", 25: "impulse response filter", 26: "multiple coherence", 27: "order function",
 }  # fmt: skip
 """Names of the types of functions in the set 58."""
-_GENERAL, _TIME_RESPONSE, _FREQUENCY_RESPONSE, _DENSITY = 0, 1, 4, 9
+_GENERAL, _TIME_RESPONSE, _FREQUENCY_RESPONSE, _TRANSMISSIBILITY, _DENSITY = 0, 1, 4, 5, 9
 _USES = {
     _TIME_RESPONSE: "rb.Record.from_file",
     _FREQUENCY_RESPONSE: "rb.analysis.read_frequency_response",
+    _TRANSMISSIBILITY: "rb.analysis.read_frequency_response",
     _DENSITY: "rb.Random.from_file",
 }
 """Functions that read types of functions; the other types are refused."""
 _EXPORTS = {
     2: "an export of the power spectral density (type 9): an auto spectrum does not state its bandwidth",
     3: "an export of the frequency response function (type 4)",
-    5: "an export of the frequency response function (type 4)",
     10: "an export of the power spectral density (type 9): an energy spectral density does not state its duration",
     12: "an export of the time history (type 1), of which the spectrum was computed",
     24: "an export of the time history (type 1): many shocks have the same response spectrum",
@@ -501,9 +501,10 @@ def densities(path: Path) -> list[DensityInFile]:
 
 
 def frequency_responses(path: Path) -> list[Function]:
-    """Return the frequency response functions among the functions of a universal file."""
+    """Return the frequency response functions and transmissibilities among the functions of a universal file."""
     every = read_functions(path)
-    return [each for each in every if each.kind == _FREQUENCY_RESPONSE] or _refuse(path, every, _FREQUENCY_RESPONSE)
+    kinds = (_FREQUENCY_RESPONSE, _TRANSMISSIBILITY)
+    return [each for each in every if each.kind in kinds] or _refuse(path, every, _FREQUENCY_RESPONSE)
 
 
 def _refuse(path: Path, functions: list[Function], wanted: int) -> NoReturn:

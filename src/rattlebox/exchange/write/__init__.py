@@ -1,0 +1,1 @@
+"""Writers: plain arrays as files of other programs."""
