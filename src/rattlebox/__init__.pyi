@@ -94,6 +94,7 @@ from rattlebox.plots.particles import film_particles as film_particles
 from rattlebox.plots.particles import plot_particles as plot_particles
 from rattlebox.plots.response import plot_frequency_response as plot_frequency_response
 from rattlebox.plots.sensitivity import plot_sensitivity as plot_sensitivity
+from rattlebox.plots.stability_lobes import plot_stability_lobes as plot_stability_lobes
 from rattlebox.prepare.bed import measure_bed as measure_bed
 from rattlebox.prepare.laws import alpha_of_restitution as alpha_of_restitution
 from rattlebox.prepare.laws import restitution_curve as restitution_curve
@@ -119,6 +120,7 @@ from rattlebox.studies.kinds.frequency_response import frequency_response as fre
 from rattlebox.studies.kinds.loss_map import loss_map as loss_map
 from rattlebox.studies.kinds.lyapunov import lyapunov as lyapunov
 from rattlebox.studies.kinds.sensitivity import sensitivity as sensitivity
+from rattlebox.studies.kinds.stability_lobes import stability_lobes as stability_lobes
 from rattlebox.studies.kinds.sweep import check_softening as check_softening
 from rattlebox.studies.kinds.sweep import check_step as check_step
 from rattlebox.studies.kinds.sweep import compare as compare

@@ -42,6 +42,7 @@ PAGES = (
     "how-to/basins",
     "how-to/bifurcation",
     "how-to/calibration",
+    "how-to/chatter",
     "how-to/fills",
     "how-to/fmu",
     "how-to/loads",

@@ -334,7 +334,8 @@ class Stepper:
         force: Any = self._core.force[:, 0] if self._packed.axes == 1 else self._core.force
         if self._packed.alone:
             force = float(force[0]) if self._packed.axes == 1 else force[0]
-        return StepResult(force, self._core.moment[0], self._core.work, self._core.loss, self._core.stored)
+        moment = self._core.moment[0] if len(self._core.moment) else np.zeros(3)  # a structure may have no damper
+        return StepResult(force, moment, self._core.work, self._core.loss, self._core.stored)
 
     def _check(self) -> None:
         """Raise an error if the core has stopped."""

@@ -19,6 +19,7 @@ from .phase import plot_phase_portrait
 from .response import plot_frequency_response
 from .responses import plot_responses
 from .sensitivity import plot_sensitivity
+from .stability_lobes import plot_stability_lobes
 from .style import (
     CHANNEL_COLOURS,
     FAINT,
@@ -66,5 +67,6 @@ __all__ = [
     "plot_response_from_map",
     "plot_responses",
     "plot_sensitivity",
+    "plot_stability_lobes",
     "scaled",
 ]

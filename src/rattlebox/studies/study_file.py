@@ -77,6 +77,9 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
             given["case"], own = _case(given["case"], source, folder or Path())
             given = {name: _with_materials(value, own) if name in _NESTED else value for name, value in given.items()}
         given = _with_samples(cls, given, source)
+        for name in cls.files:
+            if isinstance(given.get(name), str):
+                given[name] = str((folder or Path()) / given[name])
         study = make_study(cls, given, source, {"": {"": examples(cls)}, "spaced": {"": examples(SpacedTable)}})
         study.validate()
     except Hint as hint:

@@ -157,6 +157,7 @@ def test_progress_means_the_same_in_all_functions():
     """All long calls take `progress`, with one type and one default."""
     result = with_progress()
     studies = {"sweep", "bifurcation", "basins", "frequency_response", "lyapunov", "loss_map", "design", "sensitivity"}
+    studies |= {"stability_lobes"}
     others = {"simulate", "simulate_many", "compare", "damping_curve", "calibrate", "film_particles"}
     others |= {"check_softening", "check_step"}
     assert set(result) == studies | others

@@ -87,6 +87,22 @@ STUDIES: dict[str, tuple[str, str, Callable[[rb.Case], xr.Dataset]]] = {
         'amplitudes = { from = "0.5 mm", to = "5 mm", count = 4, spacing = "log" }',
         lambda case: rb.loss_map(case, rb.geomspace("0.5 mm", "5 mm", 4), ["10 Hz", "20 Hz"], cycles=(10, 10), **QUIET),
     ),
+    "stability_lobes": (
+        "rig.toml",
+        'cutting_coefficient = "500 N/mm^2"\ndirectional_factor = 0.7\nspeeds = ["900 rpm", "1500 rpm"]\n'
+        'amplitudes = ["1.2 mm", "3 mm"]\nfrequencies = ["25 Hz", "60 Hz"]\ncycles = [10, 10]',
+        lambda case: rb.stability_lobes(
+            case,
+            None,
+            "500 N/mm^2",
+            0.7,
+            ["900 rpm", "1500 rpm"],
+            amplitudes=["1.2 mm", "3 mm"],
+            frequencies=["25 Hz", "60 Hz"],
+            cycles=(10, 10),
+            **QUIET,
+        ),
+    ),
     "design": (
         "shaken.toml",
         'cycles = [10, 10]\nobjective = { reduced_loss = "max" }\ntrials = 6\nstarts = 2\n'

@@ -128,6 +128,15 @@ def result_of(name: str) -> Any:
             case(), {"load.amplitude": [5, 10]}, cycles=(20, 20), pairs=3, seed=1, **quiet
         ),
         "loss_map": lambda: rb.loss_map(on_shaker(), [1e-3, 2e-3], [10.0, 20.0], **quiet),
+        "stability_lobes": lambda: rb.stability_lobes(
+            rb.Case(structure=free().structure, method=rb.Newton(), duration="1 s"),
+            on_shaker().dampers[0].model_copy(update={"point": None}),
+            "2000 N/mm^2",
+            0.7,
+            ["700 rpm", "900 rpm"],
+            amplitudes=["0.6 mm", "2 mm"],
+            **quiet,
+        ),
         "damping_curve": lambda: rb.damping_curve(free(), ["0.2 mm", "0.4 mm"], packings=4, **quiet),
         "damping curves": lambda: dict.fromkeys(("a", "b"), result_of("damping_curve")),
         "design": lambda: rb.design(case(), {"damper.gap": ("0.5 mm", "2 mm")}, "rms", trials=3, **quiet),
@@ -196,6 +205,7 @@ KINDS = {
     "basins": "To which steady motion of a shaker",
     "lyapunov": "Is the motion of an oscillator",
     "loss_map": "How much energy does a steel ball",
+    "stability_lobes": "Up to which depth of cut does an oscillator of 3 kg",
     "damping_curve": "Which damping ratio does mode 1 (50 Hz)",
     "damping curves": "of an oscillator of 3 kg at 50 Hz with a and b have at amplitudes",
     "design": "Which damper gap gives the smallest RMS displacement",

@@ -27,6 +27,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "design": ("design", "KIND"),
     "sensitivity": ("sensitivity", "KIND"),
     "response_from_map": ("map_response", "KIND"),
+    "stability_lobes": ("stability_lobes", "KIND"),
     "calibrate": ("calibration", "KIND"),
 }
 """Module in this folder, and its `Kind`, by the attribute `study` of a dataset; or "run" and "comparison"."""

@@ -10,7 +10,17 @@ from rattlebox._util.plugins import load_plugins
 if TYPE_CHECKING:
     from rattlebox.studies.run.study import Study
 
-KINDS = "sweep", "bifurcation", "frequency_response", "basins", "lyapunov", "loss_map", "design", "sensitivity"
+KINDS = (
+    "sweep",
+    "bifurcation",
+    "frequency_response",
+    "basins",
+    "lyapunov",
+    "loss_map",
+    "stability_lobes",
+    "design",
+    "sensitivity",
+)
 """Names of the built-in kinds: of their module, which is imported when it is needed, and the key `kind` of a study file."""
 
 

@@ -155,12 +155,14 @@ class LossMap(Study):
 
     def compute(self) -> xarray.Dataset:
         """Run the sweep; see `Study.compute`."""
-        found = self.run_work(self.work)
+        return save_result(self.evaluate(self.run_work(self.work)), self.kind, self.store)
+
+    def evaluate(self, found: xarray.Dataset) -> xarray.Dataset:
+        """Return the map from the results of its runs."""
         mass = sum(ball.weight for damper in self.case.impact_dampers for ball in damper.balls)
         mass += sum(float(damper.contents.mass.sum()) for damper in self.case.particle_dampers)
         found = found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
-        found = found.assign_attrs(title="Loss map of a damper", **result_notes(self.work, found))
-        return save_result(found, self.kind, self.store)
+        return found.assign_attrs(title="Loss map of a damper", **result_notes(self.work, found))
 
 
 loss_map = study_function(LossMap)

@@ -306,7 +306,7 @@ class MapResponse:
         damping = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
         modes = model.stiffness, damping, transfer.shapes, number
         frequency, ratio = damping_of_modes(masses, *modes)
-        share = np.where(rests, 1.0, _first_harmonic_share(transfer, table, number, each, ratio))
+        share = np.where(rests, 1.0, first_harmonic_share(transfer, table, number, each, ratio))
         heavy = number * table.mass * float((transfer.shapes**2).sum(axis=1).max())
 
         def changed(other: MassTable) -> tuple[FloatArray, FloatArray]:
@@ -474,7 +474,7 @@ def _peaks(
     return np.where(known, peak, np.nan), np.where(known, where, np.nan)
 
 
-def _first_harmonic_share(
+def first_harmonic_share(
     transfer: Transfer, table: LossTable, number: int, amplitude: FloatArray, ratio: FloatArray
 ) -> FloatArray:
     """Return the share of the mean square velocity of the dampers in the first harmonic, (L, F, S); NaN if it is unknown.

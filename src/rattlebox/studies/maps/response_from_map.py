@@ -137,13 +137,13 @@ def response_from_map(
     ('at', 'number', 'level')
     """
     table = LossTable.read(loss_map)
-    model = _modes(structure)
+    model = modes_of(structure)
     levels, unit = _levels(level)
-    numbers = [whole_number(each, "number", 1) for each in _listed(number)]
-    places = _places(at, model)
-    dampers = _Dampers(model, tuple(dict.fromkeys(name for place in places for name in place)), table, direction)
+    numbers = [whole_number(each, "number", 1) for each in listed(number)]
+    places = points_of_dampers(at, model)
+    dampers = DamperPoints(model, tuple(dict.fromkeys(name for place in places for name in place)), table, direction)
     load = _Load.of(model, unit, load_point, load_direction, dampers)
-    hertz = _frequencies(frequencies, table.masses, model, dampers.shapes, max(numbers))
+    hertz = default_frequencies(frequencies, table.masses, model, dampers.shapes, max(numbers))
     name, shape = _observed(model, point or places[0][0], dampers.direction, point)
     transfer = Transfer(model, hertz, dampers.shapes, load.force, load.base, shape)
     each = [transfer.at([dampers.points.index(name) for name in place]) for place in places]
@@ -170,11 +170,13 @@ def response_from_map(
 # ---- arguments
 
 
-def _listed(value: Any) -> list[Any]:
+def listed(value: Any) -> list[Any]:
+    """Return a value as a list; a tuple, which stands for several points at once, is one value."""
     return list(value) if isinstance(value, (list, np.ndarray, range)) else [value]
 
 
-def _modes(structure: Any) -> ModalModel:
+def modes_of(structure: Any) -> ModalModel:
+    """Return the modes of a structure; raise if it has none."""
     if isinstance(structure, Case):
         raise Hint("a case is not a structure", "case.structure", ["structure"])
     if not isinstance(structure, StructurePart):
@@ -193,7 +195,7 @@ def _quantities(value: Any, units: tuple[str, ...], name: str) -> tuple[FloatArr
         first, last = parse(value.start, units), parse(value.stop, units)
         found, units_found = list(value.values(first[0], last[0])), {first[1], last[1]}
     else:
-        pairs = [parse(each, units) for each in _listed(value if not isinstance(value, tuple) else list(value))]
+        pairs = [parse(each, units) for each in listed(value if not isinstance(value, tuple) else list(value))]
         found, units_found = [number for number, _ in pairs], {unit for _, unit in pairs}
     if len(units_found) > 1:
         raise Hint(f"{value!r:.80} has values of different dimensions", "one unit for all", [name])
@@ -213,10 +215,10 @@ def _levels(level: Any) -> tuple[FloatArray, str]:
     return levels, unit
 
 
-def _places(at: Any, model: ModalModel) -> list[tuple[str, ...]]:
+def points_of_dampers(at: Any, model: ModalModel) -> list[tuple[str, ...]]:
     """Return the points of each arrangement of dampers."""
     places = []
-    for item in _listed(at):
+    for item in listed(at):
         names = item if isinstance(item, tuple) else (item,)
         place = tuple(model.point(name) for name in names)
         if not place or len(set(place)) < len(place):
@@ -227,7 +229,7 @@ def _places(at: Any, model: ModalModel) -> list[tuple[str, ...]]:
     return places
 
 
-class _Dampers:
+class DamperPoints:
     """Points of dampers, and mode shapes there along the direction of the dampers, (P, m)."""
 
     def __init__(self, model: ModalModel, points: tuple[str, ...], table: LossTable, direction: Any) -> None:
@@ -267,7 +269,7 @@ class _Load(NamedTuple):
     name: str
 
     @classmethod
-    def of(cls, model: ModalModel, unit: str, point: Any, direction: Any, dampers: _Dampers) -> _Load:
+    def of(cls, model: ModalModel, unit: str, point: Any, direction: Any, dampers: DamperPoints) -> _Load:
         still = np.zeros(len(dampers.points))
         if unit == "N":
             with at("load_point"):
@@ -299,7 +301,7 @@ def _observed(model: ModalModel, name: str, axis: FloatArray | None, given: str 
     return name, lines[name]
 
 
-def _frequencies(given: Any, table: MassTable, model: ModalModel, shapes: FloatArray, number: int) -> FloatArray:
+def default_frequencies(given: Any, table: MassTable, model: ModalModel, shapes: FloatArray, number: int) -> FloatArray:
     """Return the frequencies [Hz]: the given ones, or a grid that is finer where resonances are."""
     low, high = table.frequency[0], table.frequency[-1]
     if given is not None:

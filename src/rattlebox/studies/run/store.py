@@ -427,6 +427,26 @@ def save_result(result: xr.Dataset, kind: str, path: str | os.PathLike[str] | No
     return result
 
 
+def save_finished(
+    result: xr.Dataset, kind: str, path: str | os.PathLike[str] | None, manifest: Mapping[str, Any]
+) -> xr.Dataset:
+    """Add the kind of a study without runs to its result, and write the result to a store of its own.
+
+    Parameters
+    ----------
+    manifest
+        Description that distinguishes the study from others, in JSON types.
+    """
+    if path is not None:
+        from rattlebox import __version__
+
+        about = {**manifest, "study": kind, "version": __version__, "core": ""}
+        plan = Plan((), (), {"finished": ((), np.dtype(float), {})}, about=about)
+        with Store(path, plan, Blocks((), ())) as store:
+            store.write(0, {"finished": np.ones(1)})
+    return save_result(result, kind, path)
+
+
 def add_attributes(path: str | os.PathLike[str], attributes: Mapping[str, str]) -> None:
     """Add attributes to a study on disk; `open_study` returns them with those of its plan."""
     if attributes:

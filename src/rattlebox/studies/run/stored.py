@@ -267,7 +267,7 @@ _CHUNK_BYTES = 2**26
 
 def status_lines(study: xr.Dataset) -> list[str]:
     """Return lines with the statuses of the runs of a study, the reason of a refusal, and the warnings."""
-    lines = []
+    lines = str(study.attrs.get("answer", "")).splitlines()
     if counts := status_counts(study):
         statuses = ", ".join(f"{count:,} {name}" for name, count in counts.items())
         lines.append(f"{sum(counts.values()):,} variants: {statuses}")
@@ -352,6 +352,8 @@ def warning_lines(study: xr.Dataset) -> list[str]:
     """Return the warnings of a study: a stop by the budget, measures without an interval, exceeded validity limits."""
     lines = [f"warning: {study.attrs['stopped']}"] if "stopped" in study.attrs else []
     lines += [f"warning: {study.attrs[name]}" for name in ("too_short", "unsettled") if name in study.attrs]
+    if isinstance(noted := study.attrs.get("warnings"), str) and "reason" not in study:
+        lines += [f"warning: {line}" for line in noted.splitlines()]
     if "flagged" in study.attrs:
         lines.append(f"warning: the best designs exceed validity limits: {study.attrs['flagged']}")
     if "warnings" not in study or "flag_masks" not in study.warnings.attrs:

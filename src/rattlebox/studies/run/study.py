@@ -78,6 +78,8 @@ class Study:
     kind: ClassVar[str]
     kinds: ClassVar[Registry[type[Study]]] = Registry("kind of study")
     """Classes by kind; `study_function` adds them."""
+    files: ClassVar[tuple[str, ...]] = ()
+    """Fields that may name a file, which study files state relative to their own folder."""
 
     case: InstanceOf[Case]
     _: KW_ONLY
@@ -172,6 +174,7 @@ def _readable(annotation: str) -> str:
 _SIMPLE = {
     "Axes": "Mapping[Any, Sequence[Any]] | RandomDesign | Replicas",
     "Bounds": "Mapping[Any, Sequence[Any]]",
+    "CaseOrStructure": "Case | StructurePart",
     "Count": "int",
     "Cycles": "tuple[int, int]",
     "CyclesToCompare": "tuple[int, int]",
