@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import re
 import struct
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyuff
 import scipy.io
 from ansys.mapdl.reader import examples
 
@@ -77,10 +79,10 @@ def test_modes_in_millimetres_and_millinewtons() -> None:
     assert "does not define the coordinate system 2 " in note and "global axes are assumed" in note
 
 
-def system_2420(kind: int, angle: float) -> bytes:
+def system_2420(kind: int, angle: float, origin: tuple[float, ...] = (0, 0, 0)) -> bytes:
     """Return a data set 2420 with the coordinate systems 1 to 321, turned about z by an angle [rad]."""
     c, s = math.cos(angle), math.sin(angle)
-    rows = "".join("".join(f"{x:25.16e}" for x in row) + "\n" for row in ([c, s, 0], [-s, c, 0], [0, 0, 1], [0, 0, 0]))
+    rows = "".join("".join(f"{x:25.16e}" for x in row) + "\n" for row in ([c, s, 0], [-s, c, 0], [0, 0, 1], origin))
     systems = "".join(f"{label:10d}{kind:10d}{1:10d}\nsystem\n{rows}" for label in range(1, 322))
     return f"    -1\n  2420\n{1:10d}\npart\n{systems}    -1\n".encode()
 
@@ -101,17 +103,88 @@ def test_displacements_along_turned_axes(tmp_path: Path, angle: float) -> None:
     assert not list(modal.notes())
 
 
+@pytest.mark.parametrize(("kind", "angle"), [(1, 0.0), (1, 0.7), (2, 0.0), (2, -1.9)])
+def test_displacements_along_curved_axes(tmp_path: Path, kind: int, angle: float) -> None:
+    """Displacements along cylindrical and spherical axes are turned at the position of each node.
+
+    Such files were refused. The directions are derivatives of the position by the coordinates, computed here.
+    """
+    origin = np.array([3.0, -2.0, 1.5])
+    (nodes,) = (block for block in pyuff.UFF(str(UFF / "modes_mm_mN_2414.uff")).read_sets() if block["type"] == 2411)
+    k = list(nodes["node_nums"]).index(9581)
+    c, s = math.cos(angle), math.sin(angle)
+    axes = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+    x, y, z = axes @ (np.array([nodes[name][k] for name in "xyz"]) - origin)
+
+    def position(a: float, b: float, third: float) -> Any:
+        if kind == 1:
+            return np.array([a * math.cos(b), a * math.sin(b), third]) @ axes
+        return a * np.array([math.sin(b) * math.cos(third), math.sin(b) * math.sin(third), math.cos(b)]) @ axes
+
+    coordinates = [math.hypot(x, y), math.atan2(y, x), z]
+    if kind == 2:
+        distance = math.sqrt(x * x + y * y + z * z)
+        coordinates = [distance, math.acos(z / distance), math.atan2(y, x)]
+    steps = [(position(*(coordinates + h)) - position(*(coordinates - h))) / 2e-6 for h in 1e-6 * np.eye(3)]
+    directions = np.array([step / np.linalg.norm(step) for step in steps])
+    plain = rb.Modal.from_file(UFF / "modes_mm_mN_2414.uff", points={"a": 9581}, damping_ratio=0.01).modes().shapes["a"]
+    (tmp_path / "modes.unv").write_bytes(system_2420(kind, angle, tuple(origin)) + MODES)
+    modal = rb.Modal.from_file(tmp_path / "modes.unv", points={"a": 9581}, damping_ratio=0.01)
+    np.testing.assert_allclose(modal.modes().shapes["a"], plain @ directions, atol=1e-7)
+    assert ["spherical axes" in note for note in modal.notes()] == [True] * (kind == 2)
+
+
 def test_axes_that_cannot_be_used(tmp_path: Path) -> None:
-    """Cylindrical axes, skewed axes and a system that is defined twice are refused."""
+    """Nodes on the axis of a cylinder or without a position, skewed axes, and contradictions are refused."""
     skewed = system_2420(0, 0.0).replace(b"   1.0000000000000000e+00", b"   1.1000000000000000e+00")
-    for systems, message in (
-        (system_2420(1, 0.0), "not Cartesian\n.*Cartesian axes"),
-        (skewed, "not perpendicular unit vectors"),
-        (system_2420(0, 0.1) + system_2420(0, 0.2), "coordinate system 1 twice"),
+    (nodes,) = (block for block in pyuff.UFF(str(UFF / "modes_mm_mN_2414.uff")).read_sets() if block["type"] == 2411)
+    k = list(nodes["node_nums"]).index(9581)
+    on_axis = tuple(float(nodes[name][k]) for name in "xyz")
+    with_15 = system_15(9581, definition=4, displacement=4)
+    for systems, modes, message in (
+        (system_2420(1, 0.0, on_axis), MODES, "no radial direction there\n.*Cartesian axes"),
+        (system_2420(1, 0.0) + with_15, MODES[MODES.index(b"    -1\n  2414") :], "needs the position of the node"),
+        (system_2420(3, 0.0), MODES, "unknown type 3"),
+        (skewed, MODES, "not perpendicular unit vectors"),
+        (system_2420(0, 0.1) + system_2420(0, 0.2), MODES, "coordinate system 1 is defined twice"),
+        (system_2420(1, 0.1) + system_2420(1, 0.1, (1, 0, 0)), MODES, "coordinate system 1 is defined twice"),
     ):
-        (tmp_path / "modes.unv").write_bytes(systems + MODES)
+        (tmp_path / "modes.unv").write_bytes(systems + modes)
         with pytest.raises(rb.DataError, match=message):
             rb.Modal.from_file(tmp_path / "modes.unv", points={"a": 9581}, damping_ratio=0.01)
+
+
+def system_15(node: int, definition: int, displacement: int) -> bytes:
+    """Return a data set 15 with a node."""
+    numbers = "".join(f"{value:10d}" for value in (node, definition, displacement, 1))
+    return f"    -1\n    15\n{numbers}{1.0:13.5E}{2.0:13.5E}{3.0:13.5E}\n    -1\n".encode()
+
+
+@pytest.mark.parametrize("name", ["modes_mm_mN_2414.uff", "normal_modes_55.uff"])
+@pytest.mark.parametrize("letter", [b"D", b"d"])
+def test_exponents_of_fortran(tmp_path: Path, name: str, letter: bytes) -> None:
+    """Exponents D in the numbers of modes are read as E.
+
+    Only records had a test of them: pyuff refuses them in the sets 55 and 2414.
+    """
+    content = (UFF / name).read_bytes()
+    (tmp_path / "modes.uff").write_bytes(re.sub(rb"(?<=\d)[Ee](?=[-+]\d)", letter, content))
+    node, count = (9581, 5) if "2414" in name else (2, 3)
+    options: dict[str, Any] = {"damping_ratio": 0.01, "modal_masses": ["1 kg"] * count, "points": {"a": node}}
+    first = rb.Modal.from_file(UFF / name, **options)
+    second = rb.Modal.from_file(tmp_path / "modes.uff", **options)
+    assert first.frequencies == second.frequencies and first.shapes == second.shapes
+
+
+def test_a_set_that_cannot_be_read_has_a_line(tmp_path: Path) -> None:
+    """A damaged set of a universal file is named by its type and its line, which pyuff does not state."""
+    content = (UFF / "normal_modes_55.uff").read_bytes()
+    start = content.index(b"    -1", content.index(b"    -1", 10) + 1)  # that of the second set
+    place = content.index(b"e+", start)
+    (tmp_path / "modes.uff").write_bytes(content[:place] + b"X+" + content[place + 2 :])
+    line = content[:start].count(b"\n") + 1
+    with pytest.raises(rb.DataError, match=rf"modes.uff, line {line}: the data set 2, of type 55, cannot be read"):
+        rb.Modal.from_file(tmp_path / "modes.uff", damping_ratio=0.01, modal_masses=["1 kg"])
 
 
 def complex_55(modes: list[tuple[complex, complex, list[complex]]], kind: int = 3) -> str:
@@ -458,7 +531,7 @@ def test_a_child_process_with_limits(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(guarded, "MEMORY_PER_BYTE", 0)
     with pytest.raises(rb.DataError, match="try: the complete file"):
         guarded.arrays_from_child(RST, "rst")
-    assert set(guarded.IN_CHILD) == {"rst", "full", "mat"}
+    assert set(guarded.IN_CHILD) == {"rst", "full", "mat", "h5"}
 
 
 @pytest.mark.parametrize("replaced", [True, False])

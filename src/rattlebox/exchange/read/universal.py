@@ -18,6 +18,7 @@ from rattlebox._util.optional_imports import optional_import
 
 from .formats import DensityInFile, ModesRequest, SignalInFile, density_reader, modes_reader, record_reader
 from .guarded import errors_of
+from .local_axes import CARTESIAN, CYLINDRICAL, SPHERICAL, CoordinateSystem
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
 # Factors of length and force from SI to the units of a file, by code; code 9 stands for units of the user.
@@ -35,7 +36,6 @@ _QUANTITIES = {
     9: "reaction force", 10: "kinetic energy", 11: "velocity", 12: "acceleration",
 }  # fmt: skip
 _GEOMETRY = (15, 2411, 2420)  # nodes, nodes, coordinate systems
-_TURN = 1e-3  # largest deviation of axes from perpendicular unit vectors
 _LISTED = 12  # modes in a note
 _SHOWN = 200  # characters of a message of the library
 _FUNCTIONS = {
@@ -151,8 +151,12 @@ def _read_set(path: Path, file: Any, number: int, kind: int) -> dict[str, Any]:
         block: dict[str, Any] = file.read_sets(number)
     except Exception as error:
         cause = " ".join(str(error.__cause__ or error.__context__ or error).split())[:_SHOWN]
+        content = path.read_bytes()
+        marks = [found.start() for found in re.finditer(rb"^ {4}-1[ \r]*$", content, re.MULTILINE)]
+        line = 1 + content.count(b"\n", 0, marks[2 * number]) if 2 * number < len(marks) else 1
         raise DataError(
-            f"{path}: the data set {number + 1}, of type {kind}, cannot be read" + (f": {cause}" if cause else ""),
+            f"{path}, line {line}: the data set {number + 1}, of type {kind}, cannot be read"
+            + (f": {cause}" if cause else ""),
             "the file as the program wrote it",
         ) from None
     return block
@@ -244,52 +248,76 @@ def _sets_of_modes(path: Path, sets: list[dict[str, Any]]) -> tuple[list[dict[st
 
 
 def _axes_of_nodes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[dict[int, FloatArray], tuple[str, ...]]:
-    """Return the axes, as rows, of the nodes with own ones, and a note if the file does not define those of a node."""
-    systems: dict[int, tuple[int, FloatArray]] = {0: (0, np.eye(3))}
+    """Return the axes, as rows, of the nodes with own ones, and notes of what is assumed about axes."""
+    systems = _systems(path, sets)
+    used: dict[int, int] = {}
+    places: dict[int, FloatArray | None] = {}
     for block in sets:
         if block["type"] == 2420:
-            for label, kind, matrix in zip(
-                block["CS_sys_labels"], block["CS_types"], block["CS_matrices"], strict=True
-            ):
-                system = int(kind), np.asarray(matrix, dtype=float)[:3]
-                before = systems.get(int(label), system)
-                if label and (before[0] != system[0] or not np.allclose(before[1], system[1], atol=1e-6)):
-                    raise DataError(
-                        f"{path} defines the coordinate system {int(label)} twice", "one definition, or one part"
-                    )
-                systems[int(label)] = system
-    used = {
-        int(node): int(system)
-        for block in sets
-        if block["type"] != 2420
-        for node, system in zip(block["node_nums"], block["disp_cs"], strict=True)
-    }
+            continue
+        columns = (block[name] for name in ("node_nums", "def_cs", "disp_cs", "x", "y", "z"))
+        for node, definition, displacement, *x in zip(*columns, strict=True):
+            used[int(node)] = int(displacement)
+            # Coordinates of the set 2411 are Cartesian ones, those of the set 15 are in the system of definition.
+            system = systems.get(int(definition) if block["type"] == 15 else 0, systems[0])
+            places[int(node)] = system.position(np.array(x)) if system.kind == CARTESIAN else None
     turned: dict[int, FloatArray] = {}
     undefined: dict[int, int] = {}
+    kinds: set[int] = set()
     for k, node in enumerate(map(int, nodes)):
         label = used.get(node, 0)
         if label not in systems:
             if label != 1:  # the global Cartesian system of most programs
                 undefined.setdefault(label, node)
             continue
-        kind, R = systems[label]
-        where = f"{path}: node {node} has displacements in the coordinate system {label}, which"
-        if kind != 0:
+        R = systems[label].at(places.get(node))
+        kinds.add(systems[label].kind)
+        if R is None:
+            reason = (
+                "has no radial direction there" if places.get(node) is not None else "needs the position of the node"
+            )
             raise DataError(
-                f"{where} is not Cartesian",
+                f"{path}: node {node} has displacements in the coordinate system {label}, which {reason}",
                 "an export with displacements along Cartesian axes, such as the global ones",
             )
-        if R.shape != (3, 3) or not np.allclose(R @ R.T, np.eye(3), atol=_TURN) or np.linalg.det(R) < 0:
-            raise DataError(f"{where} has axes that are not perpendicular unit vectors", "the file as it was written")
         if not np.array_equal(R, np.eye(3)):
             turned[k] = R
-    if not undefined:
-        return turned, ()
-    label, node = next(iter(undefined.items()))
-    return turned, (
-        f"{path.name} does not define the coordinate system {label} of the displacements of node {node}; the global axes "
-        "are assumed",
-    )
+    notes = [
+        f"{path.name} has displacements along spherical axes; their second component is assumed to be along the polar angle "
+        "from the third axis, the third one along the azimuth"
+    ] * (SPHERICAL in kinds)
+    for label, node in list(undefined.items())[:1]:
+        notes.append(
+            f"{path.name} does not define the coordinate system {label} of the displacements of node {node}; the global "
+            "axes are assumed"
+        )
+    return turned, tuple(notes)
+
+
+def _systems(path: Path, sets: list[dict[str, Any]]) -> dict[int, CoordinateSystem]:
+    """Return the coordinate systems of the sets 2420 by their labels, with the global one as 0."""
+    systems = {0: CoordinateSystem(CARTESIAN, np.eye(3), np.zeros(3))}
+    for block in sets:
+        if block["type"] != 2420:
+            continue
+        for label, kind, matrix in zip(block["CS_sys_labels"], block["CS_types"], block["CS_matrices"], strict=True):
+            rows = np.asarray(matrix, dtype=float)
+            system = CoordinateSystem(int(kind), rows[:3], rows[3] if len(rows) > 3 else np.zeros(3))
+            where = f"{path}: the coordinate system {int(label)}"
+            if system.kind not in (CARTESIAN, CYLINDRICAL, SPHERICAL):
+                raise DataError(
+                    f"{where} has the unknown type {int(kind)}", "0, 1 or 2: Cartesian, cylindrical, spherical"
+                )
+            if not system.is_sound:
+                raise DataError(
+                    f"{where} has axes that are not perpendicular unit vectors", "the file as it was written"
+                )
+            before = systems.get(int(label), system)
+            same = before.kind == system.kind and np.allclose(before.axes, system.axes, atol=1e-6)
+            if label and not (same and np.allclose(before.origin, system.origin, rtol=1e-6, atol=1e-9)):
+                raise DataError(f"{where} is defined twice", "one definition, or one part")
+            systems[int(label)] = system
+    return systems
 
 
 class _Mode(NamedTuple):
