@@ -17,9 +17,10 @@ from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.modes_in_file import ModesInFile
 
 from .density_files import density_names, states_density
+from .effective_masses import effective_masses
 from .errors import several
 from .files import BINARY, existing, read_arrays
-from .modal_files import MOST_POINTS, read_modes
+from .modal_files import MOST_POINTS, export_instead, read_modes
 from .random_vibration import Random
 from .recorded import Record, is_table
 from .records import columns_of_arrays, columns_of_text
@@ -93,6 +94,8 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
     rb.Record.from_file("push.csv", columns="force (kN)")
     """
     path, given = existing(file), os.fspath(file)
+    if instead := export_instead(path):
+        raise DataError(f"{path}: files with the ending {path.suffix.lower()!r} are not read", instead)
     problem: RattleboxError | None = None
     # Universal files and tables may have records or modes: the first that can be read.
     with errors_of(path, "a file"), path.open("rb") as stream:
@@ -260,6 +263,10 @@ def _modes(path: Path, given: str) -> FileContents | None:
         f"{several(len(modal.frequencies), 'mode')}: {frequencies}{', ...' if len(modal.frequencies) > _LISTED else ''} Hz",
         f"{several(len(points), 'point')}: {', '.join(points[:_LISTED])}{', ...' if len(points) > _LISTED else ''}",
     ]
+    if modal.participation is None:
+        lines.append("effective masses: unknown, since the file states no participation, which a moving base needs")
+    else:
+        lines += ["effective masses:", *(f"  {line}" for line in str(effective_masses(modal)).splitlines())]
     fields = {"file": given, **options}
     toml = ["[structure]", 'kind = "modal"', *(f"{key} = {_toml(value)}" for key, value in fields.items())]
     python = "".join(f", {key}={_python(value)}" for key, value in options.items())

@@ -217,7 +217,8 @@ class Matrices(FilePart, DampedModes):
                 "a matrix whose eigenvalues are not negative",
                 self._where("K"),
             )
-        values = np.where(np.abs(values) < 1e-12 * largest, 0.0, values)
+        # Negative ones show the size of the rounding, also that of matrices in files.
+        values = np.where(np.abs(values) <= max(1e-12 * largest, -10 * values.min()), 0.0, values)
         # Modes of equal frequency may be turned into each other: those are chosen between which there is no damping.
         vectors = _align(vectors, values, damping, 1e-9 * largest)
         modal = vectors.T @ damping @ vectors

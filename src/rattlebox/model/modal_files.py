@@ -17,16 +17,31 @@ from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.modes_in_file import ModesInFile, listed
 
 from .elementwise import Vector
-from .errors import Hint, at, nearest
+from .errors import Hint, at, nearest, several
 from .files import check_finite, existing, read_text, read_toml
 from .space import AXES
 from .units import numbers, parse, whole_number
 
 _TOML_FIELDS = ("frequencies", "damping_ratios", "modal_masses", "shapes", "participation")
+_EXPORTS = {
+    (
+        ".med",
+        ".rmed",
+    ): "IMPR_RESU(FORMAT='IDEAS', ...) of DEPL in Code_Aster, which writes a universal file (.unv), and "
+    "modal_masses: a .med file has no modal masses",
+    (".op2", ".xdb"): "the .f06 or .pch file of Nastran with VECTOR = ALL, or its HDF5 file (MDLPRM, HDF5)",
+    (".odb", ".fil", ".sim"): "a table of modes (.csv), written by a script of Abaqus/CAE from the frames of the step",
+}
+"""Files that are not read, and what to export instead."""
 MOST_POINTS = 8  # largest number of points that are all read if none is named
 _SHOWN = 200  # characters of a name or a value in a message
 _SAME_UNIT = 1e-2  # relative difference of units that are the same
 _SMALLEST_SHAPE = 1e-12  # kg^-1/2
+
+
+def export_instead(file: Path) -> str:
+    """Return what to export in place of a file of another program that is not read; "" if nothing is known of it."""
+    return next((text for endings, text in _EXPORTS.items() if file.suffix.lower() in endings), "")
 
 
 def read_modes(path: str, count: int | None, *, has_mass_unit: bool = False) -> ModesInFile | dict[str, Any]:
@@ -36,7 +51,7 @@ def read_modes(path: str, count: int | None, *, has_mass_unit: bool = False) -> 
     if form is None:
         raise DataError(
             f"{path}: modes cannot be read from files with the ending {file.suffix.lower()!r}",
-            ", ".join(sorted(modes_reader.endings)),
+            export_instead(file) or ", ".join(sorted(modes_reader.endings)),
         )
     with errors_of(path, "modes"):
         modes = form.read(file, ModesRequest(count, has_mass_unit))
@@ -138,7 +153,9 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
             f"{path}: no mode moves any of the points {listed(list(fields['shapes']))}", "other points", ["file"]
         )
     size = f"the largest mass-normalised shape is {largest:.4g} kg^-0.5, at {point}"
-    return fields, [*(f"{note}; {size}" for note in notes), *modes.notes]
+    rigid = int((modes.frequencies[first] == 0).sum())
+    rest = [f"{name} has {several(rigid, 'rigid-body mode')}, without stiffness and damping"] if rigid else []
+    return fields, [*(f"{note}; {size}" for note in notes), *modes.notes, *rest]
 
 
 def _chosen(modes: ModesInFile, given: Mapping[str, Any], name: str) -> ModesInFile:

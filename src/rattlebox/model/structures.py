@@ -482,7 +482,7 @@ class Modal(FilePart, StructurePart):
     def base_notes(self) -> Iterator[str]:
         """Yield the share of the modes in the total mass."""
         if self.total_mass is not None and self.participation is not None:
-            shares = " and ".join(f"{100 * share:.3g} %" for share in np.atleast_1d(self._effective_share()))
+            shares = " and ".join(f"{round(100 * share, 6):.3g} %" for share in np.atleast_1d(self._effective_share()))
             yield f"the effective masses of the modes are {shares} of the total mass"
 
     def _effective_share(self) -> Vector:
