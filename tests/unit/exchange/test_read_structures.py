@@ -9,6 +9,7 @@ import struct
 import subprocess
 import sys
 import time
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +17,11 @@ import numpy as np
 import pytest
 import pyuff
 import scipy.io
+import scipy.sparse
 from ansys.mapdl.reader import examples
 
 import rattlebox as rb
-from rattlebox.exchange.read import ansys_arrays, guarded
+from rattlebox.exchange.read import ansys, ansys_arrays, guarded
 from rattlebox.exchange.read.matrix_market import read_matrix
 from rattlebox.exchange.read.universal import _phase_scatter, read_functions
 from rattlebox.model.plausibility import plausibility_notes
@@ -554,10 +556,75 @@ def test_libraries_for_pictures_are_not_loaded(replaced: bool, tmp_path: Path) -
         assert arrays["shapes"].shape == (6, len(arrays["nodes"]), 3)
 
 
-def test_a_free_structure(tmp_path: Path) -> None:
-    """Matrices of Ansys without a support have rigid-body modes; the table of supports is empty."""
-    arrays = ansys_arrays._read_fixed([])
-    assert arrays.shape == (0, 2)
+@pytest.mark.parametrize("count", [6, 140])
+def test_a_free_structure(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    """Matrices of Ansys without a support have six rigid-body modes, by the dense and by the sparse solver.
+
+    Every file that was tried had supports.
+    """
+    random = np.random.default_rng(5)
+    places, masses = random.uniform(-1, 1, (count, 3)), random.uniform(1, 2, count)
+    K = np.zeros((count, 3, count, 3))
+    for a, b in combinations(range(count), 2):
+        unit = (places[b] - places[a]) / np.linalg.norm(places[b] - places[a])
+        block = 1e5 * np.outer(unit, unit)
+        for i, j, sign in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
+            K[i, :, j] += sign * block
+    upper = scipy.sparse.coo_array(np.triu(K.reshape(3 * count, -1)))
+    n = np.arange(3 * count)
+    arrays = {
+        "rows": np.column_stack([1 + n // 3, n % 3]), "fixed": ansys_arrays._read_fixed([]),
+        "K_row": upper.row, "K_column": upper.col, "K_value": upper.data,
+        "M_row": n, "M_column": n, "M_value": np.repeat(masses, 3),
+    }  # fmt: skip
+    monkeypatch.setattr(ansys, "_read_arrays", lambda *_: arrays)
+    modal = rb.Modal.from_file(FULL, points={"a": 2}, damping_ratio=0.01, mode_count=8)
+    assert [frequency == 0 for frequency in modal.frequencies] == [True] * 6 + [False] * 2
+    assert np.isfinite(modal.modes().decay).all() and not modal.modes().decay[:6].any()
+    np.testing.assert_allclose(modal.total_mass, masses.sum(), rtol=1e-12)
+    np.testing.assert_allclose(rb.effective_masses(modal).shares, 1.0, rtol=1e-9)
+    assert "6 rigid-body modes, without stiffness" in list(modal.notes())[-1]
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("a.med", "FORMAT='IDEAS'.*modal_masses"),
+        ("a.op2", r"\.f06"),
+        ("a.odb", "table of modes"),
+    ],
+)
+def test_files_that_are_not_read_name_an_export(tmp_path: Path, name: str, advice: str) -> None:
+    """Files of modes without a reader are refused with the output that is read instead; a preview says the same."""
+    (tmp_path / name).write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(range(256)))
+    for read in (lambda path: rb.Modal.from_file(path, damping_ratio=0.01), rb.inspect):
+        with pytest.raises(rb.DataError, match=advice):
+            read(tmp_path / name)
+
+
+def test_rigid_body_modes_of_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frequencies of rigid-body modes that are rounding of zero become zero, with a note, and do not stop a run.
+
+    Those of universal files and .rst files were read as oscillations that last hours.
+    """
+    content = (UFF / "normal_modes_55.uff").read_bytes()
+    (tmp_path / "modes.uff").write_bytes(
+        content.replace(b"  1.00000e+01  0.00000e+00", b"  1.30000e-05  0.00000e+00", 1)
+    )
+    options: dict[str, Any] = {"points": {"a": "2 x"}, "damping_ratio": 0.01}
+    uff = rb.Modal.from_file(tmp_path / "modes.uff", modal_masses=["1 kg"] * 3, **options)
+    arrays = ansys._read_arrays(RST, "rst")
+    frequencies = np.array([2e-4, *arrays["frequencies"][1:]])
+    monkeypatch.setattr(ansys, "_read_arrays", lambda *_: {**arrays, "frequencies": frequencies})
+    for modal in (uff, rb.Modal.from_file(RST, **options)):
+        assert modal.frequencies[0] == 0.0 < modal.frequencies[1]
+        assert "1 rigid-body mode, without stiffness and damping" in list(modal.notes())[-1]
+    # A push moves the structure on with its impulse over the mass of the rigid-body mode.
+    one = rb.Modal.from_file(tmp_path / "modes.uff", modal_masses=["2 kg"] * 3, mode_numbers=[1], **options)
+    push = rb.HalfSine(amplitude="30 N", duration="0.1 s")
+    run = rb.simulate(rb.Case(structure=one, load=push, duration="0.2 s"))
+    shape = one.modes().shapes["a"][0]
+    assert run.motion.velocity.isel(time=-1).item() == pytest.approx(30 * 0.1 * 2 / np.pi * shape**2, rel=1e-9)
 
 
 def test_errors_of_other_libraries_name_the_file(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from rattlebox._util.optional_imports import optional_import
 
 from .formats import ModesRequest, modes_reader
 from .guarded import arrays_from_child, errors_of
-from .modes_in_file import FloatArray, ModesInFile, read_start
+from .modes_in_file import FloatArray, ModesInFile, read_start, without_rounding
 
 _MASS_UNITS = {
     "SI": 1.0, "MKS": 1.0, "uMKS": 1.0, "CGS": 1e-3, "MPA": 1e3, "BFT": 14.593902937206, "BIN": 175.12683524648,
@@ -72,7 +72,7 @@ def read_result(path: Path, _: ModesRequest) -> ModesInFile:
                 "MODOPT with Nrmkey = OFF, for modes that are mass-normalised; or modal_masses",
             )
         return ModesInFile(
-            frequencies=np.asarray(result["frequencies"], dtype=float),
+            frequencies=np.sqrt(without_rounding(np.square(np.asarray(result["frequencies"], dtype=float)))),
             shapes={str(int(node)): modes[:, k] for k, node in enumerate(result["nodes"])},
             mass_unit=_MASS_UNITS.get(str(result["units"])),
             notes=(

@@ -19,7 +19,7 @@ from rattlebox._util.optional_imports import optional_import
 from .formats import DensityInFile, ModesRequest, SignalInFile, density_reader, modes_reader, record_reader
 from .guarded import errors_of
 from .local_axes import CARTESIAN, CYLINDRICAL, SPHERICAL, CoordinateSystem
-from .modes_in_file import FloatArray, ModesInFile, read_start
+from .modes_in_file import FloatArray, ModesInFile, read_start, without_rounding
 
 # Factors of length and force from SI to the units of a file, by code; code 9 stands for units of the user.
 _UNIT_CODES = {
@@ -203,6 +203,8 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
                 raise DataError(f"{path}: a {what} is not finite", "the file as it was written: bytes may be swapped")
         if (frequencies < 0).any():
             raise DataError(f"{path}: a frequency is negative", "the file as the program wrote it")
+        if not is_complex:
+            frequencies = np.sqrt(without_rounding(frequencies**2))
         damping = np.array([mode.damping for mode in modes])
         axes, assumed = _axes_of_nodes(path, [block for block in every if block["type"] in _GEOMETRY], nodes)
         for k, R in axes.items():  # rows of R are the axes of the system: u = R^T u_local
