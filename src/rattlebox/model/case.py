@@ -299,7 +299,7 @@ class Case(Part):
             enough = f'duration = "{last:.10g} s", or a longer record' if last > 0 else "a longer record"
             raise Hint(
                 f"the record covers {first:.10g} s to {last:.10g} s, the run 0 to {self.duration:.10g} s",
-                enough if record.covers(last) else record.begin_advice,
+                enough if record.covers(last) else record.start_advice,
                 record.where,
             )
 

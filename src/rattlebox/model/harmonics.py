@@ -36,7 +36,7 @@ class Harmonic(Signal):
     phase
         Phase [rad], or text in "deg".
     start, stop
-        Begin and end [s]; default unlimited from 0.
+        Start and end [s]; default unlimited from 0.
 
     Notes
     -----
@@ -180,7 +180,7 @@ class SineSweep(Polyline):
     duration
         Duration of a logarithmic sweep [s], in place of a rate.
     start
-        Begin [s]; before it and after its end the sweep is zero.
+        Start [s]; before it and after its end the sweep is zero.
 
     Notes
     -----

@@ -231,7 +231,7 @@ class Record(FileSignal):
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("times", "values")
-    begin_advice: ClassVar[str] = 'time_zero = "first", which shifts its first point to 0 s'
+    start_advice: ClassVar[str] = 'time_zero = "first", which shifts its first point to 0 s'
     kind: Literal["record"] = "record"
     times: Column1D = Field(default_factory=lambda: _column(()))
     values: Column1D = Field(default_factory=lambda: _column(()))
@@ -371,7 +371,7 @@ class Record(FileSignal):
         return abs(self.scale) * max(float(self.values.max()), -float(self.values.min()))
 
     @property
-    def _begin(self) -> float:
+    def _start(self) -> float:
         """Time of the record that is 0 s in the run [s]."""
         if self.time_zero is not None and self.time_zero != "first":
             return self.time_zero
@@ -389,7 +389,7 @@ class Record(FileSignal):
                 f"{file} {self._notes[-1]}; {self.unit or 'SI'} is assumed, with a peak of {self.peak:.4g} "
                 f"{self.unit}{in_g}; set unit if that is wrong"
             )
-        zero, first = self._begin, self.times[0]
+        zero, first = self._start, self.times[0]
         before = int(np.searchsorted(self.times, zero))
         if before:
             unused = abs(self.scale) * float(np.abs(self.values[:before]).max())
@@ -442,7 +442,7 @@ class Record(FileSignal):
 
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times in the run [s] and values of the points."""
-        zero = self._begin
+        zero = self._start
         return self.times - zero if zero else self.times, self.values if self.scale == 1 else self.scale * self.values
 
     def __eq__(self, other: object) -> bool:

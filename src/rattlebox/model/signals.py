@@ -259,7 +259,7 @@ class Polyline(Signal):
 class Sampled(Polyline):
     """Piecewise linear signal through samples, which must cover the run."""
 
-    begin_advice: ClassVar[str] = "a record that begins at 0 s"  # for one that begins later
+    start_advice: ClassVar[str] = "a record that begins at 0 s"  # for one that begins later
     is_sampled: ClassVar[bool] = True
 
     def words(self) -> str:

@@ -141,26 +141,26 @@ def read_quickly(file: Path) -> tuple[list[Row], Array, list[Row], Dialect] | No
         with _open(file) as stream:
             # Both ends are read as lines of text: they show delimiter, names and units, and where the file is cut short.
             start = stream.read(_HEAD)
-            begin, size = start.rfind(b"\n") + 1, stream.seek(0, io.SEEK_END)
-            stream.seek(max(begin, size - _TAIL))
+            rows_start, size = start.rfind(b"\n") + 1, stream.seek(0, io.SEEK_END)
+            stream.seek(max(rows_start, size - _TAIL))
             tail = stream.read()
             cut = tail.rstrip().rfind(b"\n") + 1
             ending = tail[tail.find(b"\n") + 1 :].rstrip().decode().splitlines()
-            above = start[:begin].decode("utf-8-sig").splitlines()
+            above = start[:rows_start].decode("utf-8-sig").splitlines()
             if size <= len(start) or len(ending) < 4 or len(above) != start.count(b"\n"):
                 return None
             dialect = dialect_of(ending, b'"' in start or b'"' in tail)
             if dialect.has_comma and dialect.quoted:
                 return None
             # Between them only rows of numbers are expected; anything else raises.
-            stream.seek(begin)
+            stream.seek(rows_start)
             between = 0
             for block in iter(lambda: stream.read(1 << 20), b""):
                 between += block.count(b"\n")
                 if dialect.has_comma and b"." in block:
                     return None
             between -= tail[cut:].count(b"\n")
-            stream.seek(begin)
+            stream.seek(rows_start)
             with io.TextIOWrapper(stream, "utf-8", newline="\n") as lines, warnings.catch_warnings():
                 warnings.simplefilter("error", UserWarning)  # no data
                 rows = islice(lines, between)

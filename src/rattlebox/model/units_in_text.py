@@ -111,7 +111,7 @@ def _units_in(line: str, units: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
     """Yield texts that may be units, and whether the line states them as the unit of the values."""
     yield line, True  # nothing but a unit
     end = 0
-    for match in sorted((*_MARKED.finditer(line), *_IN.finditer(line), *_BRACKETED.finditer(line)), key=_begin):
+    for match in sorted((*_MARKED.finditer(line), *_IN.finditer(line), *_BRACKETED.finditer(line)), key=_place):
         whole = _CLOSING.split(line[match.start(1) :])[0]  # "meters per second squared", not "meters"
         text = whole if factor_of(whole, units) else match[1]
         known = factor_of(text, units)
@@ -123,5 +123,5 @@ def _units_in(line: str, units: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
         yield match[1], not _AFTER_NUMBER.search(line[: match.start()])
 
 
-def _begin(match: re.Match[str]) -> int:
+def _place(match: re.Match[str]) -> int:
     return match.start(1)

@@ -73,7 +73,7 @@ def base_at_points(case: Case, base: FloatArray) -> FloatArray:
 
 
 def accelerations_of_steps(arrays: RunArrays, case: Case, shapes: FloatArray) -> FloatArray:
-    """Return the acceleration relative to the base at the begin and at the end of each output step.
+    """Return the acceleration relative to the base at the start and at the end of each output step.
 
     `shapes`: mode shapes of K motions, for instance of points [kg^-1/2], (M, K). Returns accelerations, (2, T - 1, K).
 
