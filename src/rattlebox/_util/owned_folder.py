@@ -77,10 +77,10 @@ def write_marker(folder: Path, marker: Marker, *, new: bool = False) -> None:
         name.write_text(text, encoding="utf-8")
 
 
-def is_free(folder: Path, also: Iterable[str] = ()) -> bool:
+def is_free(folder: Path) -> bool:
     """Return whether a folder is empty, except for temporary files of the marker."""
     allowed = {path.name for path in temporaries(folder / MARKER)}
-    return {path.name for path in folder.iterdir()} <= {*allowed, *also}
+    return {path.name for path in folder.iterdir()} <= allowed
 
 
 def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:

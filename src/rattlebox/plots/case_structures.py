@@ -128,9 +128,9 @@ def _draw_base_motion(axes: Axes, case: Case, start: Point, end: Point, at: Poin
         text(axes, at, "motion of the base", color=LOAD_COLOUR, fontsize="small", **options)
 
 
-def _row_of_marks(axes: Axes, case: Case, marks: Marks, at: Point, radius: float = 0.13) -> None:
+def _row_of_marks(axes: Axes, case: Case, marks: Marks, at: Point) -> None:
     """Draw the marks of all dampers next to each other."""
-    shown = list(dict.fromkeys(marks[number] for number in range(len(marks))))
+    radius, shown = 0.13, list(dict.fromkeys(marks[number] for number in range(len(marks))))
     for k, words in enumerate(shown):
         mark(axes, (at[0] + 2.4 * radius * (k - (len(shown) - 1) / 2), at[1]), words, radius)
 

@@ -99,18 +99,6 @@ class Batch:
         return np.ravel_multi_index(np.ix_(*self.indices), tuple(shape)).ravel()
 
 
-def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> _core.Problem:
-    """Pack many variants of a case for the core.
-
-    Returns as `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has the axes
-    of the grid last, (n, ...). There are no sample times.
-    """
-    first, *others = pack_parts(case, columns, shape)
-    if others and first.obstacle:
-        raise first.obstacle
-    return first.packed
-
-
 def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> list[Batch]:
     """Pack many variants of a case for the core, in batches that differ in numbers only.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ import rattlebox as rb
 from rattlebox.core import _core
 from rattlebox.model.paths import replaced
 from rattlebox.prepare import pack as packing
-from rattlebox.prepare.pack import pack, pack_batch
+from rattlebox.prepare.pack import pack, pack_parts
 from rattlebox.prepare.variants import compare
 
 CONSTANT = rb.Tsuji(alpha=0.006313, ending="zero_overlap")
@@ -60,6 +60,14 @@ FRAME = rb.Case(
     damper=rb.ImpactDamper(ball=BALL, gap="0.4 mm", contact=CONSTANT),
     duration=1.0,
 )
+
+
+def pack_batch(case: rb.Case, columns: Mapping[str, Any], shape: Sequence[int]) -> _core.Problem:
+    """Return the first batch of variants; raise if they need several for which the first one states a reason."""
+    first, *others = pack_parts(case, columns, shape)
+    if others and first.obstacle:
+        raise first.obstacle
+    return first.packed
 
 
 def variants(case: rb.Case, columns: Mapping[str, Any]) -> tuple[_core.Problem, list[tuple[tuple[int, ...], rb.Case]]]:

@@ -272,7 +272,9 @@ class MapResponse:
     amplitude: ComplexArray  # Displacement of the observed point [m], (L, F, S)
     cavity_amplitude: FloatArray  # Largest amplitude of a damper in the unit of the map, (L, F, S)
     mass_ratio: float
-    share: FloatArray  # Share of the mean square velocity of the dampers in the first harmonic, (L, F, S)
+    first_harmonic_share: (
+        FloatArray  # Share of the mean square velocity of the dampers in the first harmonic, (L, F, S)
+    )
     is_unstable: NDArray[np.bool_]  # Whether the motion lies between two folds, (L, F, S)
     flags: NDArray[np.int16]  # Bits of `FLAGS`, (L, F)
     interpolation_error: FloatArray  # Relative change of the largest amplitude with half of the map, (L, F)
@@ -280,9 +282,9 @@ class MapResponse:
     amplitude_interval: FloatArray
     peak: FloatArray  # Largest amplitude [m], its frequency [Hz], and its relative change with half of the map, (L,)
     peak_frequency: FloatArray
-    peak_error: FloatArray
+    peak_interpolation_error: FloatArray
     peak_interval: FloatArray  # Half of the 95 % interval of the peak that follows from those of the map [m], (L,)
-    softening_error: FloatArray  # Relative change of the peak without the estimated effect of softening, (L,)
+    peak_softening_error: FloatArray  # Relative change of the peak without the estimated effect of softening, (L,)
     # Natural frequency [Hz] and damping ratio of the modes, and half of the 95 % interval of the latter, (m, K)
     mode_frequency: FloatArray
     damping_ratio: FloatArray

@@ -338,50 +338,26 @@ def default_frequencies(given: Any, table: MassTable, model: ModalModel, shapes:
 _OVER = ("at", "number", "level", "frequency")
 _MOTION, _PEAK, _MODAL = (*_OVER, "solution"), _OVER[:3], (*_OVER[:2], "mode", "map_amplitude")
 
-_VARIABLES: list[tuple[str, tuple[str, ...], str, str, str]] = [
-    ("cavity_amplitude", _MOTION, "cavity_amplitude", "map", "largest amplitude of a damper"),
-    ("first_harmonic_share", _MOTION, "share", "1", "share of the motion of the dampers in the first harmonic"),
-    ("is_unstable", _MOTION, "is_unstable", "", "whether the motion is unstable"),
-    ("solutions", _OVER, "", "1", "number of steady motions in the map"),
-    ("flags", _OVER, "flags", "", "limits of the response"),
-    (
-        "interpolation_error",
-        _OVER,
-        "interpolation_error",
-        "1",
-        "relative change of the largest amplitude with half of the map",
-    ),
-    (
-        "amplitude_interval",
-        _OVER,
-        "amplitude_interval",
-        "m",
-        "half of the 95 % interval of the largest amplitude, from the map",
-    ),
-    ("bare_amplitude", _OVER[2:], "", "m", "amplitude without dampers"),
-    ("peak", _PEAK, "peak", "m", "largest amplitude over the frequency"),
-    ("peak_frequency", _PEAK, "peak_frequency", "Hz", "frequency of the largest amplitude"),
-    ("peak_interpolation_error", _PEAK, "peak_error", "1", "relative change of the peak with half of the map"),
-    ("peak_interval", _PEAK, "peak_interval", "m", "half of the 95 % interval of the peak, from the map"),
-    (
-        "peak_softening_error",
-        _PEAK,
-        "softening_error",
-        "1",
-        "relative change of the peak without the estimated effect of softening",
-    ),
-    ("mass_ratio", _OVER[:2], "mass_ratio", "1", "mass of the dampers over the effective mass for an impact"),
-    ("damping_ratio", _MODAL, "damping_ratio", "1", "damping ratio of the mode"),
-    (
-        "damping_ratio_interval",
-        _MODAL,
-        "damping_ratio_interval",
-        "1",
-        "half of the 95 % interval of the damping ratio, from the map",
-    ),
-    ("mode_frequency", _MODAL, "mode_frequency", "Hz", "natural frequency of the mode"),
+_VARIABLES: list[tuple[str, tuple[str, ...], str, str]] = [
+    ("cavity_amplitude", _MOTION, "map", "largest amplitude of a damper"),
+    ("first_harmonic_share", _MOTION, "1", "share of the motion of the dampers in the first harmonic"),
+    ("is_unstable", _MOTION, "", "whether the motion is unstable"),
+    ("solutions", _OVER, "1", "number of steady motions in the map"),
+    ("flags", _OVER, "", "limits of the response"),
+    ("interpolation_error", _OVER, "1", "relative change of the largest amplitude with half of the map"),
+    ("amplitude_interval", _OVER, "m", "half of the 95 % interval of the largest amplitude, from the map"),
+    ("bare_amplitude", _OVER[2:], "m", "amplitude without dampers"),
+    ("peak", _PEAK, "m", "largest amplitude over the frequency"),
+    ("peak_frequency", _PEAK, "Hz", "frequency of the largest amplitude"),
+    ("peak_interpolation_error", _PEAK, "1", "relative change of the peak with half of the map"),
+    ("peak_interval", _PEAK, "m", "half of the 95 % interval of the peak, from the map"),
+    ("peak_softening_error", _PEAK, "1", "relative change of the peak without the estimated effect of softening"),
+    ("mass_ratio", _OVER[:2], "1", "mass of the dampers over the effective mass for an impact"),
+    ("damping_ratio", _MODAL, "1", "damping ratio of the mode"),
+    ("damping_ratio_interval", _MODAL, "1", "half of the 95 % interval of the damping ratio, from the map"),
+    ("mode_frequency", _MODAL, "Hz", "natural frequency of the mode"),
 ]
-"""Name, dimensions, field of a `MapResponse`, unit ("map": that of the amplitudes of the map) and meaning of variables."""
+"""Name, dimensions, unit ("map": that of the amplitudes of the map) and meaning of variables."""
 
 
 def _described(units: str, long_name: str) -> dict[str, str]:
@@ -412,8 +388,8 @@ def _dataset(
         "amplitude": (_MOTION, np.abs(amplitude), _described("m", f"amplitude, {about['point']}")),
         "phase": (_MOTION, np.angle(amplitude), _described("rad", "phase to the load")),
     }
-    for name, dims, field, unit, text in _VARIABLES:
-        values = gather(field, motions=dims == _MOTION) if field else computed[name]
+    for name, dims, unit, text in _VARIABLES:
+        values = computed[name] if name in computed else gather(name, motions=dims == _MOTION)
         data[name] = dims, values, _described(units.get(unit, unit), text) if unit else {"long_name": text}
     masks = [1 << bit for bit in range(len(FLAGS))]
     data["flags"][2].update(flag_masks=masks, flag_meanings=" ".join(FLAGS))
