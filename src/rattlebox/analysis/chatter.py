@@ -39,17 +39,9 @@ def minimum_real_part(frequency: FloatArray, response: ComplexArray) -> float:
 
     A tool with this response is stable at all spindle speeds up to the depth of cut b = -1 / (2 Ks min Re G).
 
-    Parameters
-    ----------
-    frequency : (F,) float
-        Rising frequencies [Hz].
-    response : (F,) complex
-        Displacement over force [m/N], times the directional factor; NaN where it is unknown.
-
-    Returns
-    -------
-    float
-        Minimum of a parabola through the smallest real part and its neighbours [m/N]; NaN if nothing is known.
+    `frequency`: rising frequencies [Hz], (F,). `response`: displacement over force [m/N], times the directional factor; NaN
+    where it is unknown, (F,). Returns minimum of a parabola through the smallest real part and its neighbours [m/N]; NaN if
+    nothing is known.
 
     Examples
     --------
@@ -75,19 +67,11 @@ def minimum_real_part(frequency: FloatArray, response: ComplexArray) -> float:
 
 @dataclass(frozen=True, eq=False)
 class SampledResponse:
-    """A directional response, sampled so finely that its phase and size change little from one frequency to the next.
-
-    Attributes
-    ----------
-    omega : (F,) float
-        Rising angular frequencies [rad/s].
-    values : (F,) complex
-        Response there [m/N]; NaN where it is unknown.
-    """
+    """A directional response, sampled so finely that its phase and size change little from one frequency to the next."""
 
     response: Response
-    omega: FloatArray
-    values: ComplexArray
+    omega: FloatArray  # Rising angular frequencies [rad/s], (F,)
+    values: ComplexArray  # Response there [m/N]; NaN where it is unknown, (F,)
 
     @classmethod
     def of(cls, response: Response, omega: FloatArray) -> SampledResponse:
@@ -131,21 +115,14 @@ class SampledResponse:
 
 @dataclass(frozen=True, eq=False)
 class Lobes:
-    """Stability limit at N periods of the teeth.
+    """Stability limit at N periods of the teeth."""
 
-    Attributes
-    ----------
-    depth : (N,) float
-        Smallest depth times cutting coefficient b Ks at which a vibration neither grows nor decays [N/m]; infinite if there
-        is none.
-    omega : (N,) float
-        Angular frequency of this vibration [rad/s].
-    waves : (N,) int
-        Number of whole waves that it leaves on the surface between two teeth, the number of the lobe; -1 if there is none.
-    """
-
+    # Smallest depth times cutting coefficient b Ks at which a vibration neither grows nor decays [N/m]; infinite if there is
+    # none, (N,)
     depth: FloatArray
-    omega: FloatArray
+    omega: FloatArray  # Angular frequency of this vibration [rad/s], (N,)
+    # Number of whole waves that it leaves on the surface between two teeth, the number of the lobe; -1 if there is none,
+    # (N,)
     waves: NDArray[np.int64]
 
 

@@ -50,24 +50,9 @@ class Packing(Part):
     def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
         """Return positions for spheres.
 
-        Parameters
-        ----------
-        cavity
-            Cavity around the spheres.
-        radii
-            Radii of the spheres, (n,) [m].
-        settles
-            Whether there is gravity, so that the error may suggest a settled packing.
-
-        Returns
-        -------
-        (n, 3) float
-            Positions relative to the centre of the cavity [m]; NaN if `is_computed`.
-
-        Raises
-        ------
-        Hint
-            If the spheres do not fit.
+        `cavity`: cavity around the spheres. `radii`: radii of the spheres, (n,) [m]. `settles`: whether there is gravity,
+        so that the error may suggest a settled packing. Returns positions relative to the centre of the cavity [m]; NaN if
+        `is_computed`, (n, 3). Raises Hint if the spheres do not fit.
         """
 
     @property

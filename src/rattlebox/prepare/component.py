@@ -176,12 +176,8 @@ def _packed(problem: Any, *arguments: Any) -> bytes:
 def _exchange_notes(case: Case, steps: str, share: float) -> tuple[str, ...]:
     """Return a note on the exchanges that a damper alone needs, if the mass of its structure is known.
 
-    Parameters
-    ----------
-    steps
-        Words for the steps that the contacts of the damper need.
-    share
-        Smallest mass in the damper over the effective mass of the structure that is worth a note.
+    `steps`: words for the steps that the contacts of the damper need. `share`: smallest mass in the damper over the
+    effective mass of the structure that is worth a note.
     """
     (damper,) = case.dampers
     ratio = damper.mass * case.modes.mobility(damper.point)

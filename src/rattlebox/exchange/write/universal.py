@@ -43,28 +43,16 @@ _HEAD = 400  # bytes that contain the seal
 
 @dataclass(frozen=True, eq=False)
 class Function:
-    """A function for a set 58b.
-
-    Attributes
-    ----------
-    kind
-        Type of the function, such as `RESPONSE_FUNCTION`.
-    x : (n,) float
-        Times [s] or frequencies [Hz].
-    values : (n,) float or complex
-        Values in `unit`, or in `unit` over `source_unit`.
-    response, source
-        Node and direction.
-    """
+    """A function for a set 58b."""
 
     name: str
-    kind: int
-    x: FloatArray
+    kind: int  # Type of the function, such as `RESPONSE_FUNCTION`
+    x: FloatArray  # Times [s] or frequencies [Hz], (n,)
     x_unit: str
-    values: NDArray[np.generic]
+    values: NDArray[np.generic]  # Values in `unit`, or in `unit` over `source_unit`, (n,)
     unit: str
     source_unit: str = ""
-    response: Node = (0, 0)
+    response: Node = (0, 0)  # Node and direction
     source: Node = (0, 0)
     note: str = ""
 
@@ -185,12 +173,8 @@ def modes_sets(
 ) -> list[bytes]:
     """Return the sets of mass-normalised normal modes in SI units.
 
-    Parameters
-    ----------
-    shapes
-        Translations of each node, (m, 3) [kg^-1/2]; the modal masses are 1 kg.
-    positions
-        Coordinates of nodes [m]; may be empty.
+    `shapes`: translations of each node, (m, 3) [kg^-1/2]; the modal masses are 1 kg. `positions`: coordinates of nodes [m];
+    may be empty.
     """
     sets = [
         _set(

@@ -432,10 +432,7 @@ def save_finished(
 ) -> xr.Dataset:
     """Add the kind of a study without runs to its result, and write the result to a store of its own.
 
-    Parameters
-    ----------
-    manifest
-        Description that distinguishes the study from others, in JSON types.
+    `manifest`: description that distinguishes the study from others, in JSON types.
     """
     if path is not None:
         from rattlebox import __version__
