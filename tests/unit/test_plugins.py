@@ -370,6 +370,66 @@ for case in (stacked, stacked.replaced({"damper.packing": {"kind": "vibrated", "
     assert result.returncode == 0, result.stderr
 
 
+def test_a_kind_of_study_names_its_figure_and_its_report() -> None:
+    """The figure and the report that each built-in kind names exist, and no study imports them.
+
+    Figures, reports and kinds stood in three tables, which could differ; nothing compared them.
+    """
+    code = """
+import sys
+from rattlebox.studies.kinds import BUILT_IN, study_kind
+kinds = {name: study_kind(name) for name in BUILT_IN}
+assert not [name for name in sys.modules if name.startswith(("rattlebox.plots", "rattlebox.report", "matplotlib"))]
+import rattlebox as rb
+from rattlebox._util.plugins import named_object
+from rattlebox.report.parts import Kind
+for name, cls in kinds.items():
+    assert cls.kind == name
+    assert isinstance(named_object(cls.report, name), Kind)
+    assert not cls.figure or named_object(cls.figure, name) is getattr(rb, cls.figure.partition(":")[2])
+print(*sorted(name for name, cls in kinds.items() if not cls.figure))
+"""
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (result.returncode, result.stdout) == (0, "sweep\n"), result.stderr
+
+
+def test_a_figure_or_report_that_does_not_exist_is_named(plugin: Path) -> None:
+    """A kind of study that names no existing figure or report stops the command with the name, without a traceback."""
+    code = plugin / "my_package" / "load_levels.py"
+    text = code.read_text("utf-8")
+    named = "my_package.load_levels_figure:plot_load_levels"
+    assert text.count(f'"{named}"') == 1
+    try:
+        for wrong in ("my_package.load_levels_figure:plot_levels", "my_package.no_module:plot", "no reference"):
+            changed = text.replace(f'"{named}"', f'"{wrong}"\n    report: ClassVar[str] = "{wrong}"')
+            code.write_text(changed, encoding="utf-8")
+            results = rattlebox(
+                plugin,
+                f"sweep study.toml -o {abs(hash(wrong))}.zarr",
+                f"plot {abs(hash(wrong))}.zarr -o wrong.png",
+                f"report {abs(hash(wrong))}.zarr -o wrong.html",
+            )
+            assert [code for code, _, _ in results] == [0, 2, 2], results
+            for _, _, error in results[1:]:
+                assert wrong in " ".join(error.split()) and "try: " in error, error
+    finally:
+        code.write_text(text, encoding="utf-8")
+
+
+def test_a_kind_of_study_that_lacks_a_method_is_refused_at_import() -> None:
+    """A kind of study without `compute` is refused when it is declared; it once failed when it ran."""
+    from rattlebox.studies.run.study import Study, study_function
+
+    class Half(Study):
+        kind = "half"
+
+        def validate(self) -> None:
+            """Accept everything."""
+
+    with pytest.raises(TypeError, match=r"Half must define compute, as each Study does"):
+        study_function(Half)
+
+
 def test_a_kind_has_one_class() -> None:
     """A second class of a kind is refused when it is defined."""
     from rattlebox.model.restitutions import Coefficients, Restitution
@@ -413,7 +473,8 @@ TWICE = {
     ),
     "study": (
         "from rattlebox.studies.run.study import Study, study_function\n"
-        "class Mine(Study):\n    kind = 'load_levels'\nstudy_function(Mine)",
+        "class Mine(Study):\n    kind = 'load_levels'\n    def validate(self): ...\n    def compute(self): ...\n"
+        "study_function(Mine)",
         "kind of study 'load_levels'",
     ),
 }

@@ -10,7 +10,8 @@ from __future__ import annotations
 import warnings
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import NamedTuple, TypeVar
+from pkgutil import resolve_name
+from typing import Any, NamedTuple, TypeVar
 
 from .exceptions import ResourceError, message
 
@@ -74,6 +75,16 @@ def taken(concept: str, name: str, known: str, new: str) -> NameTaken:
         f"{new}: the {concept} {name!r} is that of {known}",
         f"another name; or, if these are packages of others, pip uninstall {new.partition('.')[0]}",
     )
+
+
+def named_object(reference: str, needed_by: str) -> Any:
+    """Return what "module:name" stands for, imported when it is needed, such as the figure of a kind of study."""
+    try:
+        return resolve_name(reference)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise ResourceError(
+            f"{needed_by} names {reference!r}, which cannot be imported: {error}", 'a text "package.module:name"'
+        ) from error
 
 
 def load_plugins() -> None:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox._util.plugins import named_object
 from rattlebox.cli.output import output_file
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.maps import plot_map
 from rattlebox.plots.selection import nearest_value_notes, select
 from rattlebox.plots.style import WIDTHS
-from rattlebox.results.figures import figures_of_studies
+from rattlebox.studies.kinds import study_kind, study_kinds
 from rattlebox.studies.run.stored import open_study
 
 if TYPE_CHECKING:
@@ -51,9 +52,9 @@ def plot_study(study: Path, out: Path | None, options: PlotOptions) -> None:
             )
         data, at = open_study(study), _axis_values(options.at)
         chosen = {name: value for name, value in {"of": options.of, "size": options.size}.items() if value is not None}
-        study_kind, figures = str(data.attrs.get("study", "sweep")), figures_of_studies()
-        if (kind or study_kind) in figures:
-            figure = _draw_kind(data, kind or study_kind, study_kind, chosen, at)
+        own, figures = str(data.attrs.get("study", "sweep")), _figures()
+        if (kind or own) in figures:
+            figure = _draw_kind(data, kind or own, own, chosen, at)
         elif kind in (None, "map", "lines"):
             figure = plot_map(data, kind=kind, at=at, **chosen)  # type: ignore[arg-type]
         else:
@@ -84,18 +85,24 @@ def check_output(out: Path | None, size: str | None, formats: Sequence[str] = FO
         raise DataError(f"-o {out}: the folder {out.parent} does not exist", "another folder, or create it first")
 
 
-def _draw_kind(data: xr.Dataset, kind: str, study_kind: str, options: dict[str, str], at: dict[str, str]) -> Figure:
+def _figures() -> dict[str, str]:
+    """Return the references of the figures of the kinds of studies that have one of their own."""
+    return {name: figure for name in study_kinds() if (figure := study_kind(name).figure)}
+
+
+def _draw_kind(data: xr.Dataset, kind: str, own: str, options: dict[str, str], at: dict[str, str]) -> Figure:
     """Draw the figure that belongs to a kind of study."""
-    figures = figures_of_studies()
-    if kind != study_kind:
-        other = study_kind if study_kind in figures else "lines"
+    figures = _figures()
+    if kind != own:
+        other = own if own in figures else "lines"
         raise CaseError(
-            f"--kind {kind}: this study is a {study_kind.replace('_', ' ')}, or is not finished",
+            f"--kind {kind}: this study is a {own.replace('_', ' ')}, or is not finished",
             f"--kind {other}, or 'rattlebox show' to see its progress",
         )
-    if "of" in options and "of" not in signature(figures[kind]).parameters:
+    draw: Callable[..., Figure] = named_object(figures[kind], f"the kind of study {kind!r}")
+    if "of" in options and "of" not in signature(draw).parameters:
         raise CaseError(f"--of {options['of']}: a figure of the kind {kind} has no choice of measures", "--kind lines")
-    return figures[kind](select(data, at)[0], **options)
+    return draw(select(data, at)[0], **options)
 
 
 def _axis_values(at: Sequence[str]) -> dict[str, str]:

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..model.errors import Hint
-from ..results.figures import study_figure
 from .labels import StudyAxis, unit_of
 from .style import FAINT, INK, StyledFigure, figure_style, map_colours, pen
 from .types import Size, Style
@@ -26,7 +25,6 @@ _OTHER, _NONE, _FAILED, _TRANSIENT = range(_COLOURED, _COLOURED + 4)
 _TEXTS = {_OTHER: "smaller basins", _NONE: "no period found", _FAILED: "did not finish", _TRANSIENT: "still transient"}
 
 
-@study_figure("basins")
 def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
     """Draw a map of starts, each in the colour of the attractor to which it leads.
 

@@ -13,7 +13,6 @@ from matplotlib.typing import ColorType
 from rattlebox._util.narrow import present
 
 from ..model.errors import Hint, nearest
-from ..results.figures import study_figure
 from ..studies.work.reductions import Motion
 from .labels import LabelledValues, capitalised, name_of, unit_of
 from .style import FAINT, INK, SERIES_COLOURS, StyledFigure, figure_style, label, legend_above, pen, scaled
@@ -39,7 +38,6 @@ _PHASES = 0.5 * np.pi * np.arange(5)
 _PHASE_NAMES = ("0", "π/2", "π", "3π/2", "2π")
 
 
-@study_figure("bifurcation")
 def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, size: Size = "column") -> Figure:
     """Draw a bifurcation diagram: each stroboscopic point, impact or measure is a dot over the parameter.
 

@@ -12,7 +12,6 @@ from matplotlib.ticker import MaxNLocator
 
 from rattlebox.studies.work.measures import INTERVAL
 
-from ..results.figures import study_figure
 from .labels import LabelledValues, capitalised
 from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, label, legend_above, pen
 from .types import Size, Style, Vector
@@ -34,7 +33,6 @@ _RINGS: Style = {
 _BEST: Style = {"linestyle": "", "marker": "D", "color": SERIES_COLOURS[1]}
 
 
-@study_figure("design")
 def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
     """Draw the trials of a design.
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from ..results.figures import study_figure
 from .gaps import add_gap_legend
 from .labels import value_of
 from .lines import draw_lines
@@ -26,7 +25,6 @@ _PANELS = (
 )
 
 
-@study_figure("loss_map")
 def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
     """Draw loss factor, effective mass over the mass of the particles, and loss per cycle over m V^2.
 

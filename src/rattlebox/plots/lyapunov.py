@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from rattlebox._util.exceptions import CaseError
 
-from ..results.figures import study_figure
 from .labels import StudyAxis, unit_of
 from .style import ABOVE, FAINT, INK, SERIES_COLOURS, StyledFigure, colour_bar, figure_style, label, pen
 from .types import Size, Style
@@ -25,7 +24,6 @@ _REGULAR, _CHAOTIC = SERIES_COLOURS[:2]
 _MAX_LINES = 200  # of the convergence
 
 
-@study_figure("lyapunov")
 def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
     """Draw Lyapunov exponents per cycle of the load, or per second if there is no cycle.
 

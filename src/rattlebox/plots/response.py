@@ -13,7 +13,6 @@ from matplotlib.patches import Patch
 from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import nearest
-from ..results.figures import study_figure
 from ..studies.work.reductions import Motion
 from .labels import capitalised, log_ticks, name_of
 from .style import ABOVE, FAINT, INK, StyledFigure, figure_style, label, pen, scaled, series_colour
@@ -28,7 +27,6 @@ _COEXISTING = 0.02  # relative difference between up and down above which two mo
 _DISPLACEMENTS = "amplitude", "peak", "rms", "bare_amplitude"
 
 
-@study_figure("frequency_response")
 def plot_frequency_response(
     response: xarray.Dataset, of: str | Sequence[str] | None = None, *, per_level: bool = False, size: Size = "column"
 ) -> Figure:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..results.figures import study_figure
 from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, pen, shorten
 from .types import Size
 
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
 _BARS = (("first", "alone", SERIES_COLOURS[0]), ("total", "with interactions", SERIES_COLOURS[1]))
 
 
-@study_figure("sensitivity")
 def plot_sensitivity(study: xr.Dataset, *, size: Size = "column") -> Figure:
     """Draw first-order and total Sobol indices with their confidence intervals, the most important parameter on top.
 

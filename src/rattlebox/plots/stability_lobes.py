@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 
 from rattlebox._util.quantities import amount
 
-from ..results.figures import study_figure
 from .labels import log_ticks
 from .style import ABOVE, FAINT, INK, SERIES_STYLES, StyledFigure, figure_style, label, pen, scaled, series_colour
 from .types import Size
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@study_figure("stability_lobes")
 def plot_stability_lobes(study: xr.Dataset, *, size: Size = "page") -> Figure:
     """Draw the stable depth of cut over the spindle speed, and the limit at all speeds over the amplitude of vibration.
 

@@ -1,4 +1,4 @@
-"""Registries of the figures of runs and of studies, in which the modules of `rattlebox.plots` register their functions."""
+"""Registry of the figures of runs, in which the modules of `rattlebox.plots` register their functions."""
 
 from __future__ import annotations
 
@@ -35,25 +35,6 @@ def run_figure(name: str, needs: str = "motion") -> Callable[[Draw], Draw]:
         return draw
 
     return register
-
-
-_STUDIES: Registry[Callable[..., Figure]] = Registry("figure of the study")
-
-
-def study_figure(kind: str) -> Callable[[Draw], Draw]:
-    """Register a function of a dataset as the figure of a kind of study."""
-
-    def register(draw: Draw) -> Draw:
-        _STUDIES.add(kind, draw, owner_of(draw))
-        return draw
-
-    return register
-
-
-def figures_of_studies() -> dict[str, Callable[..., Figure]]:
-    """Return the figure of each kind of study that has one of its own."""
-    load_plugins()
-    return dict(_STUDIES)
 
 
 class Plots:

@@ -3,51 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import import_module
 from typing import Any
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox._util.plugins import Registry, load_plugins
+from rattlebox._util.plugins import named_object
 from rattlebox.report.kinds.unfinished import UnfinishedRun
 from rattlebox.report.parts import Kind
 from rattlebox.results.run import Run
 from rattlebox.results.summary import Comparison
+from rattlebox.studies.kinds import study_kind, study_kinds
 
-KINDS: Mapping[str, tuple[str, str]] = {
-    "run": ("run", "KIND"),
-    "unfinished": ("unfinished", "KIND"),
-    "comparison": ("comparison", "KIND"),
-    "sweep": ("sweep", "KIND"),
-    "bifurcation": ("steady_motions", "BIFURCATION"),
-    "basins": ("steady_motions", "BASINS"),
-    "lyapunov": ("steady_motions", "LYAPUNOV"),
-    "frequency_response": ("frequency_response", "KIND"),
-    "loss_map": ("loss_map", "KIND"),
-    "damping_curve": ("damping_curve", "KIND"),
-    "design": ("design", "KIND"),
-    "sensitivity": ("sensitivity", "KIND"),
-    "response_from_map": ("map_response", "KIND"),
-    "stability_lobes": ("stability_lobes", "KIND"),
-    "calibrate": ("calibration", "KIND"),
+_OTHERS = {
+    "run": "run:KIND",
+    "unfinished": "unfinished:KIND",
+    "comparison": "comparison:KIND",
+    "damping_curve": "damping_curve:KIND",
+    "response_from_map": "map_response:KIND",
+    "calibrate": "calibration:KIND",
 }
-"""Module in this folder, and its `Kind`, by the attribute `study` of a dataset; or "run" and "comparison"."""
-
-_REGISTERED: Registry[Kind[Any]] = Registry("report about the study")
-
-
-def add_report(study: str, kind: Kind[Any], owner: str) -> None:
-    """Add the content of the report about a kind of study of another package; `owner` is its module, `__name__`."""
-    _REGISTERED.add(study, kind, owner)
+"""Module in this folder, and its `Kind`, of results that are not those of a kind of study; of datasets by `study`."""
 
 
 def kind_of(result: object) -> Kind[Any]:
-    """Return the kind of a result; datasets without one of their own are reported as sweeps."""
-    load_plugins()
-    found = _name(result)
-    if found in _REGISTERED:
-        return _REGISTERED[found]
-    module, name = KINDS[found]
-    kind: Kind[Any] = getattr(import_module(f"{__name__}.{module}"), name)
+    """Return the kind of a result; datasets of unknown studies are reported as sweeps."""
+    name = _name(result)
+    reference = f"{__name__}.{_OTHERS[name]}" if name in _OTHERS else study_kind(name).report
+    kind: Kind[Any] = named_object(reference, f"the report about {name!r}")
     return kind
 
 
@@ -62,7 +43,7 @@ def _name(result: object) -> str:
 
     if isinstance(result, xr.Dataset):
         name = str(result.attrs.get("study", "sweep"))
-        return name if name in KINDS or name in _REGISTERED else "sweep"
+        return name if name in _OTHERS or name in study_kinds() else "sweep"
     if isinstance(result, Mapping) and result and all(_name(each) == "damping_curve" for each in result.values()):
         return "damping_curve"
     raise CaseError(

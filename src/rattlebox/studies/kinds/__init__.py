@@ -1,8 +1,9 @@
-"""Kinds of studies, one module each."""
+"""Kinds of studies, one module each: a class with its fields, its measures, its figure and its report."""
 
 from __future__ import annotations
 
 from importlib import import_module
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
 from rattlebox._util.plugins import load_plugins
@@ -10,17 +11,7 @@ from rattlebox._util.plugins import load_plugins
 if TYPE_CHECKING:
     from rattlebox.studies.run.study import Study
 
-KINDS = (
-    "sweep",
-    "bifurcation",
-    "frequency_response",
-    "basins",
-    "lyapunov",
-    "loss_map",
-    "stability_lobes",
-    "design",
-    "sensitivity",
-)
+BUILT_IN = tuple(module.name for module in iter_modules(__path__))
 """Names of the built-in kinds: of their module, which is imported when it is needed, and the key `kind` of a study file."""
 
 
@@ -29,13 +20,13 @@ def study_kinds() -> tuple[str, ...]:
     from rattlebox.studies.run.study import Study
 
     load_plugins()
-    return tuple(dict.fromkeys([*KINDS, *Study.kinds]))
+    return tuple(dict.fromkeys([*BUILT_IN, *Study.kinds]))
 
 
 def study_kind(name: str) -> type[Study]:
     """Return the class of a kind that `study_kinds` lists."""
     from rattlebox.studies.run.study import Study
 
-    if name in KINDS:
+    if name in BUILT_IN:
         import_module(f"{__name__}.{name}")
     return Study.kinds[name]

@@ -133,6 +133,8 @@ class Basins(Study):
     """
 
     kind: ClassVar[str] = "basins"
+    figure: ClassVar[str] = "rattlebox.plots.basins:plot_basins"
+    report: ClassVar[str] = "rattlebox.report.kinds.steady_motions:BASINS"
 
     starts: Axes
     _: KW_ONLY

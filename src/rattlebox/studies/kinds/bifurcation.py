@@ -119,6 +119,8 @@ class Bifurcation(Study):
     """
 
     kind: ClassVar[str] = "bifurcation"
+    figure: ClassVar[str] = "rattlebox.plots.bifurcation:plot_bifurcation"
+    report: ClassVar[str] = "rattlebox.report.kinds.steady_motions:BIFURCATION"
 
     path: Path
     values: Values

@@ -151,6 +151,8 @@ class Design(Study):
     """
 
     kind: ClassVar[str] = "design"
+    figure: ClassVar[str] = "rattlebox.plots.design:plot_design"
+    report: ClassVar[str] = "rattlebox.report.kinds.design:KIND"
 
     parameters: Bounds
     objective: Any = "settling_time"

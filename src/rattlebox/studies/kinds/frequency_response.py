@@ -128,6 +128,8 @@ class FrequencyResponse(Study):
     """
 
     kind: ClassVar[str] = "frequency_response"
+    figure: ClassVar[str] = "rattlebox.plots.response:plot_frequency_response"
+    report: ClassVar[str] = "rattlebox.report.kinds.frequency_response:KIND"
 
     frequencies: Annotated[Values, Field(examples=[{"from": "9 Hz", "to": "11 Hz", "count": 50}])]
     _: KW_ONLY

@@ -112,6 +112,8 @@ class LossMap(Study):
     """
 
     kind: ClassVar[str] = "loss_map"
+    figure: ClassVar[str] = "rattlebox.plots.loss_map:plot_loss_map"
+    report: ClassVar[str] = "rattlebox.report.kinds.loss_map:KIND"
 
     amplitudes: Annotated[Values, Field(examples=[["1 mm", "2 mm"]])]
     frequencies: Annotated[Values, Field(examples=[{"from": "9 Hz", "to": "11 Hz", "count": 50}])]

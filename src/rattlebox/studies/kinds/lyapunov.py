@@ -478,6 +478,8 @@ class Lyapunov(Study):
     """
 
     kind: ClassVar[str] = "lyapunov"
+    figure: ClassVar[str] = "rattlebox.plots.lyapunov:plot_lyapunov"
+    report: ClassVar[str] = "rattlebox.report.kinds.steady_motions:LYAPUNOV"
 
     axes: Axes | None = None
     _: KW_ONLY

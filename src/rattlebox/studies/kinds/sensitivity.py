@@ -128,6 +128,8 @@ class Sensitivity(Study):
     """
 
     kind: ClassVar[str] = "sensitivity"
+    figure: ClassVar[str] = "rattlebox.plots.sensitivity:plot_sensitivity"
+    report: ClassVar[str] = "rattlebox.report.kinds.sensitivity:KIND"
 
     bounds: Bounds
     measure: Measures = ("impact_share",)

@@ -159,6 +159,8 @@ class StabilityLobes(Study):
     """
 
     kind: ClassVar[str] = "stability_lobes"
+    figure: ClassVar[str] = "rattlebox.plots.stability_lobes:plot_stability_lobes"
+    report: ClassVar[str] = "rattlebox.report.kinds.stability_lobes:KIND"
     files: ClassVar[tuple[str, ...]] = ("damper",)
 
     case: CaseOrStructure

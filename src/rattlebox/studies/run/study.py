@@ -10,6 +10,7 @@ import copy
 import dataclasses
 import inspect
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY
 from functools import partial
@@ -55,7 +56,7 @@ Parameters = ParamSpec("Parameters")
 
 
 @dataclass(frozen=True, config=CONFIG)
-class Study:
+class Study(ABC):
     """A study of a case: the fields that all kinds share.
 
     Parameters
@@ -80,6 +81,13 @@ class Study:
     """Classes by kind; `study_function` adds them."""
     files: ClassVar[tuple[str, ...]] = ()
     """Fields that may name a file, which study files state relative to their own folder."""
+    figure: ClassVar[str] = ""
+    """Function that draws the dataset, as "module:function"; without one it is drawn as a map or as lines."""
+    report: ClassVar[str] = "rattlebox.report.kinds.sweep:KIND"
+    """Content of the report about the dataset, a `rattlebox.report.parts.Kind`, as "module:name".
+
+    Figure and report are named, not imported: a study runs without them.
+    """
 
     case: InstanceOf[Case]
     _: KW_ONLY
@@ -114,6 +122,7 @@ class Study:
         with remember_ctrl_c():  # a run that it ends may be one of many
             return study.compute()
 
+    @abstractmethod
     def validate(self) -> None:
         """Raise if the fields are not valid for the case or exclude each other.
 
@@ -122,11 +131,10 @@ class Study:
         CaseError
             If they are not valid.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def compute(self) -> xr.Dataset:
         """Run the variants and evaluate their results."""
-        raise NotImplementedError
 
     @property
     def where(self) -> dict[str, Any]:
@@ -141,6 +149,8 @@ class Study:
 def study_function(kind: Callable[Parameters, Study]) -> Callable[Parameters, xr.Dataset]:
     """Return the function that runs a study of a kind; its arguments are the fields of the kind."""
     cls = cast("type[Study]", kind)
+    if missing := sorted(cls.__abstractmethods__):
+        raise TypeError(f"{owner_of(cls)} must define {', '.join(missing)}, as each Study does")
     Study.kinds.add(cls.kind, cls, owner_of(cls))
     shared = [field.name for field in dataclasses.fields(Study) if field.kw_only]
     # pydantic sets the signature of the class when its validator is built, which is later.
