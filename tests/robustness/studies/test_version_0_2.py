@@ -106,3 +106,11 @@ def test_a_checkpoint_is_not_resumed(folder: Path) -> None:
     with pytest.raises(rb.DataError, match=r"0\.2\.0") as refused:
         rb.simulate(case, checkpoint=folder / "run.checkpoint", progress=False)
     assert refused.value.suggestion == "another file, or the same command with Rattlebox 0.2.0"
+
+
+def test_a_packed_case_has_the_same_layout_or_another_version(folder: Path) -> None:
+    """The number of the format rises with its layout: a case packed by 0.2.0 would else be read as other numbers."""
+    assert rattlebox("pack", folder / "rig.toml", "-o", folder / "now.rattlebox").returncode == 0
+    then, now = ((folder / f"{name}.rattlebox").read_bytes() for name in ("rig", "now"))
+    if then[8:16] == now[8:16]:
+        np.testing.assert_allclose(np.frombuffer(now[40:]), np.frombuffer(then[40:]), rtol=1e-12)
