@@ -81,6 +81,7 @@ from rattlebox.model.structures import Fixed as Fixed
 from rattlebox.model.structures import Modal as Modal
 from rattlebox.model.structures import Shaker as Shaker
 from rattlebox.model.tuned_mass import TunedMass as TunedMass
+from rattlebox.plots.backbone import plot_backbone as plot_backbone
 from rattlebox.plots.basins import plot_basins as plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation as plot_bifurcation
 from rattlebox.plots.calibration import plot_calibration as plot_calibration
@@ -115,6 +116,7 @@ from rattlebox.studies.grid.sampling import geomspace as geomspace
 from rattlebox.studies.grid.sampling import linspace as linspace
 from rattlebox.studies.grid.sampling import random_design as random_design
 from rattlebox.studies.grid.sampling import replicas as replicas
+from rattlebox.studies.kinds.backbone import backbone as backbone
 from rattlebox.studies.kinds.basins import basins as basins
 from rattlebox.studies.kinds.bifurcation import bifurcation as bifurcation
 from rattlebox.studies.kinds.design import design as design

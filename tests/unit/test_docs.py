@@ -39,6 +39,7 @@ SLOW_PAGES = (
 )
 PAGES = (
     "how-to/analysis",
+    "how-to/backbone",
     "how-to/basins",
     "how-to/bifurcation",
     "how-to/calibration",

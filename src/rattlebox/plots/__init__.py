@@ -1,5 +1,6 @@
 """Figures of runs and studies, and their common style, which can be used for other figures."""
 
+from .backbone import plot_backbone
 from .basins import plot_basins
 from .bifurcation import plot_bifurcation
 from .calibration import plot_calibration
@@ -48,6 +49,7 @@ __all__ = [
     "label",
     "legend_above",
     "pen",
+    "plot_backbone",
     "plot_basins",
     "plot_bifurcation",
     "plot_calibration",

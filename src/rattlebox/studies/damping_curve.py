@@ -184,7 +184,7 @@ def damping_curve(
     if way != "shaking":
         remarks.warnings += _fast_decay(result)
     found: dict[str, Any] = {"study": "damping_curve", "case": case.to_toml()}
-    found |= {"warnings": _merged(remarks.warnings), "exceeded": list(dict.fromkeys(remarks.exceeded))}
+    found |= {"warnings": merged_warnings(remarks.warnings), "exceeded": list(dict.fromkeys(remarks.exceeded))}
     if steady is not None:
         found["cycles"] = list(cycles or CYCLES)
         about_steady = {"long_name": "whether the motion of each random start is steady"}
@@ -369,9 +369,13 @@ def _decay(run: Run, mode: CurveMode, levels: FloatArray, way: Way) -> _Row:
 
 
 def _row(run: Run) -> _Row:
-    notes = tuple(note for note in run.notes if note.startswith("warning: "))
     exceeded = exceeded_limits(run.diagnostics) if run.diagnostics else ()
-    return _Row("" if run.ok else run.message, notes, tuple(exceeded), np.zeros(0))
+    return _Row("" if run.ok else run.message, warnings_of(run), tuple(exceeded), np.zeros(0))
+
+
+def warnings_of(run: Run) -> tuple[str, ...]:
+    """Return the notes of a run that are warnings."""
+    return tuple(note for note in run.notes if note.startswith("warning: "))
 
 
 def _initial_velocity(case: Case, mode: CurveMode, amplitude: float) -> Case:
@@ -518,7 +522,7 @@ def _tuned(case: Case, mode: CurveMode) -> float:
 # ---- results
 
 
-def _merged(warnings: Iterable[str]) -> list[str]:
+def merged_warnings(warnings: Iterable[str]) -> list[str]:
     """Return warnings that differ in their numbers only once, with their count; the one with the largest numbers stays."""
     groups: dict[str, list[str]] = {}
     for warning in dict.fromkeys(warnings):

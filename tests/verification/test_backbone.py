@@ -1,0 +1,165 @@
+"""Backbones against closed forms: linear structures, a planted shift of frequency, the two impacts in a cycle of a ball."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import rattlebox as rb
+
+
+def case_of(structure, damper=None, point=None, **options):
+    """Return a case with one harmonic force."""
+    parts = {} if damper is None else {"damper": damper}
+    load = rb.Harmonic(amplitude="1 N", frequency="1 Hz", point=point)
+    return rb.Case(structure=structure, load=load, duration="1 s", **parts, **options)
+
+
+def ball_damper(mass, gap, restitution):
+    """Return a steel ball of a mass in a gap."""
+    ball = rb.Sphere(radius="10 mm", material="steel", mass=mass)
+    return rb.ImpactDamper(ball=ball, gap=gap, contact=rb.Tsuji(restitution=restitution))
+
+
+def test_one_mode_has_its_own_frequency_and_damping():
+    """Without dampers the phase resonance of one mode is its natural frequency, with its damping ratio, at any amplitude."""
+    case = case_of(rb.SDOF(mass="3 kg", frequency="50 Hz", damping_ratio=0.013))
+    curve = rb.backbone(case, ["0.1 mm", "1 mm"], starts=1, cycles=(1, 8), progress=False)
+    np.testing.assert_allclose(curve.frequency, 50, rtol=1e-9)
+    np.testing.assert_allclose(curve.damping_ratio, 0.013, rtol=1e-7)
+    np.testing.assert_allclose(curve.work, math.pi * curve.force * curve.amplitude)
+
+
+@pytest.mark.parametrize("mode", [1, 2])
+def test_storeys_resonate_where_the_receptance_is_imaginary(mode):
+    """In a building with a tuned mass, frequency and force are those of the receptance at the top, sought independently."""
+    building = rb.ShearBuilding(masses=[2e5] * 3, stiffnesses=[3e8] * 3, damping_ratio=0.02)
+    case = case_of(building, point="storey 3")
+    curve = rb.backbone(case, ["1 mm", "10 mm"], mode=mode, starts=1, cycles=(1, 8), progress=False)
+    modes = case.modes
+    shape = modes.shape("storey 3")
+
+    def receptance(omega):
+        return np.sum(shape**2 / (modes.stiffness - omega**2 + 2j * modes.decay * omega))
+
+    natural = math.sqrt(modes.stiffness[mode - 1])
+    omega = brentq(lambda w: receptance(w).real, 0.95 * natural, 1.05 * natural)
+    np.testing.assert_allclose(curve.frequency, omega / (2 * math.pi), rtol=1e-9)
+    np.testing.assert_allclose(curve.force, curve.amplitude / abs(receptance(omega)), rtol=1e-7)
+
+
+def test_a_ball_almost_without_a_gap_lowers_the_frequency_as_its_mass():
+    """A ball of 0.44 times the mass in a gap of 0.1 % of the amplitude shifts the frequency by 1 / sqrt(1.44), 17 %."""
+    damper = ball_damper(mass=0.44, gap=1e-6, restitution=0.1)
+    case = case_of(rb.SDOF(mass="1 kg", frequency="10 Hz", damping_ratio=0.02), damper)
+    curve = rb.backbone(case, ["1 mm", "2 mm"], starts=2, cycles=(20, 16), progress=False)
+    np.testing.assert_allclose(curve.frequency, 10 / 1.2, rtol=2e-3)
+
+
+def effective_mass(amplitude, half, restitution):
+    """Return the complex effective mass, over the mass, of a ball with two hard impacts in each cycle of a harmonic cavity.
+
+    The ball crosses the cavity with the speed u = (2 w / pi) (A sin(t0) + h); an impact at the phase t0 with the restitution
+    e needs A cos(t0) = -(2 / pi) (1 - e) / (1 + e) (A sin(t0) + h).
+    """
+    rho = 2 / math.pi * (1 - restitution) / (1 + restitution)
+    phase = brentq(lambda t: amplitude * math.cos(t) + rho * (amplitude * math.sin(t) + half), math.pi / 2, math.pi)
+    share = 8 / math.pi**2 * (math.sin(phase) + half / amplitude)
+    return share * (math.sin(phase) + 1j * math.cos(phase))
+
+
+def test_a_light_ball_follows_the_closed_form_of_two_impacts():
+    """Shift and added damping of a ball of 0.1 % of the mass are those of two hard impacts in each cycle, within 1 %.
+
+    Starts from which the ball touches no wall stay at the frequency and damping of the structure.
+    """
+    mass, gap, restitution = 1e-3, 1e-3, 0.6
+    structure = rb.SDOF(mass="1 kg", frequency="20 Hz", damping_ratio=0.002)
+    case = case_of(structure, ball_damper(mass, gap, restitution), method=rb.Newton())
+    curve = rb.backbone(case, ["0.3 mm", "0.5 mm"], starts=6, cycles=(300, 80), progress=False)
+    for k, amplitude in enumerate(curve.amplitude.values):
+        added = mass * effective_mass(amplitude, gap, restitution)
+        damping, frequency = curve.damping_ratios.values[:, k], curve.frequencies.values[:, k]
+        touches = damping > 0.0021
+        assert touches.sum() > 1
+        np.testing.assert_allclose(frequency[touches] / 20 - 1, (1 + added.real) ** -0.5 - 1, rtol=0.01)
+        np.testing.assert_allclose(damping[touches] - 0.002, -added.imag / 2, rtol=0.01)
+        np.testing.assert_allclose(damping[~touches], 0.002, rtol=1e-3)
+
+
+def box():
+    """Return a structure with a box of 40 balls, whose damping has a maximum."""
+    damper = rb.ParticleDamper(
+        cavity=rb.Box(size=["18 mm"] * 3),
+        particles=rb.Particles(count=40, diameter="4 mm", material="steel"),
+        contact=rb.Tsuji(restitution=0.7),
+        friction=0.3,
+        softening=100,
+        packing=rb.Settled(seed=1),
+        direction="z",
+    )
+    return case_of(rb.SDOF(mass="1 kg", frequency="80 Hz", damping_ratio=0.003), damper)
+
+
+def test_a_bed_has_the_damping_of_prescribed_motion():
+    """Damping of the whole structure and damping from shaken cavities agree within the sum of their 95 % intervals.
+
+    The frequency is below that of the structure by at most the shift of the whole mass of the bed.
+    """
+    case = box()
+    amplitudes, options = ["0.06 mm", "0.3 mm"], {"progress": False}
+    curve = rb.backbone(case, amplitudes, starts=3, cycles=(60, 64), **options)
+    shaken = rb.damping_curve(case, amplitudes, way="shaking", packings=3, **options)
+    widths = (curve.damping_ratio_upper - curve.damping_ratio_lower + shaken.upper - shaken.lower) / 2
+    assert (abs(curve.damping_ratio - shaken.damping_ratio) < widths).all()
+    lowest = 80 / math.sqrt(1 + case.particle_dampers[0].contents.mass.sum())
+    assert (curve.frequency < 80).any() and (curve.frequency > lowest).all()
+    assert curve.found.all()
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_mean_of_many_starts():
+    """Intervals of four starts of a ball with irregular motion hold the mean of 120 starts in 90 to 99 % of 200 draws."""
+    structure = rb.SDOF(mass="1 kg", frequency="20 Hz", damping_ratio=0.01)
+    case = case_of(structure, ball_damper(0.02, 2e-3, 0.95))
+    amplitudes, options = ["4 mm", "4.5 mm"], {"cycles": (50, 96), "progress": False}
+    many = rb.backbone(case, amplitudes, starts=120, **options)
+    rng = np.random.default_rng(1)
+    for values in (many.frequencies, many.damping_ratios):
+        for level in range(2):
+            each = values.values[:, level][many.found.values[:, level]]
+            assert each.size > 100
+            some = np.array([rng.choice(each, 4, replace=False) for _ in range(200)])
+            half = 3.1824 * some.std(axis=1, ddof=1) / 2  # Student's t, three degrees of freedom
+            assert 180 <= np.count_nonzero(abs(some.mean(axis=1) - each.mean()) < half) <= 198
+    few = rb.backbone(case, amplitudes, starts=4, **options)
+    for name in ("frequency", "damping_ratio"):
+        half = (few[f"{name}_upper"] - few[f"{name}_lower"]).values / 2
+        scatter = few["frequencies" if name == "frequency" else "damping_ratios"].std("start", ddof=1).values
+        assert (half >= 3.1824 * scatter / 2 * (1 - 1e-3)).all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"loads": ()}, "needs one harmonic force"),
+        ({"base": (rb.Harmonic(amplitude="1 m/s^2", frequency="10 Hz"),)}, "no base motion"),
+        ({"loads": (rb.HalfSine(amplitude="5 N", duration="10 ms"),)}, "needs one harmonic force"),
+    ],
+)
+def test_other_loads_are_refused(changes, words):
+    """A backbone of a case without exactly one harmonic force is refused with the loads that it has."""
+    case = case_of(rb.SDOF(mass="1 kg", frequency="10 Hz", damping_ratio=0.01)).model_copy(update=changes)
+    with pytest.raises(rb.CaseError, match=words):
+        rb.backbone(case, ["1 mm", "2 mm"], progress=False)
+
+
+def test_a_mode_that_the_load_does_not_excite_is_refused():
+    """A load at a node of the mode, and a mode that does not exist, are refused by name."""
+    beam = rb.Modal(frequencies=[10, 40], damping_ratios=[0.01, 0.01], shapes={"tip": [1, 0.0]})
+    case = case_of(beam, point="tip")
+    with pytest.raises(rb.CaseError, match="does not excite mode 2"):
+        rb.backbone(case, ["1 mm", "2 mm"], mode=2, progress=False)
+    with pytest.raises(rb.CaseError, match="mode = 3 is not a mode"):
+        rb.backbone(case, ["1 mm", "2 mm"], mode=3, progress=False)
