@@ -73,7 +73,7 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
     Parameters
     ----------
     file
-        A file with records (text, MAT, NPY, NPZ, AT2, universal file, ...) or modes.
+        A file with records (see `file` of `rb.Record`), power spectral densities (`rb.Random`) or modes (`rb.Modal`).
 
     Returns
     -------

@@ -20,7 +20,7 @@ from pydantic import (
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.frozen import complete
-from rattlebox.exchange.read import ground_motion, measurement_files, strong_motion, universal  # noqa: F401  (they register)
+from rattlebox.exchange.read import ground_motion, measurement_files, strong_motion, tdms, universal  # noqa: F401  (they register)
 from rattlebox.exchange.read.formats import Format, no_signals, record_reader, signals_in
 
 from .as_written import MOST_ITEMS, Given
@@ -29,6 +29,7 @@ from .errors import Hint, at, several
 from .file_signals import FileSignal
 from .files import absolute, check_finite, existing
 from .records import Column, Columns, as_columns, read_columns
+from .sep005 import fields_of_sep005
 from .signals import UNIT_NAMES, UNITS, Unit
 from .units import SI, STANDARD_GRAVITY, Number, PositiveTime, factor_of, numbers, parse
 from .units_in_text import unit_above, units_in_lines
@@ -119,8 +120,11 @@ def _signal_format(path: str, *, is_table: bool = False) -> Format[Callable[...,
     return None if form is None or form.read is no_signals else form
 
 
-def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: Any) -> Columns:
-    """Read a time history, by its name or number in `columns`; None stands for the only one."""
+def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: Any, step: float | None) -> Columns:
+    """Read a time history, by its name or number in `columns`; None stands for the only one.
+
+    A step of the user is that of a time history without times.
+    """
     signals = signals_in(path, form)
     names = [signal.name or f"number {number}" for number, signal in enumerate(signals, start=1)]
     measured = [number for number, signal in enumerate(signals, start=1) if not signal.is_derived]
@@ -139,6 +143,14 @@ def _signal(path: Path, form: Format[Callable[..., Any]], columns: Any, unit: An
     headings = [f"values ({signal.unit[:_SHOWN]})"] if signal.unit else []
     over = [f"times ({signal.time_unit})"] if factor_of(signal.time_unit, ("s",)) else []
     times, values = np.asarray(signal.times, dtype=float), np.asarray(signal.values, dtype=float)
+    has_times = not bool(np.isnan(times).all())
+    if has_times and step is not None:
+        raise Hint(f"{path} states its time step", "leave dt out")
+    if not has_times and step is None:
+        raise DataError(
+            f"{path} does not state the time between the samples of {signal.name[:_SHOWN]!r}", 'dt = "0.01 s"'
+        )
+    times = times if step is None else step * np.arange(values.size, dtype=float)
     return Columns(times, check_finite(values, f"{path}: the values"), (over, headings), signal.lines, signal.notes)
 
 
@@ -146,6 +158,10 @@ def _words_on_text(columns: Columns) -> str:
     """Return what was found where the unit should be: the end of "FILE ... ; m/s^2 is assumed"."""
     above = [*columns.headings[1], *(line for _, line in columns.lines)]
     return "has no unit that is recognised above its numbers" if any(above) else "states no unit"
+
+
+def _without_unit(options: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in options.items() if name != "unit"}
 
 
 def _column(value: Any) -> Vector:
@@ -193,11 +209,13 @@ class Record(FileSignal):
         Unit of the values: "N", "m/s^2", "m", or another of these dimensions, such as "g", "gal", "mg", "cm/s^2" or "kN";
         stored as the SI unit.
     file
-        CSV, NPY, NPZ, MAT, AT2 (PEER) or universal file (.uff, .unv), instead of times and values. Units above the columns
-        of a text file, as in "time (ms), acceleration (g)", are converted, and so is the only unit in other lines above, as
-        in "UNIT: CM/SEC/SEC"; unknown and contradicting ones raise. Without them times are in s and values in `unit`; if
-        neither states a unit, the run notes the assumed unit and the peak. A first line with the number of samples, or with
-        number and time step, is no data.
+        File with the record, instead of times and values: columns of text (.csv, .txt, ...), a spreadsheet (.xlsx, .ods,
+        ...), NPY, NPZ, MAT (also 7.3), a universal file (.uff, .unv), LVM, TDMS, WAV, or strong motion of PEER (.at2, .dt2),
+        K-NET, KiK-net, USGS (.smc), COSMOS (.v2), ESM, ITACA or CSMNC. Units above the columns of a text file, as in "time
+        (ms), acceleration (g)", are converted, and so is the only unit in other lines above, as in "UNIT: CM/SEC/SEC";
+        unknown and contradicting ones raise. Without them times are in s and values in `unit`; if neither states a unit, the
+        run notes the assumed unit and the peak. A first line with the number of samples, or with number and time step, is no
+        data.
     columns
         Columns or variables with times and values, by number in the order of the file from 1, or by name: `columns=(1, 3)`,
         `columns=("t", "a")`. A name alone, `columns="acc_z"`, is that of the values: their times are the first column, if it
@@ -310,14 +328,12 @@ class Record(FileSignal):
         with at("file"):
             if form and columns == "rows":
                 raise Hint("a file of time histories has no rows", "columns = [1]", ["columns"])
-            if form and step is not None:
-                raise Hint(f"{path} states its time step", "leave dt out")
             if form and form.needs_scale and (values.get("scale") is None or wanted is None):
                 raise DataError(
                     f"{path} states no calibration: its numbers are fractions of full scale",
                     'unit = "g" and scale = 50, if full scale is 50 g',
                 )
-            record = _signal(existing(path), form, columns, wanted) if form else read_columns(path, columns, step)
+            record = _signal(existing(path), form, columns, wanted, step) if form else read_columns(path, columns, step)
         name = " ".join(Path(path).name.split())
         # The unit of the file has priority: that of the user must agree with it. A table without any unit has the unit
         # that the case needs, and the run notes it.
@@ -350,7 +366,9 @@ class Record(FileSignal):
         if steps.size:
             raise Hint(
                 f"times must increase, but point {int(steps[0]) + 2} is not later than the one before",
-                "columns = [2, 1], if times and values are swapped" if self.file else "",
+                "columns = [2, 1], if times and values are swapped"
+                if self.file
+                else "times in their order, each one once",
                 self.where,
             )
         return self
@@ -417,12 +435,12 @@ class Record(FileSignal):
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Record:
-        """Read a record from a CSV, NPY, NPZ, MAT or AT2 file.
+        """Read a record from a file of any format that `file` lists.
 
         Parameters
         ----------
         path
-            The file; times in seconds, unless their column states another unit.
+            The file; times in seconds, unless it states another unit.
         **options
             Other fields: columns, dt, unit, scale, time_zero, point, direction.
 
@@ -439,6 +457,40 @@ class Record(FileSignal):
             If other fields do not fit the file.
         """
         return cls(file=os.fspath(path), **options)
+
+    @classmethod
+    def from_sep005(cls, channels: Any, channel: str | None = None, **options: Any) -> Record:
+        """Return the record of a dictionary of SEP005, the form of time histories of the packages of SDyPy.
+
+        Parameters
+        ----------
+        channels
+            A dictionary with `name`, `data`, `unit_str`, and `time` [s] or `fs` [Hz]; or a list of them.
+        channel
+            Name of the channel in a list; needed if there are several.
+        **options
+            Other fields: unit, scale, time_zero, point, direction; `unit` is needed if `unit_str` is no unit of a force, an
+            acceleration or a displacement.
+
+        Returns
+        -------
+        Record
+            The record, with the name of the channel.
+
+        Raises
+        ------
+        CaseError
+            If the dictionary has no data, times or unit, or they contradict each other.
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> tip = {"name": "tip", "data": [0, 1.5, -1, 0], "fs": 100.0, "unit_str": "g"}
+        >>> record = rb.Record.from_sep005([tip])
+        >>> record.name, round(record.peak, 5), record.times.tolist()
+        ('tip', 14.70998, [0.0, 0.01, 0.02, 0.03])
+        """
+        return cls(**{**fields_of_sep005(channels, channel, options.get("unit")), **_without_unit(options)})
 
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times in the run [s] and values of the points."""

@@ -34,7 +34,8 @@ Read = TypeVar("Read", bound=Callable[..., Any])
 class SignalInFile:
     """A time history in a file."""
 
-    times: NDArray[np.float64]  # Times [s] or in `time_unit`, and values in `unit`, (n,)
+    # Times [s] or in `time_unit`, NaN if the file does not state them, and values in `unit`, (n,)
+    times: NDArray[np.float64]
     values: NDArray[np.float64]
     name: str = ""  # Name by which `columns` of a record selects it
     unit: str = ""  # Unit as the file writes it, such as "g" or "m/s^2"; "" if the file states none
