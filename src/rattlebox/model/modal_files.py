@@ -259,7 +259,9 @@ def _scale(modes: ModesInFile, given: Mapping[str, Any], name: str, path: str) -
         return np.full(total, unit**-0.5), notes
     masses = np.asarray(modes.modal_masses, dtype=float)
     if masses.shape != (total,):
-        raise Hint(f"{masses.size} modal masses for {total} modes", "one for each mode", ["modal_masses"])
+        raise Hint(
+            f"{masses.size} modal masses, but {name} has {several(total, 'mode')}", "one for each", ["modal_masses"]
+        )
     wrong = np.flatnonzero(~(masses > 0))
     if wrong.size:
         raise DataError(

@@ -460,6 +460,21 @@ def test_a_column_of_participation_with_a_unit(tmp_path: Path) -> None:
         rb.Modal.from_file(tmp_path / "a.csv")
 
 
+def test_columns_of_participation_in_any_order(tmp_path: Path) -> None:
+    """Columns of participation belong to the axes in their names, whatever their order; incomplete ones are refused.
+
+    They were taken as x, y and z in the order of the columns: all tests had this order.
+    """
+    head = "frequency (Hz),damping (%),modal mass (kg),tip x,tip y,tip z,"
+    row = "\n12,1,1,1,0,0.5,3,1,2\n"
+    (tmp_path / "a.csv").write_text(head + "participation z,participation x,participation y" + row)
+    assert rb.Modal.from_file(tmp_path / "a.csv").participation == [[1.0, 2.0, 3.0]]
+    for others in ("participation z,participation x,mode", "participation 1,participation 2,participation 3"):
+        (tmp_path / "a.csv").write_text(head + others + row)
+        with pytest.raises(rb.DataError, match="are not the participation along x, y and z"):
+            rb.Modal.from_file(tmp_path / "a.csv")
+
+
 def test_toml_tables(tmp_path: Path) -> None:
     """A TOML table has the fields of Modal and, optionally, modal masses."""
     (tmp_path / "modes.toml").write_text(
@@ -823,7 +838,10 @@ def test_damaged_measurements(tmp_path: Path, content: bytes, message: str) -> N
         ({"damping_ratio": 0.01, "points": {"a": 99999}}, "has no point '99999'"),
         ({"damping_ratio": 0.01, "points": {"a": 1}, "mode_count": 7}, "has 6 modes"),
         ({"damping_ratio": 0.01, "points": {"a": 1}, "mode_count": 0}, "at least 1"),
-        ({"damping_ratio": 0.01, "points": {"a": 1}, "modal_masses": [1.0]}, "1 modal masses for 6 modes"),
+        (
+            {"damping_ratio": 0.01, "points": {"a": 1}, "modal_masses": [1.0]},
+            "1 modal masses, but file.rst has 6 modes",
+        ),
         ({"damping_ratio": 0.01, "points": {"a": 1}, "frequencies": [1.0]}, "give frequencies or a file"),
         ({"damping_ratio": 0.01, "damping_ratios": [0.1] * 6, "points": {"a": 1}}, "exclude each other"),
     ],

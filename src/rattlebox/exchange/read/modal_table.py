@@ -130,6 +130,15 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
     participation = None
     if "participation" in columns:
         places = columns["participation"]
+        if len(places) > 1:
+            by_axis = {_AXES.get(_words(names[column]).rpartition(" ")[2], -1): column for column in places}
+            if sorted(by_axis) != [0, 1, 2]:
+                found = " and ".join(repr(names[column]) for column in places)
+                raise DataError(
+                    f"{path}: {found} are not the participation along x, y and z",
+                    "participation x, participation y and participation z; or one column for points on a line",
+                )
+            places = [by_axis[axis] for axis in range(3)]
         participation = table[:, places[0]] if len(places) == 1 else table[:, places]
         # phi^T M r has the unit of mass for shapes with modal masses, and of its root for mass-normalised shapes.
         stated = {scale(column, _PARTICIPATION if modal_masses is None else _MASS) for column in places} - {None}
