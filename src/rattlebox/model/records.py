@@ -15,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.text_tables import Dialect, comma_is_both, may_separate_thousands
 from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.sheets import SHEETS
 
@@ -31,7 +32,6 @@ from .text_rows import (
     split_lines,
     with_decimal_point,
 )
-from .text_tables import Dialect, comma_is_both, may_separate_thousands
 from .units_in_text import Line
 
 Column = int | str

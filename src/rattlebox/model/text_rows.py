@@ -14,11 +14,11 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
+from rattlebox._util.text_tables import Dialect, decode, dialect_of, has_point
 from rattlebox.exchange.read.sheets import SHEETS, sheet_lines
 
 from .errors import several
 from .files import Array
-from .text_tables import Dialect, decode, dialect_of, has_point
 
 _HEAD, _TAIL = 1 << 16, 1 << 14
 """Bytes at the beginning and at the end of a large file that are read line by line."""

@@ -460,6 +460,25 @@ def test_a_column_of_participation_with_a_unit(tmp_path: Path) -> None:
         rb.Modal.from_file(tmp_path / "a.csv")
 
 
+@pytest.mark.parametrize(("mark", "encoding"), [(";", "utf-8"), ("\t", "utf-16"), (";", "cp1252"), (",", "utf-8-sig")])
+def test_tables_as_spreadsheets_write_them(tmp_path: Path, mark: str, encoding: str) -> None:
+    """Decimal commas, exponents D and the encodings of Windows are read in tables of modes, as they are in records.
+
+    Only records had tests of them: tables of modes were refused as no text, or as no numbers.
+    """
+    rows = ["frequency (Hz)|damping (%)|modal mass (kg)|Stütze", "12.5|1.5|2.0D+00|0.25", "70.25|1|5D-1|-1.0"]
+    text = "\n".join(rows) if mark == "," else "\n".join(rows).replace(".", ",")
+    (tmp_path / "a.csv").write_bytes(text.replace("|", mark).encode(encoding))
+    modal = rb.Modal.from_file(tmp_path / "a.csv")
+    assert modal.frequencies == [12.5, 70.25] and modal.damping_ratios == [0.015, 0.01]
+    np.testing.assert_allclose(modal.modes().shapes["Stütze"], [0.25 / 2**0.5, -1 / 0.5**0.5])
+    assert ["the comma is read as the decimal mark" in note for note in modal.notes()] == [True] * (mark != ",")
+    for cells in ("1,250;1;2;1", "12,5;1;2.0;1"):
+        (tmp_path / "b.csv").write_text(f"frequency (Hz);damping (%);modal mass (kg);tip\n{cells}\n")
+        with pytest.raises(rb.DataError, match=r"may be decimal marks|is not a number"):
+            rb.Modal.from_file(tmp_path / "b.csv")
+
+
 def test_columns_of_participation_in_any_order(tmp_path: Path) -> None:
     """Columns of participation belong to the axes in their names, whatever their order; incomplete ones are refused.
 
@@ -746,7 +765,7 @@ DAMAGED: list[tuple[str, str, bytes, str]] = [
     ("text as mass", "a.toml", b'frequencies=[1]\nmodal_masses=["x"]\n[shapes]\ntip=[1]\n', r"a\.toml: a mass .*\n.*try:"),
     ("nothing moves", "a.csv", b"frequency,damping,tip\n10,0.1,0\n", "points tip"),
     ("negative mass", "a.csv", b"frequency,damping,modal mass,tip\n10,0.1,-1,1\n", "modal mass of -1"),
-    ("bytes as a table", "a.csv", bytes(range(128, 256)), "is not text"),
+    ("bytes as a table", "a.csv", bytes(range(128, 256)), "contains a control character"),
     ("empty toml", "a.toml", b"", "is empty"),
     ("foreign toml", "a.toml", b"[shape]\ntip = [1]\n", "no field 'shape'"),
     ("empty universal file", "a.uff", b"", "is empty"),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.text import has_controls
+from rattlebox._util.text_tables import Dialect, decode, dialect_of, has_point, may_separate_thousands
 
 from .formats import ModesRequest, modes_reader
 from .guarded import errors_of
@@ -33,10 +35,10 @@ def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
     """Read a table of modes from a CSV file."""
     with errors_of(path, "a table of modes"):
         read_start(path, 64)
-        try:
-            lines = path.read_text(encoding="utf-8-sig").splitlines()
-        except UnicodeDecodeError:
-            raise DataError(f"{path} is not text", "a CSV file in UTF-8") from None
+        decoded = decode(path.read_bytes())
+        if decoded is None:
+            raise DataError(f"{path} is not text", "a CSV file in UTF-8")
+        lines = decoded[0].splitlines()
         numbered = [
             (k, line) for k, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")
         ]
@@ -58,6 +60,7 @@ def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
             )
         if not body:
             raise DataError(f"{path} has a header, but no mode below it", "a line of numbers for each mode")
+        dialect = _dialect(path, [line for _, line in numbered[1:]], mark)
         table = np.zeros((len(body), len(head)))
         for row, (number, cells) in enumerate(body):
             if len(cells) != len(head):
@@ -69,7 +72,7 @@ def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
                 if names[column].lower() in _NUMBERING:
                     continue
                 try:
-                    table[row, column] = float(cell)
+                    table[row, column] = float(dialect.number(cell))
                 except ValueError:
                     raise DataError(
                         f"{path}, line {number}, column {names[column]!r}: {cell!r} is not a number", "a number"
@@ -78,7 +81,22 @@ def read_modal_table(path: Path, _: ModesRequest) -> ModesInFile:
                     raise DataError(
                         f"{path}, line {number}, column {names[column]!r}: {cell} is not finite", "a number"
                     )
-        return _modes(path, names, units, table)
+        modes = _modes(path, names, units, table)
+        note = dialect.note()
+        return replace(modes, notes=(*modes.notes, f"{path.name}: {note}")) if note else modes
+
+
+def _dialect(path: Path, lines: list[str], mark: str) -> Dialect:
+    """Return how numbers are written; raise if commas in them may be decimal marks or not."""
+    dialect = replace(dialect_of(lines, quoted=False), delimiter=mark, has_complex=False)
+    if mark == "," or not dialect.has_comma:
+        return replace(dialect, has_comma=False)
+    if has_point([cell.strip() for line in lines for cell in line.split(mark)]) or may_separate_thousands(lines):
+        raise DataError(
+            f"{path}: the commas in numbers may be decimal marks, or separate thousands",
+            "decimal points in all numbers",
+        )
+    return dialect
 
 
 def _cells(path: Path, number: int, line: str, mark: str) -> list[str]:
