@@ -20,6 +20,7 @@ from rattlebox._util.quantities import amount
 from .also_accepts import AlsoAccepts
 from .base import Part
 from .contacts import AnyContact
+from .damper_base import Damper
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of
 from .materials import AnyMaterial, AnyWall
@@ -126,7 +127,7 @@ def _speeds(value: Any) -> Any:
     return tuple(_each(value if _are_several(value) else [value], lambda item: parse(item, ("m/s",))[0]))
 
 
-class ImpactDamper(Part):
+class ImpactDamper(Damper):
     """Balls on a line in a cavity that moves with a point of the structure.
 
     Parameters
@@ -164,7 +165,6 @@ class ImpactDamper(Part):
     0.0008
     """
 
-    field_names: ClassVar[tuple[str, ...]] = ("damper", "dampers")
     aliases: ClassVar[dict[str, str]] = {"ball": "balls"}
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("gap", "cavity_length"),)
     kind: Literal["impact"] = "impact"
@@ -256,6 +256,10 @@ class ImpactDamper(Part):
     """Fields whose numbers are fractions of the gap."""
 
     @property
+    def base_direction(self) -> None:
+        """None: the balls move along a line without a direction."""
+
+    @property
     def has_adjusted_dashpots(self) -> bool:
         """True: the effective mass of the structure is that of the walls."""
         return True
@@ -268,10 +272,6 @@ class ImpactDamper(Part):
     def restarted(self, number: int, generator: np.random.Generator) -> ImpactDamper:
         """Return the damper with the start of a repeated run: the row at rest in its centre, then anywhere in the gap."""
         return self.model_copy(update={"start": float(generator.uniform(-1, 1)) if number else 0.0})
-
-    def label(self, index: int) -> str:
-        """Return the name of the damper; by default it has the number of the damper in the case."""
-        return self.name or ("damper" if index == 0 else f"damper{index + 1}")
 
     def each(self) -> tuple[ImpactDamper, ...]:
         """Return the identical dampers that this one stands for (see `number`), each with its own start."""

@@ -22,6 +22,7 @@ from .also_accepts import AlsoAccepts
 from .base import Part
 from .cavities import AnyCavity
 from .contacts import AnyContact, Linear
+from .damper_base import Damper
 from .elementwise import Vector
 from .errors import Hint, at, several
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
@@ -144,7 +145,7 @@ def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) 
             )
 
 
-class ParticleDamper(Part):
+class ParticleDamper(Damper):
     """Spheres in a cavity that moves with a point of the structure.
 
     Parameters
@@ -199,7 +200,6 @@ class ParticleDamper(Part):
     51.4 g of balls
     """
 
-    field_names: ClassVar[tuple[str, ...]] = ("damper", "dampers")
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("point", "points"),)
     kind: Literal["particle"] = "particle"
     name: str = ""
@@ -411,6 +411,11 @@ class ParticleDamper(Part):
         _ = self.start
 
     @property
+    def base_direction(self) -> Direction:
+        """The direction of the damper."""
+        return self.direction
+
+    @property
     def has_adjusted_dashpots(self) -> bool:
         """False: a particle is much lighter than the structure."""
         return False
@@ -423,10 +428,6 @@ class ParticleDamper(Part):
     def restarted(self, number: int, generator: np.random.Generator) -> ParticleDamper:
         """Return the damper with the packing of a repeated run."""
         return self.model_copy(update={"packing": self.packing.reseeded(number)})
-
-    def label(self, index: int) -> str:
-        """Return the name of the damper; by default it has the number of the damper in the case."""
-        return self.name or ("damper" if index == 0 else f"damper{index + 1}")
 
     def each(self) -> tuple[ParticleDamper, ...]:
         """Return the identical dampers that this one stands for (see `number`), each with its own point and packing."""

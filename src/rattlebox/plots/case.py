@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from rattlebox._util.phrases import joined
 
 from ..model.case import Case
-from ..model.dampers import ImpactDamper
-from ..model.particle_damper import ParticleDamper
+from ..model.damper_base import Damper
 from ..results import Run
 from ..results.case_words import each_damper
 from ..results.figures import run_figure
@@ -28,7 +27,7 @@ _MAX_LETTERS, _MAX_LOADS = 60, 3
 class _Group(NamedTuple):
     """Dampers that are drawn once, since they differ in name, point, start and random seed only."""
 
-    damper: ImpactDamper | ParticleDamper
+    damper: Damper
     numbers: list[int]
 
 

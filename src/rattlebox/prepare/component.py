@@ -14,6 +14,7 @@ from rattlebox._util.quantities import quantity
 from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.contact_pairs import contact_pairs
+from rattlebox.model.damper_base import Damper
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Method
@@ -211,7 +212,7 @@ def _names(case: Case) -> tuple[str, ...]:
     return tuple(damper.label(index) for index, damper in enumerate(_dampers(case)))
 
 
-def _dampers(case: Case) -> Sequence[ImpactDamper | ParticleDamper]:
+def _dampers(case: Case) -> Sequence[Damper]:
     return case.particle_dampers or case.impact_dampers
 
 

@@ -9,11 +9,10 @@ from rattlebox._util.quantities import amount
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
-    from rattlebox.model.dampers import ImpactDamper
-    from rattlebox.model.particle_damper import ParticleDamper
+    from rattlebox.model.damper_base import Damper
 
 
-def each_damper(case: Case) -> tuple[ImpactDamper | ParticleDamper, ...]:
+def each_damper(case: Case) -> tuple[Damper, ...]:
     """Return all dampers of a case, each of several identical ones on its own."""
     return (*case.impact_dampers, *case.particle_dampers)
 

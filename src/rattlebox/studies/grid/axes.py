@@ -20,7 +20,7 @@ from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, all_paths, get, place_of, replaced
 from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.model.record_sets import RecordSet
-from rattlebox.model.recorded import Record
+from rattlebox.model.signals import Signal
 from rattlebox.model.units import whole_number
 from rattlebox.studies.grid.grid import Column, Grid, Parameter, Values, labels, objects
 from rattlebox.studies.grid.sampling import RandomDesign, Replicas, number_of_variants
@@ -125,7 +125,7 @@ def _warn_about_files(case: Case, grid: Grid) -> None:
     for path, values in grid.columns.items():
         different = {id(value): value for value in values.ravel().tolist()} if values.dtype == object else {}
         for value in {repr(value): value for value in different.values()}.values():
-            if place_of(case, path)[-1] != "file" and not _has_record(value):
+            if place_of(case, path)[-1] != "file" and not _has_signal(value):
                 continue
             try:
                 notes = plausibility_notes(replaced(case, {path: value}), signals=False)
@@ -137,8 +137,9 @@ def _warn_about_files(case: Case, grid: Grid) -> None:
                     warnings.warn(note.removeprefix("note: "), stacklevel=5)
 
 
-def _has_record(value: Any) -> bool:
-    return any(isinstance(each, Record) for each in (value if isinstance(value, tuple) else (value,)))
+def _has_signal(value: object) -> bool:
+    """Return whether a value is a signal or contains one; records have assumed units."""
+    return any(isinstance(each, Signal) for each in (value if isinstance(value, tuple) else (value,)))
 
 
 def materials_in(case: Case) -> dict[str, Material]:

@@ -21,11 +21,10 @@ from rattlebox.analysis.chatter import stability_lobes as lobes_of
 from rattlebox.analysis.describing_function import MassTable, damping_of_modes, solve
 from rattlebox.analysis.signals import FloatArray
 from rattlebox.model.case import Case
-from rattlebox.model.dampers import ImpactDamper
+from rattlebox.model.damper_base import Damper
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.modes import ModalModel
-from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.structures import Shaker, StructurePart
 from rattlebox.model.tuned_mass import TunedMass
 from rattlebox.model.units import Number, parse
@@ -198,7 +197,7 @@ class StabilityLobes(Study):
                 )
         if not elastic.any():
             raise Hint(f"no elastic mode moves the point {self._tool.point!r}", "another point or direction")
-        if isinstance(self._damper, (ImpactDamper, ParticleDamper)):
+        if self._runs_map:
             self._map.validate()
         elif self._damper is None and self.amplitudes is not None:
             raise Hint(
@@ -250,8 +249,7 @@ class StabilityLobes(Study):
 
     @cached_property
     def _tuned(self) -> tuple[TunedMass, ...]:
-        given = self.damper if isinstance(self.damper, (list, tuple)) else [self.damper]
-        return tuple(given) if given and all(isinstance(each, TunedMass) for each in given) else ()
+        return TunedMass.all_of(self.damper)
 
     @cached_property
     def _bare_model(self) -> ModalModel:
@@ -307,8 +305,8 @@ class StabilityLobes(Study):
         if frequencies is None:
             frequencies = np.geomspace(hertz * _MAP_RANGE[0], hertz * _MAP_RANGE[1], _MAP_SIZE[1]).tolist()
         motion: dict[str, Any] = {"amplitude": ends[1], "frequency": hertz, "unit": "m"}
-        if isinstance(damper, ParticleDamper):
-            motion["direction"] = self.direction or damper.direction
+        if damper.base_direction is not None:
+            motion["direction"] = self.direction or damper.base_direction
         case = Case(
             structure=Shaker(motion=Harmonic(**motion)),
             dampers=(damper.model_copy(update={"point": None, "number": 1}),),
@@ -345,7 +343,7 @@ class StabilityLobes(Study):
 
     @property
     def _runs_map(self) -> bool:
-        return isinstance(self._damper, (ImpactDamper, ParticleDamper))
+        return isinstance(self._damper, Damper)
 
     @property
     def _manifest(self) -> dict[str, Any]:
