@@ -137,6 +137,10 @@ def test_no_hdf5_file(tmp_path: Path) -> None:
     (tmp_path / "a.h5").write_text("0 1\n2 3\n")
     with pytest.raises(rb.DataError, match=r"is no HDF5 file\n.*SOL 103"):
         rb.Modal.from_file(tmp_path / "a.h5", **OPTIONS)
+    content = write(tmp_path / "a.h5").read_bytes()
+    (tmp_path / "a.h5").write_bytes(content.replace(b"\r\n", b"\n"))
+    with pytest.raises(rb.DataError, match="changed by a transfer as text"):
+        rb.Modal.from_file(tmp_path / "a.h5", **OPTIONS)
 
 
 def test_mutants(tmp_path: Path) -> None:

@@ -163,6 +163,28 @@ def test_a_mode_that_is_cut_short(tmp_path: Path) -> None:
         rb.Modal.from_file(tmp_path / "a.frd", **OPTIONS)
 
 
+def test_residual_vectors_of_nastran(tmp_path: Path) -> None:
+    """With residual vectors Nastran prints the eigenvalues twice; those after the augmentation belong to the shapes.
+
+    Such files were refused as results of two analyses: no test had the second table.
+    """
+    text, title = FILES["a.f06"][0], "R E A L   E I G E N V A L U E S\n"
+    first = text[text.index(" " * 47 + title) : text.index("1    BEAM", 10)]
+    before = first.replace(title, title + f"{'(BEFORE AUGMENTATION OF RESIDUAL VECTORS)':>82s}\n").replace(
+        "2.250000E+06", "2.300000E+06"
+    )
+    after = first.replace(title, title + f"{'(AFTER AUGMENTATION OF RESIDUAL VECTORS)':>81s}\n")
+    head = text[: text.index("\n") + 1]
+    (tmp_path / "a.f06").write_text(head + before + head + after + text.replace(first, ""))
+    modal = rb.Modal.from_file(tmp_path / "a.f06", **OPTIONS)
+    np.testing.assert_allclose(modal.frequencies[1:], np.sqrt(OMEGA2[1:]) / (2 * np.pi), rtol=1e-5)
+    (tmp_path / "a.f06").write_text(head + before + text.replace(first, ""))
+    with pytest.raises(
+        rb.DataError, match=r"mode 3 has the eigenvalue 2.25e\+06 above its shape, but 2.3e\+06 in the table"
+    ):
+        rb.Modal.from_file(tmp_path / "a.f06", **OPTIONS)
+
+
 def test_participation_of_calculix(tmp_path: Path) -> None:
     """Participation and total mass are those of the file, for a point in 3-D and for one direction.
 

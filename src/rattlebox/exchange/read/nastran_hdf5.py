@@ -38,7 +38,12 @@ def read_nastran_hdf5(path: Path, _: ModesRequest) -> ModesInFile:
     MSC Nastran, HDF5 result database: tables of the group NASTRAN, such as RESULT/NODAL/EIGENVECTOR.
     """
     with errors_of(path, "a HDF5 result of Nastran"):
-        if read_start(path, 8) != b"\x89HDF\r\n\x1a\n":
+        start = read_start(path, 8)
+        if start.startswith(b"\x89HDF\n"):
+            raise DataError(
+                f"{path} was changed by a transfer as text, which replaced line ends", "the file as written"
+            )
+        if start != b"\x89HDF\r\n\x1a\n":
             raise DataError(f"{path} is no HDF5 file", _EXPORT)
         content = arrays_from_child(path, "h5")
         tables = {str(name): content[f"array_{k}"] for k, name in enumerate(content["names"])}

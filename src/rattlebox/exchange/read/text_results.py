@@ -17,6 +17,9 @@ from .modes_in_file import FloatArray, ModesInFile, read_start, without_rounding
 
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
 _F06_VECTOR = re.compile(r"(R E A L|C O M P L E X)\s+E I G E N V E C T O R\s+N O \.\s+(\d+)")
+_F06_ABOVE = re.compile(rf"^0?\s*EIGENVALUE\s*=\s*({_NUMBER})\s*$")
+_F06_STAGE = re.compile(r"\((BEFORE AUGMENTATION|AFTER AUGMENTATION|ACTUAL MODES USED)")
+_SAME = 1e-3  # relative difference of eigenvalues that are printed twice
 _F06_ROW = re.compile(rf"^0?\s*(\d+)\s+([GS])((?:\s+{_NUMBER}){{1,6}})\s*$")
 _F06_VALUE = re.compile(rf"^0?\s*(\d+)\s+(\d+)((?:\s+{_NUMBER}){{5}})\s*$")
 _PUNCH_VALUE = re.compile(rf"^\$EIGENVALUE\s*=\s*({_NUMBER})\s+MODE\s*=\s*(\d+)")
@@ -115,14 +118,22 @@ def _add(path: Path, number: int, shape: dict[int, list[float]], node: int, row:
 
 @modes_reader(".f06")
 def read_f06(path: Path, _: ModesRequest) -> ModesInFile:
-    """Read the tables of real eigenvalues and eigenvectors of a Nastran .f06 file."""
+    """Read the tables of real eigenvalues and eigenvectors of a Nastran .f06 file; those with residual vectors, if any."""
     with errors_of(path, "a .f06 file of Nastran"):
         squares: dict[int, float] = {}
         masses: dict[int, float] = {}
         shapes: Table = {}
-        table, current = "", 0
+        table, current, stage = "", 0, ""
+        stated: dict[int, float] = {}  # eigenvalues above the eigenvectors
+        above = 0.0
         for number, line in enumerate(_lines(path), start=1):
-            if found := _F06_VECTOR.search(line):
+            if found := _F06_ABOVE.search(line):
+                above = _floats(path, number, [found[1]])[0]
+            elif found := _F06_STAGE.search(line):
+                # Residual vectors give a second table, which replaces the first; pages repeat its heading.
+                if found[1] != stage:
+                    squares, masses, stage = {}, {}, found[1]
+            elif found := _F06_VECTOR.search(line):
                 if found[1] != "R E A L":
                     raise DataError(
                         f"{path}, line {number}: complex modes are not read from .f06 files",
@@ -130,6 +141,7 @@ def read_f06(path: Path, _: ModesRequest) -> ModesInFile:
                     )
                 table, current = "vector", int(found[2])
                 shapes.setdefault(current, {})
+                stated[current] = above
             elif "R E A L   E I G E N V A L U E S" in line:
                 table = "values"
             elif line.startswith("1") or "    PAGE " in line:  # a table goes on below its heading on the next page
@@ -149,6 +161,13 @@ def read_f06(path: Path, _: ModesRequest) -> ModesInFile:
                         f"{path}, line {number}: mode {mode} has two eigenvalues", "the results of one analysis"
                     )
                 masses[mode] = row[3]
+        largest = max(map(abs, squares.values()), default=0.0)
+        for mode, value in stated.items():
+            if abs(squares.get(mode, value) - value) > _SAME * max(abs(value), _SAME * largest):
+                raise DataError(
+                    f"{path}: mode {mode} has the eigenvalue {value:g} above its shape, but {squares[mode]:g} in the table",
+                    "the results of one analysis",
+                )
         return _made(path, squares, shapes, masses, (AXES.format(path.name),))
 
 
