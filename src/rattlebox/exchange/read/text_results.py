@@ -16,7 +16,7 @@ from .guarded import errors_of
 from .modes_in_file import FloatArray, ModesInFile, read_start, without_rounding
 
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?\d+)?"
-_F06_VECTOR = re.compile(r"(R E A L|C O M P L E X)\s+E I G E N V E C T O R\s+N O \.\s+(\d+)")
+_F06_VECTOR = re.compile(r"(R E A L|C O M P L E X)\s+E I G E N V E C T O R\s+N\s?O\s?\.\s+(\d+)")
 _F06_ABOVE = re.compile(rf"^0?\s*EIGENVALUE\s*=\s*({_NUMBER})\s*$")
 _F06_STAGE = re.compile(r"\((BEFORE AUGMENTATION|AFTER AUGMENTATION|ACTUAL MODES USED)")
 _SAME = 1e-3  # relative difference of eigenvalues that are printed twice

@@ -180,7 +180,7 @@ def read_universal_modes(path: Path, *, needs_units: bool = True) -> ModesInFile
     by the University of Cincinnati, Structural Dynamics Research Laboratory (UC-SDRL).
     """
     with errors_of(path, "a universal file"):
-        every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
+        every = _read_sets(path, (55, 2414), (164, *_GEOMETRY))
         sets = [block for block in every if block["type"] not in _GEOMETRY]
         chosen, note = _sets_of_modes(path, [block for block in sets if block["type"] != 164])
         is_complex = not _is_normal(chosen[0])
