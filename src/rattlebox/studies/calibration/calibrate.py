@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.flags import flag_masks
 from rattlebox._util.progress import announce
 from rattlebox._util.quantities import amount
 from rattlebox.model.case import Case
@@ -274,10 +275,9 @@ class Calibration:
 
     def _samples(self, values: FloatArray, flags: NDArray[np.int64]) -> dict[str, Any]:
         """Return the simulated values and the exceeded limits of all samples."""
-        meanings = " ".join(WARNINGS)
         return {
             "simulated": _variable(("sample", "datum"), values, "simulated value"),
-            "exceeded": _variable("sample", flags, "exceeded validity limits", flag_meanings=meanings),
+            "exceeded": _variable("sample", flags, "exceeded validity limits", **flag_masks(WARNINGS)),
         }
 
     def _coordinates(self, points: FloatArray) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from rattlebox._util.exceptions import CaseError, RattleboxError
+from rattlebox._util.flags import flag_masks
 from rattlebox._util.narrow import instance
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
@@ -421,11 +422,7 @@ class DesignSearch:
         found["missing"] = ("trial", missing, {"units": "1", "long_name": "share of the runs without a value"})
         feasible = np.array([trial.values is not None for trial in trials], bool)
         found["feasible"] = ("trial", feasible, {"long_name": "within the limits, with a value of each run"})
-        flags = {
-            "long_name": "exceeded validity limits",
-            "flag_masks": [2**bit for bit in range(len(FLAGS))],
-            "flag_meanings": " ".join(FLAGS),
-        }
+        flags = {"long_name": "exceeded validity limits", **flag_masks(FLAGS)}
         exceeded = np.array([trial.user_attrs["warnings"] for trial in trials], np.int8)
         found["warnings"] = ("trial", exceeded, flags)
         reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)

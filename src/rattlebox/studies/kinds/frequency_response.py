@@ -33,7 +33,7 @@ from rattlebox.studies.run.study import (
 from rattlebox.studies.work.impact import ImpactEngine
 from rattlebox.studies.work.measures import interval_warning, with_required
 from rattlebox.studies.work.particles import ParticleEngine
-from rattlebox.studies.work.reductions import QUANTITIES, Orbits, SteadyMotion, steady_motion, unsettled
+from rattlebox.studies.work.reductions import QUANTITIES, Orbits, SteadyMotion, attributes_of, steady_motion, unsettled
 from rattlebox.studies.work.variants import Observed, Variants, order_along, with_direction
 from rattlebox.studies.work.work import Work
 
@@ -277,7 +277,7 @@ def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float, 
     place = np.where(maps.impacts_per_cycle.values[..., None, None] > 0, place, 0.0)  # without impacts a ball drifts
     values = steady_motion(maps.displacement.values, place, phase, samples, tolerance)
     found = {
-        name: (maps.status.dims, values[name], {"units": units if unit == "m" else unit, "long_name": text})
-        for name, (_, unit, text) in QUANTITIES.items()
+        name: (maps.status.dims, values[name], attributes_of(name, units if unit == "m" else unit))
+        for name, (_, unit, _) in QUANTITIES.items()
     }
     return maps.drop_dims(["instant", "ball"]).assign(found)

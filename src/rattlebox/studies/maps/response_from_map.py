@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.flags import flag_masks
 from rattlebox.analysis.describing_function import MassTable
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, at
@@ -391,8 +392,7 @@ def _dataset(
     for name, dims, unit, text in _VARIABLES:
         values = computed[name] if name in computed else gather(name, motions=dims == _MOTION)
         data[name] = dims, values, _described(units.get(unit, unit), text) if unit else {"long_name": text}
-    masks = [1 << bit for bit in range(len(FLAGS))]
-    data["flags"][2].update(flag_masks=masks, flag_meanings=" ".join(FLAGS))
+    data["flags"][2].update(flag_masks(FLAGS))
     notes = [*_warnings(flags), *_softening_warnings(data["peak_softening_error"][1], about)]
     if table.interval is not None:
         notes += _interval_warnings(data["peak"][1], data["peak_interval"][1])

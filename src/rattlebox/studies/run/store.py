@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import DataError, ResourceError, StoreError
+from rattlebox._util.flags import type_flags
 from rattlebox._util.owned_folder import (
     MARKER,
     ForeignFile,
@@ -166,9 +167,11 @@ class MemoryResult:
 
     def result(self) -> xr.Dataset:
         """Return the result."""
-        return self._plan.frame.assign(
-            {each.name: (each.dims, self._arrays[each.name], each.attributes) for each in self._plan.variables()}
+        variables = self._plan.variables()
+        result: xr.Dataset = type_flags(
+            self._plan.frame.assign({v.name: (v.dims, self._arrays[v.name], v.attributes) for v in variables})
         )
+        return result
 
 
 # ---- store
@@ -414,7 +417,7 @@ def save_result(result: xr.Dataset, kind: str, path: str | os.PathLike[str] | No
     """Add the kind of the study to its result, and write the result to the store next to the runs."""
     from rattlebox import __version__
 
-    result = result.assign_attrs(study=kind)
+    result = type_flags(result.assign_attrs(study=kind))
     if path is not None:
         files = _MemoryFiles()
         stored = with_texts(result).drop_encoding().assign_attrs(variables=list(result.data_vars))

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
 from rattlebox._util.exceptions import RattleboxError, StoreError
+from rattlebox._util.flags import type_flags
 from rattlebox._util.owned_folder import DamagedError, Marker, damaged_files, read_marker
 from rattlebox.model.errors import Hint
 from rattlebox.prepare.time_step import WARNINGS
@@ -213,7 +214,8 @@ def open_runs(path: Path, marker: Marker) -> xr.Dataset:
     with report_damage(path):
         store = _intact_only()(LocalStore(path, read_only=True), Chunks(path, marker))
         data: xr.Dataset = xr.open_zarr(store, chunks=None)
-        return data[list(marker.about["manifest"]["outputs"])]
+        runs: xr.Dataset = type_flags(data[list(marker.about["manifest"]["outputs"])])
+        return runs
 
 
 def _open_map(folder: Path) -> xr.Dataset:
@@ -227,7 +229,7 @@ def _open_map(folder: Path) -> xr.Dataset:
                 "its command again, which computes the result again from the runs",
             )
         data = xr.open_zarr(folder, chunks=None)
-        result: xr.Dataset = data[data.attrs.pop("variables")]
+        result: xr.Dataset = type_flags(data[data.attrs.pop("variables")])
         return result
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import RattleboxError
+from rattlebox._util.flags import flag_masks
 from rattlebox.analysis.cycle_loss import UNSTEADY, cycle_loss
 from rattlebox.analysis.shaken import MIN_SAMPLES
 from rattlebox.core._core import Status
@@ -37,11 +38,7 @@ if TYPE_CHECKING:
 _UNSTEADY = 2 ** list(WARNINGS).index(UNSTEADY)
 """Bit of a motion that is not steady in the `warnings` of a variant."""
 
-FLAGS: dict[str, Any] = {
-    "long_name": "exceeded validity limits",
-    "flag_masks": [2**bit for bit in range(len(WARNINGS))],
-    "flag_meanings": " ".join(WARNINGS),
-}
+FLAGS: dict[str, Any] = {"long_name": "exceeded validity limits", **flag_masks(WARNINGS)}
 """Attributes of the exceeded validity limits of runs."""
 
 EXTENSIONS = 4

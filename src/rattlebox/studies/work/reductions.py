@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.batch_means import half_widths
+from rattlebox._util.flags import flag_values
 from rattlebox.analysis.shaken import force_harmonics
 from rattlebox.studies.work.measures import INTERVAL
 from rattlebox.studies.work.work import Extra, Outputs, Signals
@@ -48,6 +49,10 @@ class Motion(IntEnum):
     PERIODIC = 1
     TRANSIENT = 2
     IRREGULAR = 3
+
+
+KINDS_OF_MOTION = flag_values(kind.name.lower() for kind in Motion)
+"""Attributes of a variable with kinds of motions."""
 
 
 class Orbits(NamedTuple):
@@ -210,13 +215,9 @@ def _falls(strobes: Vector) -> tuple[Mask, Vector]:
 
 def labels(over: tuple[Any, ...], orbits: Orbits) -> dict[str, Any]:
     """Return the variables `period`, `motion` and `multiplier` of a study."""
-    kinds = {
-        "flag_values": [int(kind) for kind in Motion],
-        "flag_meanings": " ".join(kind.name.lower() for kind in Motion),
-    }
     attrs: dict[str, dict[str, Any]] = {
         "period": {"long_name": "cycles after which the motion repeats"},
-        "motion": {"long_name": "kind of motion", **kinds},
+        "motion": {"long_name": "kind of motion", **KINDS_OF_MOTION},
         "multiplier": {"long_name": "estimated factor per cycle of the distance to the periodic motion"},
     }
     return {name: (over, getattr(orbits, name), {"units": "1", **more}) for name, more in attrs.items()}
@@ -353,10 +354,16 @@ QUANTITIES: dict[str, tuple[str, str, str]] = {
     "phase" + INTERVAL: ("float64", "rad", "half of the 95 % interval, phase to the load"),
     "spread": ("float64", "1", "spread of strobes over the range of motion"),
     "period": ("int64", "1", "cycles after which the motion repeats"),
-    "motion": ("int64", "1", "kind of motion: " + ", ".join(f"{kind:d} {kind.name.lower()}" for kind in Motion)),
+    "motion": ("int64", "1", "kind of motion"),
     "multiplier": ("float64", "1", "estimated factor per cycle of the distance to the periodic motion"),
 }
 """Number type, unit and meaning of the quantities of a steady motion."""
+
+
+def attributes_of(quantity: str, units: str) -> dict[str, Any]:
+    """Return the attributes of a quantity of a steady motion."""
+    kinds = KINDS_OF_MOTION if quantity == "motion" else {}
+    return {"units": units, "long_name": QUANTITIES[quantity][2], **kinds}
 
 
 _APART = 10
@@ -409,7 +416,7 @@ class SteadyMotion:
     @property
     def outputs(self) -> Outputs:
         """Further dimensions, number type and attributes of each output."""
-        return {name: ((), kind, {"units": unit, "long_name": text}) for name, (kind, unit, text) in QUANTITIES.items()}
+        return {name: ((), kind, attributes_of(name, unit)) for name, (kind, unit, _) in QUANTITIES.items()}
 
     def coords(self) -> dict[str, Any]:
         """Return the coordinates of further dimensions: none."""

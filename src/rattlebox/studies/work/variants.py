@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rattlebox._util.flags import flag_values
 from rattlebox.core import _core
 from rattlebox.model.base import Part, full_text
 from rattlebox.model.errors import Hint, nearest
@@ -216,9 +217,8 @@ class Variants:
     @cached_property
     def outputs(self) -> Outputs:
         """Further dimensions, number type and attributes of the status and of each measure."""
-        statuses = " ".join(status.name for status in _core.Status)
         outputs: Outputs = {
-            "status": ((), "int8", {"long_name": "status of the run", "flag_meanings": statuses}),
+            "status": ((), "int8", {"long_name": "status of the run", **flag_values(s.name for s in _core.Status)}),
             **{
                 name: ((), "float64", {"units": self._units(name), "long_name": MEASURES[name].long_name})
                 for name in self.names
