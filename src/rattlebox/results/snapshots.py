@@ -36,6 +36,7 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import register_format
 from rattlebox.model.surfaces import Surface
 
+from . import ondem
 from .arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -121,7 +122,7 @@ def is_snapshots(path: Path) -> bool:
         return b"rattlebox_format" in head
 
 
-register_format(".vtkhdf", is_snapshots)
+register_format(".vtkhdf", lambda path: is_snapshots(path) or ondem.is_ondem(path))
 
 _GROWING = frozenset(
     (
@@ -400,6 +401,47 @@ class Snapshots:
         blocks = _blocks(number, self._points, len(self._places))
         parts = [file[ROOT][name][rows] for name, rows in blocks.items()]
         return parts if array_digest(parts) == file[_DIGESTS][number].tobytes() else None
+
+    def to_ondem(self, path: str | os.PathLike[str], number: int = -1) -> Path:
+        """Write one snapshot with the names of the common data model of the DEM community (ON-DEM), a VTKHDF file.
+
+        Parameters
+        ----------
+        path
+            File to write (.vtkhdf). A file that Rattlebox did not write, or that has changed since, is not replaced.
+        number
+            Number of the snapshot, from 0; default the last one.
+
+        Returns
+        -------
+        Path
+            The file. It opens in ParaView.
+
+        Raises
+        ------
+        CaseError
+            If a file that the case names can no longer be read.
+        DataError
+            If the file cannot be written or must not be replaced, or is that of the snapshots.
+        ResourceError
+            If no space is left on the disk.
+
+        Notes
+        -----
+        Cavities stand side by side, as in the file of the snapshots. Walls and contacts are not written: the model has no
+        shapes for them yet, and a snapshot no history of contacts. The rotations of spheres are not computed: their
+        orientation is (1, 0, 0, 0).
+
+        References
+        ----------
+        ON-DEM, COST Action CA22132, "File format", https://github.com/ON-DEM/ON-DEM-WG3-FileFormat.
+        """
+        from rattlebox.model.case import Case
+
+        file = Path(path)
+        if file.exists() and file.samefile(self.path):
+            raise DataError(f"{file} is the file of the snapshots", "another name")
+        return ondem.write(file, self[number], self._places, Case.from_toml(self.case_toml))
 
     def __len__(self) -> int:
         return int(self.times.size)
