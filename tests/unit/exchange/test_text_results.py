@@ -156,11 +156,18 @@ def test_damaged_results(tmp_path: Path, name: str, old: str, new: str, message:
 
 
 def test_a_mode_that_is_cut_short(tmp_path: Path) -> None:
-    """A .frd file that ends within the displacements of a mode is refused."""
+    """A file that ends before or within the displacements of a mode is refused, or has a note if they may be unwanted."""
     text = FILES["a.frd"][0]
     (tmp_path / "a.frd").write_text(text[: text.index(" -3\n", text.index("DISP"))])
     with pytest.raises(rb.DataError, match="ends within the displacements"):
         rb.Modal.from_file(tmp_path / "a.frd", **OPTIONS)
+    text = FILES["a.dat"][0]
+    (tmp_path / "a.dat").write_text(text[: text.rindex("E I G E N V A L U E")])
+    with pytest.raises(rb.DataError, match="ends before the displacements of mode 3"):
+        rb.Modal.from_file(tmp_path / "a.dat", **OPTIONS)
+    text = FILES["a.f06"][0]
+    (tmp_path / "a.f06").write_text(text[: text.rindex("      EIGENVALUE = ")])
+    assert "the shapes of 2 of its 3 modes" in "\n".join(rb.Modal.from_file(tmp_path / "a.f06", **OPTIONS).notes())
 
 
 def test_residual_vectors_of_nastran(tmp_path: Path) -> None:

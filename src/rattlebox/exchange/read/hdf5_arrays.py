@@ -61,11 +61,14 @@ def _arrays_of_mat(h5py: Any, file: Any, limit: _Limit) -> dict[str, Any]:
 
 
 def _tables_of_nastran(h5py: Any, file: Any, limit: _Limit) -> dict[str, Any]:
-    """Return columns of tables with names such as INPUT/NODE/GRID.ID, and empty arrays for other results of nodes."""
+    """Return columns of tables, such as INPUT/NODE/GRID.ID, and empty arrays for other results of nodes.
+
+    A file without the group NASTRAN gives empty arrays for its content, such as /time.
+    """
     arrays: dict[str, Any] = {}
     root = file.get("NASTRAN")
     if not isinstance(root, h5py.Group):
-        sys.exit(f"has no group NASTRAN, but {', '.join(list(file)[:12]) or 'no group'}")
+        return {f"/{name}": np.zeros(0) for name in list(file)[:40]}
     nodal = root.get("RESULT/NODAL")
     if isinstance(nodal, h5py.Group):
         arrays = {f"RESULT/NODAL/{name}": np.zeros(0) for name in list(nodal)[:40]}

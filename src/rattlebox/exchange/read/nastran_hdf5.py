@@ -45,8 +45,10 @@ def read_nastran_hdf5(path: Path, _: ModesRequest) -> ModesInFile:
             )
         if start != b"\x89HDF\r\n\x1a\n":
             raise DataError(f"{path} is no HDF5 file", _EXPORT)
-        content = arrays_from_child(path, "h5")
-        tables = {str(name): content[f"array_{k}"] for k, name in enumerate(content["names"])}
+        arrays = arrays_from_child(path, "h5")
+        tables = {str(name): arrays[f"array_{k}"] for k, name in enumerate(arrays["names"])}
+        if others := [name.removeprefix("/") for name in tables if name.startswith("/")]:
+            raise DataError(f"{path} has no group NASTRAN, but {listed(others)}", _EXPORT)
         domains, nodes, shapes = _vectors(path, tables)
         numbers = _mode_numbers(path, tables, domains)
         squares, masses = _eigenvalues(path, tables, numbers)

@@ -168,7 +168,12 @@ def read_f06(path: Path, _: ModesRequest) -> ModesInFile:
                     f"{path}: mode {mode} has the eigenvalue {value:g} above its shape, but {squares[mode]:g} in the table",
                     "the results of one analysis",
                 )
-        return _made(path, squares, shapes, masses, (AXES.format(path.name),))
+        notes = [AXES.format(path.name)]
+        if len(shapes) < len(squares):
+            notes.append(
+                f"{path.name} has the shapes of {len(shapes)} of its {len(squares)} modes; the others are left out"
+            )
+        return _made(path, squares, shapes, masses, tuple(notes))
 
 
 @modes_reader(".pch")
@@ -310,6 +315,8 @@ def read_dat(path: Path, _: ModesRequest) -> ModesInFile:
                 f"{path} contains no mode shape",
                 "*NODE PRINT, NSET=..., GLOBAL=YES with U in the step; or the .frd file",
             )
+        if missing := sorted(values.keys() - shapes.keys()):
+            raise DataError(f"{path} ends before the displacements of mode {missing[0]}", "the complete file")
         if bad := next((mode for mode, row in values.items() if len(row) != 4), 0):
             raise DataError(f"{path}: the eigenvalue of mode {bad} has {len(values[bad])} columns", "four numbers")
         factors = rows.get("PARTICIPATIONFACTORS", {})
