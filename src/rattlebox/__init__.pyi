@@ -106,6 +106,7 @@ from rattlebox.report.write import write_report as write_report
 from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots
+from rattlebox.studies.backbone import backbone as backbone
 from rattlebox.studies.calibration.calibrate import calibrate as calibrate
 from rattlebox.studies.calibration.measurements import BounceTimes as BounceTimes
 from rattlebox.studies.calibration.measurements import Drops as Drops
@@ -116,7 +117,6 @@ from rattlebox.studies.grid.sampling import geomspace as geomspace
 from rattlebox.studies.grid.sampling import linspace as linspace
 from rattlebox.studies.grid.sampling import random_design as random_design
 from rattlebox.studies.grid.sampling import replicas as replicas
-from rattlebox.studies.kinds.backbone import backbone as backbone
 from rattlebox.studies.kinds.basins import basins as basins
 from rattlebox.studies.kinds.bifurcation import bifurcation as bifurcation
 from rattlebox.studies.kinds.design import design as design

@@ -65,8 +65,8 @@ def plot_backbone(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *, size
                 text = name or "with damper"
                 axes.plot(x, factor * curve[quantity], color=colour, ls=style, marker=marker, ms=pen(3), label=text)
             for number, curve in enumerate(named.values()):
-                text = None if number else "structure alone"
-                axes.axhline(factor * curve.attrs[alone], color=FAINT, lw=pen(0.8), zorder=0, label=text)
+                alone_text = None if number else "structure alone"
+                axes.axhline(factor * curve.attrs[alone], color=FAINT, lw=pen(0.8), zorder=0, label=alone_text)
         above, below = panels
         below.set_xscale("log")
         below.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))

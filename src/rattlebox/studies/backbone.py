@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.narrow import instance
 from rattlebox._util.quantities import quantity
 from rattlebox.analysis.signals import first_harmonic, trapezoid_weights
 from rattlebox.model.errors import Hint
@@ -183,8 +184,8 @@ class _Target:
     @classmethod
     def of(cls, case: Case, mode: int) -> _Target:
         """Return the mode and the load of a case; raise if they do not fit."""
-        load = case.loads[0] if case.loads else None
-        if len(case.loads) != 1 or not isinstance(load, Harmonic) or case.base_acceleration():
+        load = case.harmonics.get("loads[0]")
+        if load is None or len(case.loads) != 1 or case.base_acceleration():
             kinds = ", ".join(each.kind for each in (*case.loads, *case.base)) or "none"
             raise Hint(
                 f"the case has loads and base motions: {kinds}; a backbone needs one harmonic force and no base motion",
@@ -314,7 +315,7 @@ def _response(run: Run, target: _Target, window: tuple[int, int]) -> _Row:
     """Return the displacement per force at the point of the load, from the last cycles of a run."""
     if not run.ok:
         return _Row(run.message, (), complex(math.nan))
-    (load,) = run.case.loads
+    load = instance(run.case.loads[0], Harmonic)
     time, frequency, kept = run.arrays.time, load.frequency, window[1]
     motion = run.arrays.modal_displacement @ target.force
     # The load is A sin(w t) and the fit has Re(x exp(i w t)), so that the load is -i A there.
