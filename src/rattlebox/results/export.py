@@ -15,7 +15,15 @@ from rattlebox._util.atomic_io import atomic_write, check_suffix, disk_errors, r
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import claim, list_files
 from rattlebox._util.owned_folder import digest_of
-from rattlebox.exchange.write.universal import GENERAL, TIME_RESPONSE, Function, Node, function_set, write_universal
+from rattlebox.exchange.write.universal import (
+    EXCITATION_FORCE,
+    GENERAL,
+    TIME_RESPONSE,
+    Function,
+    Node,
+    function_set,
+    write_universal,
+)
 
 from .datasets import parts
 from .schema import AXES, groups
@@ -136,9 +144,11 @@ def to_uff(run: Record, path: Path, variables: Iterable[str] | None, nodes: Mapp
     numbers = nodes_of(run.arrays.points, nodes)
     for name, label, values, unit in histories(run, variables):
         kind = TIME_RESPONSE if unit in _LETTERS else GENERAL
-        node = numbers.get(label, (0, 0))
-        full = f"{name} {label}".strip()
-        sets.append(function_set(Function(full, kind, run.arrays.time, "s", values, unit, response=node)))
+        axis = label.rpartition(" ")[2]
+        node = numbers.get(label, (0, AXES.index(axis) + 1 if axis in AXES else 0))
+        full, quantity = f"{name} {label}".strip(), EXCITATION_FORCE if name == "load" else None
+        function = Function(full, kind, run.arrays.time, "s", values, unit, response=node, quantity=quantity)
+        sets.append(function_set(function))
     return write_universal(path, sets)
 
 

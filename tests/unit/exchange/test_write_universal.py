@@ -52,6 +52,7 @@ def test_time_histories_read_back_to_the_last_bit(output: dict[str, Any], tmp_pa
     found = [each for each in sets(file) if each["type"] == 58]
     np.testing.assert_array_equal(found[0]["data"], own.arrays.displacement[:, 0])
     assert [each["func_type"] for each in found] == [1] * len(found)
+    assert [each["ordinate_spec_data_type"] for each in found if each["id1"].startswith("load")] == [13]
     record = rb.Record.from_file(file, columns="load half_sine 1")
     np.testing.assert_array_equal(record.values, own.arrays.load[:, 0])
 
@@ -73,6 +74,23 @@ def test_variables_and_nodes(tmp_path: Path) -> None:
     two = rb.Modal(frequencies=[3.0], damping_ratios=[0.0], shapes={"a": [1.0], "b": [2.0]})
     with pytest.raises(rb.DataError, match="both node 2"):
         rb.to_uff(two, tmp_path / "two.uff", nodes={"a": 2})
+
+
+def test_a_run_in_three_dimensions(tmp_path: Path) -> None:
+    """Components of vectors have the directions of their axes, and variables that a run cannot know are left out."""
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="glass", diameter="4 mm", count=10),
+        cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
+        contact=rb.Tsuji(restitution=0.8),
+        softening=1000,
+    )
+    structure = rb.Modal(frequencies=["40 Hz"], damping_ratios=[0.0], shapes={"tip": [[1.0, 0.0, 2.0]]}, velocity=[0.2])
+    own = rb.simulate(rb.Case(structure=structure, damper=damper, duration="5 ms"), progress=False)
+    found = [each for each in sets(own.to_uff(tmp_path / "run.uff", nodes={"tip": 8})) if each["type"] == 58]
+    places = {each["id1"]: (each["rsp_node"], each["rsp_dir"]) for each in found}
+    assert [places[f"velocity tip {axis}"] for axis in "xyz"] == [(8, 1), (8, 2), (8, 3)]
+    assert [places[f"base_acceleration {axis}"] for axis in "xyz"] == [(0, 1), (0, 2), (0, 3)]
+    assert not any(name.startswith("interface_force") for name in places)
 
 
 def test_response_functions_read_back_to_the_last_bit(tmp_path: Path) -> None:

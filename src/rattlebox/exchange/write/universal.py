@@ -34,6 +34,9 @@ GENERAL, TIME_RESPONSE, RESPONSE_FUNCTION, TRANSMISSIBILITY, COHERENCE, DENSITY 
 QUANTITIES = {"m": 8, "N": 9, "m/s": 11, "m/s^2": 12, "Pa": 15, "kg": 16, "s": 17, "Hz": 18}
 """Types of data of an axis, by unit; 1 is general."""
 
+EXCITATION_FORCE = 13
+"""Type of data of a load; other forces are reactions."""
+
 _WIDTH = 12  # characters of a number, after the blank that separates it from the last one
 _EVEN = 1e-3  # largest deviation from an even abscissa that is stored as such, over the step
 _DISPLACEMENT, _NORMAL_MODES, _REAL = 8, 2, 2
@@ -55,6 +58,7 @@ class Function:
     response: Node = (0, 0)  # Node and direction
     source: Node = (0, 0)
     note: str = ""
+    quantity: int | None = None
 
 
 def universal_nodes(nodes: Mapping[str, int | str] | None) -> dict[str, Node]:
@@ -152,8 +156,8 @@ def function_set(function: Function) -> bytes:
         f" {'':10}{function.source[0]:10d}{function.source[1]:4d}",
         f"{6 if is_complex else 4:10d}{x.size:10d}{int(is_even):10d}{''.join(even)}{_number(0.0)}",
         _axis(function.x_unit, x_name),
-        _axis(function.unit, ""),
-        _axis(function.source_unit, "", 13 if function.source_unit == "N" else None),
+        _axis(function.unit, "", function.quantity),
+        _axis(function.source_unit, "", EXCITATION_FORCE if function.source_unit == "N" else None),
         _axis("", ""),
     ]
     return _set(head, lines, data)
