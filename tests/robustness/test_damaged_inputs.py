@@ -15,10 +15,13 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
+import h5py
+import nptdms
 import numpy as np
 import pytest
 import scipy.io
 from ansys.mapdl.reader import examples
+from support.set_58 import set58
 
 import rattlebox as rb
 import rattlebox.analysis.measured
@@ -92,6 +95,27 @@ def record(options: str = "") -> str:
     return SDOF + f'[base]\nkind = "record"\nfile = "FILE"\n{options}'
 
 
+def mat73(**arrays: Any) -> bytes:
+    """Return a MAT file of version 7.3, which is a HDF5 file behind 512 bytes."""
+    stream = io.BytesIO()
+    with h5py.File(stream, "w", userblock_size=512) as file:
+        for name, array in arrays.items():
+            file.create_dataset(name, data=np.atleast_2d(array)).attrs["MATLAB_class"] = np.bytes_("double")
+    content = stream.getvalue()
+    return b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM" + content[128:]
+
+
+def tdms(**values: Any) -> bytes:
+    """Return a TDMS file with one waveform."""
+    stream = io.BytesIO()
+    properties = {"wf_increment": 0.01, "wf_start_offset": 0.0, "unit_string": "g"}
+    channels = [nptdms.ChannelObject("run", name, array, properties) for name, array in values.items()]
+    with nptdms.TdmsWriter(stream) as writer:
+        writer.write_segment(channels)
+    return stream.getvalue()
+
+
+RANDOM = SDOF + '[base]\nkind = "random"\nfile = "FILE"\nduration = "0.1 s"\n'
 K, M = np.array([[3e4, -1e4], [-1e4, 1e4]]), np.diag([2.0, 1.0])
 MTX = saved(scipy.io.mmwrite, K, symmetry="general"), saved(scipy.io.mmwrite, M, symmetry="general")
 AT2 = (
@@ -111,6 +135,10 @@ GOOD: dict[str, Sample] = {
                        swapped=(b"IM", b"MI")),
     "UFF record": Sample("a.uff", (UFF / "time_history_58b.uff").read_bytes(), record(),
                        swapped=(b"58b     1", b"58b     2")),
+    "MAT 7.3 record": Sample("a.mat", mat73(time=TIMES, value=VALUES), record()),
+    "TDMS": Sample("a.tdms", tdms(plate=VALUES), record()),
+    "density": Sample("a.csv", table("f (Hz),S (g^2/Hz)", 20 + 50 * TIMES, 1 + VALUES), RANDOM, counted=False),
+    "UFF density": Sample("a.uff", set58(9, 1 + VALUES, "g^2/Hz").encode(), RANDOM),
     "UFF text record": Sample("a.uff", (UFF / "time_history_58.uff").read_bytes(), record()),
     "modal table": Sample("a.csv", table("frequency (Hz),modal mass (kg),tip", [10, 25], [4, 1], [2, -1]),
                         MODAL + 'file = "FILE"\n', counted=False),
@@ -247,7 +275,7 @@ def test_other_encoding(
     """A text file in UTF-16 is refused, unless it is a table of numbers: these have the same values."""
     good = GOOD[name]
     content = good.content.decode().encode("utf-16")
-    if name not in ("one column", "two columns", "positions", "response function", "modal table"):
+    if name not in ("one column", "two columns", "density", "positions", "response function", "modal table"):
         check_refused(tmp_path, good, content, monkeypatch, capsys)
         return
     same = [read_file(tmp_path, good, text) for text in (good.content, content)]

@@ -18,9 +18,11 @@ from .test_damaged_inputs import GOOD, read_file
 
 MUTANTS = 35
 LIMIT = 2.0  # s of processor time
+IN_CHILD = ("Ansys result", "Ansys matrices", "MAT 7.3 record")
+"""Samples that a child process reads."""
 
 
-@pytest.mark.parametrize("name", [name for name in GOOD if "Ansys" not in name])
+@pytest.mark.parametrize("name", [name for name in GOOD if name not in IN_CHILD])
 def test_mutants(tmp_path: Path, name: str) -> None:
     """A mutant is read, or refused with the name of the file and advice, in two seconds at most."""
     good = GOOD[name]
@@ -38,9 +40,9 @@ def test_mutants(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["Ansys result", "Ansys matrices"])
+@pytest.mark.parametrize("name", IN_CHILD)
 def test_mutants_of_binary_files(tmp_path: Path, name: str) -> None:
-    """A mutant of an Ansys file never ends this process, also if it crashes the child process that reads it."""
+    """A mutant of an Ansys or HDF5 file never ends this process, also if it crashes the child process that reads it."""
     for number in range(14):
         message = GOOD[name].name
         try:

@@ -12,6 +12,7 @@ from .units import factor_of, names_of_units, unit_name
 Line = tuple[int, str]
 """Number and text of a line of a file."""
 
+_SHOWN = 60  # characters of a text of a file in a message
 _BRACKETED = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 _PRODUCT = re.compile(r"[/*·]\s*\(")
 _LABELS = re.compile(r"[txyzTXYZ]|\d*")
@@ -85,7 +86,7 @@ def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str
             unknown = head.strip()  # a line of units, such as "s,mm/s"
         if unknown is not None:
             raise Hint(
-                f"{unknown!r}, written above the column as {head!r}, is not a unit of "
+                f"{unknown[:_SHOWN]!r}, written above the column as {head[:_SHOWN]!r}, is not a unit of "
                 f"{' or '.join(unit_name(si) for si in units)}; known: {', '.join(names_of_units(units))}"
             )
     return None
