@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,13 +18,15 @@ from rattlebox.exchange.read.modes_in_file import ModesInFile
 
 from .density_files import density_names, states_density
 from .effective_masses import effective_masses
+from .elementwise import Vector
 from .errors import several
 from .files import BINARY, existing, read_arrays
+from .matrices import Matrices
 from .modal_files import MOST_POINTS, export_instead, read_modes
 from .random_vibration import Random
 from .recorded import Record, is_table
 from .records import columns_of_arrays, columns_of_text
-from .structures import Modal
+from .structures import Modal, StructurePart
 from .units import STANDARD_GRAVITY
 
 _ASSUMED_DURATION = "1 s"
@@ -96,6 +98,8 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
     path, given = existing(file), os.fspath(file)
     if instead := export_instead(path):
         raise DataError(f"{path}: files with the ending {path.suffix.lower()!r} are not read", instead)
+    if found := _matrices(path, given):
+        return found
     problem: RattleboxError | None = None
     # Universal files and tables may have records or modes: the first that can be read.
     with errors_of(path, "a file"), path.open("rb") as stream:
@@ -257,26 +261,65 @@ def _modes(path: Path, given: str) -> FileContents | None:
         return None
     options, assumed = _options_of_modes(read_modes(str(path), None))
     modal = Modal.from_file(str(path), **options)
-    frequencies = ", ".join(f"{frequency:.5g}" for frequency in modal.frequencies[:_LISTED])
-    points = list(modal.shapes)
-    lines = [
-        f"{several(len(modal.frequencies), 'mode')}: {frequencies}{', ...' if len(modal.frequencies) > _LISTED else ''} Hz",
-        f"{several(len(points), 'point')}: {', '.join(points[:_LISTED])}{', ...' if len(points) > _LISTED else ''}",
-    ]
+    lines = _lines_of_structure(modal.frequencies, list(modal.shapes))
     if modal.participation is None:
         lines.append("effective masses: unknown, since the file states no participation, which a moving base needs")
     else:
-        lines += ["effective masses:", *(f"  {line}" for line in str(effective_masses(modal)).splitlines())]
+        lines += _table_of_masses(modal)
+    return _structure(given, "modes of a structure", modal, lines, assumed, options)
+
+
+def _matrices(path: Path, given: str) -> FileContents | None:
+    """Return the preview of a file with M and K; None for other files."""
+    if path.suffix.lower() == ".mtx":
+        raise DataError(
+            f"{path} is one matrix; M and K are needed", 'rb.Matrices.from_file({"M": "M.mtx", "K": "K.mtx"})'
+        )
+    if path.suffix.lower() not in (".npz", ".mat"):
+        return None
+    arrays = read_arrays(path)
+    sizes = [np.shape(arrays.get(name)) for name in ("M", "K")]
+    if sizes[0] != sizes[1] or len(sizes[0]) != 2 or sizes[0][0] != sizes[0][1] or sizes[0][0] < 2:
+        return None
+    options: dict[str, Any] = {}
+    assumed = []
+    if not any(name.startswith(("point_", "points.")) for name in arrays):
+        options["points"] = {"first": 0}
+        assumed.append("assumed: a point at the first degree of freedom; set those you need")
+    structure = Matrices.from_file(str(path), **options)
+    modes = structure.modes()
+    lines = _lines_of_structure(np.sqrt(modes.stiffness) / (2 * np.pi), list(modes.shapes))
+    if modes.participation is not None:
+        assumed.append("assumed: a moving base moves all degrees of freedom by the same; influence sets another")
+        lines += _table_of_masses(structure)
+    return _structure(given, "matrices of a structure", structure, lines, assumed, options)
+
+
+def _lines_of_structure(frequencies: Sequence[float] | Vector, points: list[str]) -> list[str]:
+    shown = ", ".join(f"{frequency:.5g}" for frequency in frequencies[:_LISTED])
+    return [
+        f"{several(len(frequencies), 'mode')}: {shown}{', ...' if len(frequencies) > _LISTED else ''} Hz",
+        f"{several(len(points), 'point')}: {', '.join(points[:_LISTED])}{', ...' if len(points) > _LISTED else ''}",
+    ]
+
+
+def _table_of_masses(structure: StructurePart) -> list[str]:
+    return ["effective masses:", *(f"  {line}" for line in str(effective_masses(structure)).splitlines())]
+
+
+def _structure(
+    given: str, content: str, structure: Modal | Matrices, lines: list[str], assumed: list[str], options: dict[str, Any]
+) -> FileContents:
     fields = {"file": given, **options}
-    toml = ["[structure]", 'kind = "modal"', *(f"{key} = {_toml(value)}" for key, value in fields.items())]
+    toml = ["[structure]", f'kind = "{structure.kind}"', *(f"{key} = {_toml(value)}" for key, value in fields.items())]
     python = "".join(f", {key}={_python(value)}" for key, value in options.items())
     return FileContents(
         given,
-        "modes of a structure",
+        content,
         tuple(lines),
-        (*assumed, *modal.notes()),
+        (*assumed, *structure.notes()),
         "\n".join(toml),
-        f"rb.Modal.from_file({json.dumps(given, ensure_ascii=False)}{python})",
+        f"rb.{type(structure).__name__}.from_file({json.dumps(given, ensure_ascii=False)}{python})",
     )
 
 

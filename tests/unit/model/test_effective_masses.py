@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.io
 
 import rattlebox as rb
 from rattlebox.model.beams import wave_numbers
@@ -148,6 +149,29 @@ def test_the_table_in_a_preview(tmp_path: Path) -> None:
     assert table[1:] == [["1", "12", "4.5"], ["2", "70", "0.125"], ["sum", "4.625"]]
     (tmp_path / "b.csv").write_text("frequency (Hz),damping (%),modal mass (kg),tip\n12,1,2,1\n")
     assert "states no participation" in rb.inspect(tmp_path / "b.csv").lines[-1]
+
+
+def test_a_preview_of_matrices(tmp_path: Path) -> None:
+    """Files with M and K are previewed as structures, with lines that read them; one matrix alone is refused.
+
+    Points in such files were previewed as records of accelerations.
+    """
+    M, K = np.diag([2.0, 1.0, 0.5]), 1e4 * (2 * np.eye(3) - np.eye(3, k=1) - np.eye(3, k=-1))
+    scipy.io.savemat(tmp_path / "a.mat", {"M": M, "K": K, "point_tip": [0.0, 0.0, 1.0]})
+    np.savez(tmp_path / "b.npz", M=M, K=K)
+    for name, points in (("a.mat", "tip"), ("b.npz", "first")):
+        view = rb.inspect(tmp_path / name)
+        assert view.content == "matrices of a structure" and view.lines[1] == f"1 point: {points}"
+        assert view.lines[-2].split() == ["total", "3.5"] and view.lines[-1].split() == ["share", "100.0", "%"]
+        structure = eval(view.python, {"rb": rb})
+        assert list(structure.modes().shapes) == [points]
+        (tmp_path / "case.toml").write_text(f'duration = "1 ms"\n{view.toml}\n')
+        assert rb.Case.from_file(tmp_path / "case.toml").structure.kind == "matrices"
+    np.savez(tmp_path / "c.npz", M=np.arange(5.0), K=np.arange(5.0))
+    assert rb.inspect(tmp_path / "c.npz").content.startswith("a file of arrays")  # rows of numbers, no matrices
+    (tmp_path / "K.mtx").write_text("%%MatrixMarket matrix array real general\n1 1\n2\n")
+    with pytest.raises(rb.DataError, match=r"is one matrix; M and K are needed\n.*rb\.Matrices"):
+        rb.inspect(tmp_path / "K.mtx")
 
 
 def test_many_modes_and_fixed_cavities() -> None:
