@@ -278,8 +278,10 @@ def _matrices(path: Path, given: str) -> FileContents | None:
     if path.suffix.lower() not in (".npz", ".mat"):
         return None
     arrays = read_arrays(path)
-    sizes = [np.shape(arrays.get(name)) for name in ("M", "K")]
-    if sizes[0] != sizes[1] or len(sizes[0]) != 2 or sizes[0][0] != sizes[0][1] or sizes[0][0] < 2:
+    if not {"M", "K"} <= arrays.keys():
+        return None
+    size = arrays["M"].shape
+    if arrays["K"].shape != size or len(size) != 2 or size[0] != size[1] or size[0] < 2:
         return None
     options: dict[str, Any] = {}
     assumed = []
