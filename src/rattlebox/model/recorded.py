@@ -403,9 +403,10 @@ class Record(FileSignal):
         if self._unit_is_assumed:
             in_g = f" = {self.peak / STANDARD_GRAVITY:.4g} g" if self.unit == "m/s^2" else ""
             file = " ".join(Path(self.file or "").name.split())
+            unit = f" {self.unit}" if self.unit else ""
             yield (
-                f"{file} {self._notes[-1]}; {self.unit or 'SI'} is assumed, with a peak of {self.peak:.4g} "
-                f"{self.unit}{in_g}; set unit if that is wrong"
+                f"{file} {self._notes[-1]}; {self.unit or 'SI'} is assumed, with a peak of {self.peak:.4g}{unit}{in_g}; "
+                "set unit if that is wrong"
             )
         zero, first = self._start, self.times[0]
         before = int(np.searchsorted(self.times, zero))

@@ -152,3 +152,9 @@ def test_a_rate_that_is_too_low_is_raised() -> None:
     psd = [(10, 1.0), (50, 1.0)]
     assert len(rb.Random(psd, 1.0, 100).times) == len(rb.Random(psd, 1.0).times) == 801
     assert len(rb.Random(psd, 1.0, 2000).times) == 2001
+
+
+def test_a_note_without_a_unit(tmp_path: Path) -> None:
+    """The note on a record that no one gave a unit has its peak, not "None": only records in cases had been looked at."""
+    notes = " ".join(rb.Record.from_file(written(tmp_path, "")).notes())
+    assert "SI is assumed, with a peak of 0.2; set unit" in notes
