@@ -253,7 +253,7 @@ def fingerprint(packed: _core.Node | Mapping[str, Any]) -> str:
     """Return a digest of every number in the input of the core."""
     digest = hashlib.sha256()
 
-    def add(value: Any) -> None:
+    def add(value: object) -> None:
         if isinstance(value, _core.Node):
             for name in sorted(value.fields()):
                 digest.update(name.encode())

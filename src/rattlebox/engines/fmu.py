@@ -23,8 +23,10 @@ from rattlebox.core.component import component_library, other_libraries
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
+from rattlebox.model.methods import Method
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
+from rattlebox.model.units import Quantity
 from rattlebox.prepare.component import PackedComponent, pack_component
 
 from .run_notes import validity_limits
@@ -71,9 +73,9 @@ def to_fmu(
     fmi: Literal[2, 3] = 3,
     input: Literal["velocity", "acceleration"] = "velocity",
     alone: bool | None = None,
-    method: Any = None,
+    method: Method | None = None,
     motion: Signal | None = None,
-    structure_mass: Any = None,
+    structure_mass: Quantity | None = None,
     other_systems: bool = False,
 ) -> Path:
     """Write a damper, or a structure with dampers, as an FMU for co-simulation on Linux x86-64.

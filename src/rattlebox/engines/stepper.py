@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rattlebox._util.exceptions import CaseError, StepError
 from rattlebox._util.quantities import quantity
@@ -15,9 +15,10 @@ from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
+from rattlebox.model.methods import Method
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
-from rattlebox.model.units import in_si
+from rattlebox.model.units import Quantity, in_si
 from rattlebox.prepare.component import damper_case, pack_component
 from rattlebox.prepare.time_step import step_diagnostics
 
@@ -130,10 +131,10 @@ class Stepper:
         system: Case | ImpactDamper | ParticleDamper,
         *,
         alone: bool | None = None,
-        method: Any = None,
+        method: Method | None = None,
         motion: Signal | None = None,
-        structure_mass: Any = None,
-        velocity: Any = 0.0,
+        structure_mass: Quantity | None = None,
+        velocity: Quantity | ArrayLike = 0.0,
     ) -> None:
         case, alone = component_case(system, alone, method, motion, structure_mass)
         start = np.asarray(in_si(velocity, "m/s"), dtype=np.float64)
@@ -200,7 +201,14 @@ class Stepper:
         notes = step_diagnostics(case, tables, step, overlaps.tolist(), speeds.tolist())[1]
         return (*notes, *self._packed.notes, *table_notes(case, speeds.tolist()))
 
-    def advance(self, to: Any, *, velocity: Any = None, acceleration: Any = None, loads: Any = None) -> StepResult:
+    def advance(
+        self,
+        to: Quantity,
+        *,
+        velocity: Quantity | ArrayLike | None = None,
+        acceleration: Quantity | ArrayLike | None = None,
+        loads: ArrayLike | None = None,
+    ) -> StepResult:
         """Advance to a time.
 
         Parameters
@@ -310,7 +318,7 @@ class Stepper:
         except ValueError as error:
             raise CaseError(f"{error}", "a state that save() of a stepper of the same case returned") from None
 
-    def _inputs(self, name: str, value: Any) -> NDArray[np.float64]:
+    def _inputs(self, name: str, value: object) -> NDArray[np.float64]:
         unit = {"velocity": "m/s", "acceleration": "m/s^2"}.get(name)
         values = np.atleast_1d(np.asarray(value if unit is None else in_si(value, unit), dtype=np.float64))
         if values.shape != (len(self.inputs),):

@@ -27,18 +27,18 @@ Texts = Mapping[str, Any]
 class Given(dict[str, Any]):
     """Fields of a new part that were read from other values, with the texts of these."""
 
-    def __init__(self, fields: Mapping[str, Any], texts: Texts, read: Iterable[str] = ()) -> None:
+    def __init__(self, fields: Mapping[str, object], texts: Texts, read: Iterable[str] = ()) -> None:
         super().__init__(fields)
         self.texts = texts
         self.read = frozenset(read)  # fields whose values are not from the user
 
     @classmethod
-    def read_from(cls, values: Mapping[str, Any], fields: Mapping[str, Any]) -> Given:
+    def read_from(cls, values: Mapping[str, object], fields: Mapping[str, object]) -> Given:
         """Return fields that were read from other values."""
         return cls(fields, _texts_of(values))
 
     @classmethod
-    def changed(cls, earlier: Any, fields: Mapping[str, Any], *names: str | int) -> Given:
+    def changed(cls, earlier: object, fields: Mapping[str, object], *names: str | int) -> Given:
         """Return the fields of an earlier part or of its fields, of which some have new values."""
         if isinstance(earlier, Given):
             return cls(fields, earlier.texts, earlier.read - set(names))
@@ -48,7 +48,7 @@ class Given(dict[str, Any]):
         )
 
 
-def remember(part: Any, values: Mapping[str, Any]) -> None:
+def remember(part: object, values: Mapping[str, object]) -> None:
     """Store the texts of quantities among the values from which a part was made."""
     texts = _texts_of(values)
     for name in [name for name, text in texts.items() if isinstance(text, dict)]:
@@ -58,7 +58,7 @@ def remember(part: Any, values: Mapping[str, Any]) -> None:
         part.__dict__[TEXTS] = texts
 
 
-def _texts_of(values: Mapping[str, Any]) -> dict[str, Any]:
+def _texts_of(values: Mapping[str, object]) -> dict[str, Any]:
     """Return the texts among values by name, with those from which the values were read."""
     texts = dict(values.texts) if isinstance(values, Given) else {}
     read = values.read if isinstance(values, Given) else ()
@@ -93,7 +93,7 @@ def _text_of(value: Any) -> Any:
     return f"{float(magnitude)!r} {value.units:~}" if isinstance(magnitude, (int, float)) else None
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Return nested lists of texts and numbers for a TOML file."""
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
@@ -118,7 +118,7 @@ def with_texts(part: Any, data: dict[str, Any]) -> dict[str, Any]:
     return _replaced(part, written, usable)
 
 
-def _inside(value: Any, data: Any) -> Any:
+def _inside(value: object, data: object) -> Any:
     """Return the content of a case file for a part, or for a list or a table of parts; other content unchanged."""
     if isinstance(data, dict):
         if hasattr(value, "as_given"):
@@ -138,7 +138,7 @@ def _is_usable(part: Any, name: str, text: Any) -> bool:
     return isinstance(text, str) or not (hasattr(value, "as_given") or _has_parts(value))
 
 
-def _has_parts(value: Any) -> bool:
+def _has_parts(value: object) -> bool:
     items: Iterable[Any] = value.values() if isinstance(value, Mapping) else value if isinstance(value, tuple) else ()
     return any(hasattr(item, "as_given") for item in items)
 

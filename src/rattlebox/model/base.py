@@ -147,7 +147,7 @@ class Part(BaseModel, metaclass=_PartMeta):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _with_texts(cls, values: Any, handler: Any) -> Self:
+    def _with_texts(cls, values: object, handler: Any) -> Self:
         """Keep the texts of quantities for `Case.to_file`."""
         made: Self = handler(values)
         if isinstance(values, dict):
@@ -164,7 +164,7 @@ class Part(BaseModel, metaclass=_PartMeta):
                 if isinstance(name, str) and has_controls(name):
                     raise Hint(f"{name!r} contains a control character", "printable characters only", [field])
 
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+    def model_copy(self, *, update: Mapping[str, object] | None = None, deep: bool = False) -> Self:
         """Return a copy with other values, which are not validated; cached properties are computed anew.
 
         Raises
@@ -179,7 +179,7 @@ class Part(BaseModel, metaclass=_PartMeta):
             del copy.__dict__[name]
         return copy
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         raise Hint(
             f"{name}: a {type(self).__name__} cannot be changed",
             'another one, or a new case with other values, case.replaced({"duration": "2 s", "damper.friction": 0.5})',
@@ -210,7 +210,7 @@ class Part(BaseModel, metaclass=_PartMeta):
         return {name: getattr(self, name) for name in type(self).model_fields if name not in from_file}
 
     @classmethod
-    def excluded_by(cls, name: str, value: Any) -> list[str]:
+    def excluded_by(cls, name: str, value: object) -> list[str]:
         """Return the fields that a value of a field excludes."""
         return [other for pair in cls.alternatives if name in pair for other in pair if other != name]
 
@@ -239,7 +239,7 @@ class Part(BaseModel, metaclass=_PartMeta):
         return schema
 
 
-def full_text(value: Any) -> str:
+def full_text(value: object) -> str:
     """Return a text that two values share only if they are equal; the representation of a part is shortened."""
     if isinstance(value, Part):
         return f"{type(value).__name__} {value.model_dump_json()}"
@@ -281,7 +281,7 @@ def _example(field: FieldInfo) -> str:
     return _toml_value(values[0]) if values else ""
 
 
-def _toml_value(value: Any) -> str:
+def _toml_value(value: object) -> str:
     if isinstance(value, Mapping):
         rows = (
             f"{name if name.isidentifier() else json.dumps(name)} = {_toml_value(row)}" for name, row in value.items()

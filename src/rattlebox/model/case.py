@@ -48,7 +48,7 @@ _NOT_COMPUTABLE = "cannot be computed for bodies of these sizes, masses and modu
 _USUAL = "numbers of usual sizes"
 
 
-def _kind_of_damper(value: Any) -> str:
+def _kind_of_damper(value: object) -> str:
     """Return the kind of a damper; by default it follows from the fields."""
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
     has_particles = isinstance(value, dict) and not value.keys().isdisjoint(("particles", "cavity", "packing"))
@@ -115,7 +115,7 @@ class Case(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _expand_aliases(cls, values: Any) -> Any:
+    def _expand_aliases(cls, values: object) -> Any:
         return cls.expand_aliases(values) if isinstance(values, dict) else values
 
     @model_validator(mode="after")
@@ -524,7 +524,7 @@ class Case(Part):
         text = self._toml(str, _shortened)
         return text if len(text) <= most else f"{text[:most]}\n... {len(text) - most} more characters"
 
-    def replaced(self, values: Mapping[str, Any]) -> Case:
+    def replaced(self, values: Mapping[str, object]) -> Case:
         """Return a copy of the case with other values.
 
         A new value removes alternatives that exclude it: a damping ratio replaces a damping.
@@ -643,7 +643,7 @@ def _check_finite(values: Mapping[str, Any]) -> None:
             raise Hint(f"{_NOT_COMPUTABLE}: its {name.replace('_', ' ')} is not finite", _USUAL)
 
 
-def _without_empty(value: Any) -> Any:
+def _without_empty(value: object) -> Any:
     """Remove empty values, since TOML has no null."""
     if isinstance(value, dict):
         return {
@@ -654,7 +654,7 @@ def _without_empty(value: Any) -> Any:
     return value
 
 
-def _shortened(value: Any) -> Any:
+def _shortened(value: object) -> Any:
     """Return tables and lists with a note in place of all but the first items of long lists and of long texts."""
     if isinstance(value, dict):
         return {key: _shortened(item) for key, item in value.items()}
@@ -672,7 +672,7 @@ class _Library(Part):
 
     @field_validator("materials", mode="before")
     @classmethod
-    def _named(cls, own: Any) -> Any:
+    def _named(cls, own: object) -> Any:
         if not isinstance(own, dict):
             return own
         for name in own:
@@ -681,7 +681,7 @@ class _Library(Part):
         return {name: {"name": name, **item} if isinstance(item, dict) else item for name, item in own.items()}
 
 
-def _with_files(node: Any, name_of: Callable[[str], str]) -> Any:
+def _with_files(node: object, name_of: Callable[[str], str]) -> Any:
     """Return a copy of a tree with `name_of` applied to the names of files."""
     if isinstance(node, dict):
         return {
@@ -690,7 +690,7 @@ def _with_files(node: Any, name_of: Callable[[str], str]) -> Any:
     return [_with_files(item, name_of) for item in node] if isinstance(node, list) else node
 
 
-def _renamed(file: Any, name_of: Callable[[str], str]) -> Any:
+def _renamed(file: object, name_of: Callable[[str], str]) -> Any:
     """Return `name_of` of the name of a file, or of each name in a table."""
     if isinstance(file, dict):
         return {key: _renamed(item, name_of) for key, item in file.items()}

@@ -55,7 +55,7 @@ class Cavity(Part):
     """Base class of cavities; positions are relative to the centre."""
 
     field_names: ClassVar[tuple[str, ...]] = ("cavity",)
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
 
     @abstractmethod
@@ -261,7 +261,7 @@ class _Round(Cavity):
 
     @model_validator(mode="before")
     @classmethod
-    def _radius_of_diameter(cls, values: Any) -> Any:
+    def _radius_of_diameter(cls, values: object) -> Any:
         if isinstance(values, dict) and values.get("radius") is None and values.get("diameter") is None:
             raise Hint("either radius or diameter is needed", 'diameter = "40 mm"')
         return radius_of_diameter(values)

@@ -19,7 +19,15 @@ from .errors import Hint, at, one_of
 from .kinds import AnyKind
 from .pairs import Pair
 from .power_dashpot import SMALLEST, dimensionless_damping, rebound
-from .restitutions import AnyRestitution, Constant, Restitution, Tabulated, ThorntonRestitution, yield_pressure
+from .restitutions import (
+    AnyRestitution,
+    Coefficients,
+    Constant,
+    Restitution,
+    Tabulated,
+    ThorntonRestitution,
+    yield_pressure,
+)
 from .units import (
     LARGEST,
     Damping,
@@ -61,7 +69,7 @@ class Contact(Part):
     """Base class of normal contact laws."""
 
     field_names: ClassVar[tuple[str, ...]] = ("contact", "ball_contact")
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
     overlap_limit: ClassVar[float] = MAX_OVERLAP
     """Largest overlap over the smaller radius at which the law holds."""
@@ -95,10 +103,10 @@ class Contact(Part):
         return float((force / values["stiffness"]) ** (1 / self.force_exponent))
 
     @abstractmethod
-    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+    def coefficients(self, pair: Pair) -> Coefficients:
         """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
 
-    def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
+    def softened(self, pair: Pair, softening: float) -> Coefficients:
         """Return `coefficients` with moduli divided by a factor; dashpots are scaled so that the restitution is the same.
 
         Notes
@@ -116,7 +124,7 @@ class Contact(Part):
         """Return the restitution law of hard impacts with the same loss, or the dashpot from which it follows."""
 
 
-def _check_soft(restitution: Any) -> None:
+def _check_soft(restitution: object) -> None:
     if isinstance(restitution, Constant) and restitution.e < 1e-6:
         raise Hint(
             "a contact with duration needs a restitution of at least 1e-6",
@@ -185,7 +193,7 @@ class Tsuji(Contact):
         """Exponent of the force in the overlap."""
         return 1.5
 
-    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+    def coefficients(self, pair: Pair) -> Coefficients:
         """Return stiffness, mass and, if fixed, alpha."""
         values: dict[str, Any] = {
             "stiffness": pair.hertz_stiffness,
@@ -269,7 +277,7 @@ class Linear(Contact):
         """Exponent of the force in the overlap."""
         return 1.0
 
-    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+    def coefficients(self, pair: Pair) -> Coefficients:
         """Return stiffness, mass and, if fixed, damping; a contact time t has the stiffness m* (pi / t)^2."""
         if self.stiffness is not None:
             stiffness = self.stiffness
@@ -340,7 +348,7 @@ class Thornton(Contact):
         """Exponent of the force in the overlap."""
         return 1.5
 
-    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+    def coefficients(self, pair: Pair) -> Coefficients:
         """Return elastic constants and the limiting pressure."""
         return "thornton", {
             "stiffness": pair.hertz_stiffness,
@@ -450,7 +458,7 @@ class PowerLaw(Contact):
         """Exponent of the force in the overlap."""
         return self.exponent
 
-    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+    def coefficients(self, pair: Pair) -> Coefficients:
         """Return stiffness, mass, exponents and the coefficient of the dashpot."""
         stiffness = pair.hertz_stiffness if self.stiffness is None else self.stiffness
         zero_overlap = self.ending == "zero_overlap"
@@ -472,7 +480,7 @@ class PowerLaw(Contact):
             "fixed_restitution": float(self.damping is None),
         }
 
-    def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
+    def softened(self, pair: Pair, softening: float) -> Coefficients:
         """Return the coefficients with the stiffness divided by a factor and the same restitution at each speed.
 
         Notes
@@ -606,7 +614,7 @@ class TabulatedNormal(Contact):
         overlap, force = np.array(self.unloading.overlap), np.array(self.unloading.force)
         return PchipInterpolator(overlap / overlap[-1], force / force[-1])
 
-    def _returned_share(self, deepest: Any) -> Any:
+    def _returned_share(self, deepest: object) -> Any:
         """Return the ratio of the work of unloading from these overlaps to the work of loading."""
         if self._unloading is None:
             return np.ones_like(deepest)
@@ -638,7 +646,7 @@ class TabulatedNormal(Contact):
         """Exponent of the force in the overlap."""
         return 1.0
 
-    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+    def coefficients(self, pair: Pair) -> Coefficients:
         """Return the piecewise cubics of both curves."""
         values: dict[str, Any] = {"stiffness": 1.0, "mass": pair.mass, **_pieces("loading", self._loading)}
         if self._unloading is None:
@@ -646,7 +654,7 @@ class TabulatedNormal(Contact):
             return "tabulated", values | dict.fromkeys(empty, np.zeros(0))
         return "tabulated", values | _pieces("unloading", self._unloading)
 
-    def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
+    def softened(self, pair: Pair, softening: float) -> Coefficients:
         """Return `coefficients` with forces divided by a factor."""
         name, values = self.coefficients(pair)
         return name, values | {"stiffness": 1.0 / softening}

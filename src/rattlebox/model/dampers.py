@@ -72,7 +72,7 @@ class Sphere(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _one_size(cls, values: Any) -> Any:
+    def _one_size(cls, values: object) -> Any:
         if isinstance(values, dict):
             one_of('radius = "10 mm"', radius=values.get("radius"), diameter=values.get("diameter"))
         return radius_of_diameter(values)
@@ -91,7 +91,7 @@ class Sphere(Part):
         return volume * self.material.density
 
 
-def _each(values: Sequence[Any], read: Callable[[Any], Any]) -> list[Any]:
+def _each(values: Sequence[object], read: Callable[[Any], Any]) -> list[Any]:
     """Read each item of a list; an error names the index of the item."""
     result = []
     for index, value in enumerate(values):
@@ -100,7 +100,7 @@ def _each(values: Sequence[Any], read: Callable[[Any], Any]) -> list[Any]:
     return result
 
 
-def _are_several(value: Any) -> bool:
+def _are_several(value: object) -> bool:
     """Return whether a value is a list, as opposed to one quantity (number, unit)."""
     return isinstance(value, (list, tuple)) and not (
         len(value) == 2
@@ -114,7 +114,7 @@ def _place(value: Any) -> Any:
     return _each(value, _one_place) if _are_several(value) else _one_place(value)
 
 
-def _one_place(value: Any) -> float | str:
+def _one_place(value: object) -> float | str:
     if isinstance(value, (bool, dict)) or _are_several(value):
         raise Hint("a fraction of the gap from -1 to 1 is needed, or a length", 'start = -1 or start = "0.1 mm"')
     if isinstance(value, (int, float)):
@@ -194,7 +194,7 @@ class ImpactDamper(Damper):
 
     @model_validator(mode="before")
     @classmethod
-    def _expand_aliases(cls, values: Any) -> Any:
+    def _expand_aliases(cls, values: object) -> Any:
         if not isinstance(values, dict):
             return values
         values = cls.expand_aliases(values)

@@ -7,19 +7,18 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from itertools import chain, islice, takewhile
-from typing import Any
 
 _MAX_LINES = 8
 _NOTHING = object()
 
 
-def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
+def differences(there: Mapping[str, object], here: Mapping[str, object]) -> list[str]:
     """Describe the differences between two trees in a few lines."""
     lines = [f"  {line}" for line in _differences(there, here)]
     return lines if len(lines) <= _MAX_LINES else [*lines[:_MAX_LINES], f"  and {len(lines) - _MAX_LINES} more"]
 
 
-def _differences(there: Any, here: Any, path: str = "") -> Iterator[str]:
+def _differences(there: object, here: object, path: str = "") -> Iterator[str]:
     """Yield the differences between two trees; of lists, the first one."""
     if isinstance(there, str) and isinstance(here, str) and "\n" in there:
         with suppress(tomllib.TOMLDecodeError):
@@ -39,7 +38,7 @@ def _differences(there: Any, here: Any, path: str = "") -> Iterator[str]:
         yield f"{path}: {_cut(sides[0], common)} there, {_cut(sides[1], common)} here"
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     return "nothing" if value is _NOTHING else json.dumps(value, default=str, ensure_ascii=False)
 
 

@@ -85,7 +85,7 @@ class EffectiveMasses:
         return "\n".join(line.rstrip() for line in lines)
 
 
-def effective_masses(structure: Any, positions: Any = None, directions: Any = None) -> EffectiveMasses:
+def effective_masses(structure: object, positions: object = None, directions: object = None) -> EffectiveMasses:
     r"""Return the effective mass of each mode of a structure in each direction.
 
     Parameters
@@ -153,7 +153,7 @@ def effective_masses(structure: Any, positions: Any = None, directions: Any = No
     )
 
 
-def _of_matrices(structure: StructurePart, positions: Any, directions: Any) -> EffectiveMasses:
+def _of_matrices(structure: StructurePart, positions: object, directions: object) -> EffectiveMasses:
     """Return the effective masses of matrices for the six rigid motions."""
     if not isinstance(structure, Matrices) or positions is None or directions is None:
         raise Hint(

@@ -61,7 +61,7 @@ def nearest(name: str, known: Iterable[str], *, listed: bool = False) -> str:
     return " ".join(parts)
 
 
-def _folded(name: Any) -> str:
+def _folded(name: object) -> str:
     """Return a name as synonyms are written."""
     return str(name).lower().replace("-", "_").replace(" ", "_")
 
@@ -76,7 +76,7 @@ def _close(name: str, known: Sequence[str]) -> list[str]:
 
 
 def translate(
-    error: ValidationError, source: str | os.PathLike[str], vocabulary: Vocabulary, given: Any = None
+    error: ValidationError, source: str | os.PathLike[str], vocabulary: Vocabulary, given: object = None
 ) -> RattleboxError:
     """Translate the errors of pydantic into one error of Rattlebox."""
     findings = _without_echoes(
@@ -177,25 +177,25 @@ def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[list[st
     return words, node if words else _NOTHING
 
 
-def _has(node: Any, name: Any) -> bool:
+def _has(node: object, name: object) -> bool:
     return name in node if isinstance(node, Mapping) else _get(node, name) is not None
 
 
-def _get(node: Any, name: Any) -> Any:
+def _get(node: object, name: object) -> Any:
     if isinstance(node, Mapping):
         return node.get(name)
     return getattr(node, name, None) if _is_table(node) and isinstance(name, str) else None
 
 
-def _is_table(value: Any) -> bool:
+def _is_table(value: object) -> bool:
     return isinstance(value, Mapping) or hasattr(type(value), "model_fields")
 
 
-def _holds_tables(value: Any) -> bool:
+def _holds_tables(value: object) -> bool:
     return _is_table(value) or (isinstance(value, (list, tuple)) and any(map(_is_table, value)))
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     try:
         text = repr(value)
     except ValueError:  # Python does not convert integers with more than 4300 digits.
@@ -213,11 +213,11 @@ def _kinds(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> Mapp
     return vocabulary.get(source, vocabulary.get("", {}))
 
 
-def _fields(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> set[str]:
+def _fields(location: Sequence[object], source: str, vocabulary: Vocabulary) -> set[str]:
     return set().union(*_kinds(location, source, vocabulary).values())
 
 
-def _absent(name: Any, known: set[str], vocabulary: Vocabulary) -> tuple[str, str] | None:
+def _absent(name: object, known: set[str], vocabulary: Vocabulary) -> tuple[str, str] | None:
     """Return that a property of particles, contacts or cavities does not exist, and what to do; None for other names."""
     holders = [set().union(*vocabulary.get(holder, {}).values()) for holder in _DAMPER_FIELDS]
     if not any(known <= fields for fields in holders):

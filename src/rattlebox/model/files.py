@@ -31,7 +31,7 @@ _SEVERAL = {"damper": "dampers", "load": "loads", "ball": "balls", "particles": 
 """Keys of tables that may occur several times, and the keys of the lists."""
 
 
-def absolute(path: Any) -> str:
+def absolute(path: object) -> str:
     """Return an absolute path."""
     if not isinstance(path, (str, os.PathLike)):
         raise Hint("a path must be text", 'file = "push.csv"')
@@ -148,7 +148,7 @@ def _load_mat(file: Path) -> Mapping[str, Any]:
     return variables
 
 
-def _flatten(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def _flatten(content: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the arrays of nested structs, with their path as name."""
     for name, value in content.items():
         if isinstance(value, Mapping):

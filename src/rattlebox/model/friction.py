@@ -29,7 +29,7 @@ class Friction(Part):
     """Base class of friction laws."""
 
     field_names: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
     coefficient: NotNegative = Field(examples=[0.3])
     damping: NotNegative = 1.0
@@ -71,7 +71,7 @@ class Mindlin(Friction):
 
     if TYPE_CHECKING:  # The first field is also a positional argument.
 
-        def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
+        def __init__(self, coefficient: object = ..., **values: Any) -> None: ...
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
         """Return 8 G* [Pa], the coefficient of friction and the damping."""
@@ -111,7 +111,7 @@ class LinearSpring(Friction):
 
     if TYPE_CHECKING:
 
-        def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
+        def __init__(self, coefficient: object = ..., **values: Any) -> None: ...
 
     @model_validator(mode="after")
     def _one_stiffness(self) -> LinearSpring:
@@ -160,19 +160,19 @@ class Rolling(Part):
 
     if TYPE_CHECKING:
 
-        def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
+        def __init__(self, coefficient: object = ..., **values: Any) -> None: ...
 
     def coefficients(self) -> dict[str, float]:
         """Return mu_r, k_r / (k_t R*^2) and the damping ratio for the core."""
         return {"coefficient": self.coefficient, "stiffness": self.stiffness, "damping": self.damping}
 
 
-def _mindlin(value: Any) -> Any:
+def _mindlin(value: object) -> Any:
     advice = '0.3, or { kind = "mindlin", coefficient = 0.3 }'
     return bare_number(value, lambda c: {"kind": "mindlin", "coefficient": c}, _NEED, advice)
 
 
-def _rolling(value: Any) -> Any:
+def _rolling(value: object) -> Any:
     return bare_number(value, lambda c: {"coefficient": c}, _NEED, "0.3, or { coefficient = 0.3 }")
 
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
 from rattlebox._util.narrow import present
@@ -71,7 +71,7 @@ class Harmonic(Signal):
         """Whether it never stops."""
         return self.stop is None
 
-    def evaluate(self, time: Any) -> NDArray[np.float64]:
+    def evaluate(self, time: ArrayLike) -> NDArray[np.float64]:
         """Return the values at the given times [s]."""
         t = np.asarray(time, dtype=float)
         inside = (t >= self.start) & (t < (math.inf if self.stop is None else self.stop))
@@ -148,7 +148,7 @@ _RATE = re.compile(
 )
 
 
-def _sweep_rate(value: Any) -> str:
+def _sweep_rate(value: object) -> str:
     match = _RATE.match(value) if isinstance(value, str) else None
     if match is None:
         raise Hint("a sweep rate is text with a unit: oct/min, oct/s, dec/min, Hz/s or Hz/min", '"2 oct/min"')
@@ -256,7 +256,7 @@ class SineSweep(Polyline):
             return (self.first_frequency + self.last_frequency) / 2 * self.length
         return (self.last_frequency - self.first_frequency) / (rate * math.log(2))
 
-    def frequency_at(self, time: Any) -> NDArray[np.float64]:
+    def frequency_at(self, time: ArrayLike) -> NDArray[np.float64]:
         """Return the frequency at the given times [Hz]; before and after the sweep, the first and the last one."""
         rate, linear = self._rate
         t = np.clip(np.asarray(time, dtype=float) - self.start, 0.0, self.length)

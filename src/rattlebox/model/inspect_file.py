@@ -347,13 +347,13 @@ def _options_of_modes(modes: ModesInFile | Mapping[str, Any]) -> tuple[dict[str,
     return options, assumed
 
 
-def _toml(value: Any) -> str:
+def _toml(value: object) -> str:
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{json.dumps(key)} = {_toml(item)}" for key, item in value.items()) + " }"
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
 
 
-def _python(value: Any) -> str:
+def _python(value: object) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(_toml(item) for item in value)}{',' if len(value) == 1 else ''})"
     return repr(value) if isinstance(value, dict) else _toml(value)

@@ -106,7 +106,7 @@ def add_material(material: Material, owner: str) -> Material:
     return material
 
 
-def find_material(value: Any, info: ValidationInfo) -> Any:
+def find_material(value: object, info: ValidationInfo) -> Any:
     """Return the material of a name in the library or in the case file; return any other value unchanged."""
     if isinstance(value, str):
         load_plugins()

@@ -79,7 +79,7 @@ class Matrices(FilePart, DampedModes):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_file(cls, values: Any) -> Any:
+    def _from_file(cls, values: object) -> Any:
         if not isinstance(values, dict) or values.get("file") is None:
             return values
         twice = sorted({"M", "C", "K"} & set(values))

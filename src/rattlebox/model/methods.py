@@ -23,7 +23,7 @@ class Method(Part):
     """Base class of numerical methods."""
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
 
     @property
@@ -188,7 +188,7 @@ class Newton(ImpactMethod):
         return "newton", {"stick": self.stick, "max_events": self.max_events}
 
 
-def _step(value: Any) -> Any:
+def _step(value: object) -> Any:
     return value if value == "auto" else parse(value, ("s",))[0]
 
 
@@ -264,7 +264,7 @@ AnyMethod = Annotated[Method, AnyKind()]
 DEFAULT_SNAPSHOTS = 101
 
 
-def _times(value: Any) -> Any:
+def _times(value: object) -> Any:
     if value is None:
         return None
     if isinstance(value, np.ndarray) and value.dtype.kind in "iuf":

@@ -20,7 +20,7 @@ _MEANS: dict[Mixing, Callable[[float, float], float]] = {
 }
 
 
-def mixed(one: Any, other: Any, rule: Mixing) -> Any:
+def mixed(one: object, other: object, rule: Mixing) -> Any:
     """Return the law with the means of the numbers of two laws of the same kind.
 
     Notes

@@ -76,7 +76,7 @@ def _from_toml(file: Path, _: ModesRequest) -> dict[str, Any]:
     return table
 
 
-def _modes_with_masses(given: Mapping[str, Any], path: str, count: int | None) -> ModesInFile:
+def _modes_with_masses(given: Mapping[str, object], path: str, count: int | None) -> ModesInFile:
     """Return the modes of a file with the modal masses that the user states, or else its own."""
     with at("file"):
         modes = read_modes(path, count, has_mass_unit=given.get("mass_unit") is not None)
@@ -110,7 +110,7 @@ def _check_fit(modes: ModesInFile, path: str, count: int) -> None:
         )
 
 
-def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any], list[str]]:
+def fields_of_modes(given: Mapping[str, object], path: str) -> tuple[dict[str, Any], list[str]]:
     """Return the fields of Modal with the modes of a file, and notes of assumptions."""
     count = given.get("mode_count")
     if count is not None:
@@ -158,7 +158,7 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
     return fields, [*(f"{note}; {size}" for note in notes), *modes.notes, *rest]
 
 
-def _chosen(modes: ModesInFile, given: Mapping[str, Any], name: str) -> ModesInFile:
+def _chosen(modes: ModesInFile, given: Mapping[str, object], name: str) -> ModesInFile:
     """Return the modes that `mode_numbers` names by their numbers in the file; all if it names none."""
     chosen, total = given.get("mode_numbers"), modes.frequencies.size
     if chosen is None:
@@ -239,7 +239,7 @@ def _modal_masses(values: Any, given: Mapping[str, Any], *, in_kg: bool) -> Vect
     return np.array(masses)
 
 
-def _scale(modes: ModesInFile, given: Mapping[str, Any], name: str, path: str) -> tuple[Vector, list[str]]:
+def _scale(modes: ModesInFile, given: Mapping[str, object], name: str, path: str) -> tuple[Vector, list[str]]:
     """Return the factor of each mode that makes its shape mass-normalised in SI, and notes of assumptions."""
     unit, notes = modes.mass_unit, []
     if given.get("mass_unit") is not None:
@@ -272,7 +272,7 @@ def _scale(modes: ModesInFile, given: Mapping[str, Any], name: str, path: str) -
     return (masses * unit) ** -0.5, notes
 
 
-def _select_points(modes: ModesInFile, given: Mapping[str, Any], name: str) -> dict[str, Vector]:
+def _select_points(modes: ModesInFile, given: Mapping[str, object], name: str) -> dict[str, Vector]:
     """Return the mode shapes at the requested points."""
     requested = given.get("points")
     labels = list(modes.shapes)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import DataError
@@ -43,7 +44,7 @@ class Packing(Part):
     """Base class of packings."""
 
     field_names: ClassVar[tuple[str, ...]] = ("packing",)
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
 
     @abstractmethod
@@ -321,7 +322,7 @@ class Compacted(Bed):
 
 
 def _table(columns: int, unit: str, what: str) -> Any:
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         if value is None:
             return None
         array = numbers(in_si(value, unit))
@@ -365,7 +366,7 @@ class Positions(FilePart, Packing):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_file(cls, values: Any) -> Any:
+    def _from_file(cls, values: object) -> Any:
         if not isinstance(values, dict) or values.get("file") is None:
             return values
         twice = sorted(set(cls.file_fields) & set(values))
@@ -731,7 +732,9 @@ def _where_inside(cavity: AnyCavity, positions: Vector, radii: Vector, worst: in
     return f"a distance of at least {1e3 * radii[worst]:.4g} mm between its centre and the walls, or a larger cavity"
 
 
-def overlapping(positions: Vector, radii: Vector, within: float = 0.0) -> tuple[Any, Any, Vector]:
+def overlapping(
+    positions: Vector, radii: Vector, within: float = 0.0
+) -> tuple[NDArray[np.intp], NDArray[np.intp], Vector]:
     """Return the pairs of spheres that overlap.
 
     `positions`: centres, (n, 3) [m]. `radii`: radii, (n,) [m]. `within`: largest distance between the surfaces of a pair

@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import ResourceError, named
@@ -53,7 +54,7 @@ def memory() -> float:
         return math.inf
 
 
-def _two_names(value: Any) -> Any:
+def _two_names(value: object) -> Any:
     """Raise if a pair has one name; a pair of equal particles has the same name twice."""
     names = [value] if isinstance(value, str) else value
     if isinstance(names, (list, tuple)) and len(names) == 1 and isinstance(names[0], str):
@@ -63,7 +64,7 @@ def _two_names(value: Any) -> Any:
     return value
 
 
-def _softening(value: Any) -> Any:
+def _softening(value: object) -> Any:
     """Return "auto", or a number within the limits."""
     return value if value == "auto" else _FACTOR.validate_python(value)
 
@@ -96,7 +97,7 @@ class Contents:
     radius: Vector  # Radius [m], mass [kg], moment of inertia [kg m^2], (n,)
     mass: Vector
     inertia: Vector
-    species: Any  # Index of the species, (n,)
+    species: NDArray[np.int64]  # Index of the species, (n,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,9 +130,9 @@ class ContactTable:
     """Entries of all kinds of pairs in a damper."""
 
     entries: tuple[Entry, ...]
-    particle_entry: Any  # Index of the entry of two species, (k, k)
-    wall_entry: Any  # Index of the entry of a species and a kind of wall, (k, w)
-    wall_kind: Any  # Kind of each wall, (walls,)
+    particle_entry: NDArray[np.int64]  # Index of the entry of two species, (k, k)
+    wall_entry: NDArray[np.int64]  # Index of the entry of a species and a kind of wall, (k, w)
+    wall_kind: NDArray[np.int64]  # Kind of each wall, (walls,)
 
 
 def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:

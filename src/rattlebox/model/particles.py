@@ -30,7 +30,7 @@ class Distribution(Part):
     """Base class of distributions of diameters."""
 
     field_names: ClassVar[tuple[str, ...]] = ("distribution",)
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
 
     @abstractmethod
@@ -122,7 +122,7 @@ class LogNormal(_Bounded):
         return self.median * np.exp(width * self._between(share, low, high))
 
 
-def _lengths(value: Any) -> Any:
+def _lengths(value: object) -> Any:
     sizes = []
     for index, item in enumerate(value if isinstance(value, (list, tuple, np.ndarray)) else [value]):
         with at(index):
@@ -220,7 +220,7 @@ class Particles(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _radius_of_diameter(cls, values: Any) -> Any:
+    def _radius_of_diameter(cls, values: object) -> Any:
         return radius_of_diameter(values)
 
     @model_validator(mode="after")
@@ -347,7 +347,7 @@ class Particles(Part):
         return min((max(about - 1, 0), about, about + 1), key=lambda count: abs(volume(count) - filled))
 
 
-def as_species(value: Any) -> Any:
+def as_species(value: object) -> Any:
     """Return a tuple of species; a single one becomes a tuple of one."""
     if isinstance(value, Sequence) and not isinstance(value, str):
         return tuple(value)

@@ -129,7 +129,7 @@ def unit_of_field(part: Part, name: str) -> str | None:
     return next(_units([*field.metadata, field.annotation]), None)
 
 
-def _units(annotations: Sequence[Any]) -> Iterator[str]:
+def _units(annotations: Sequence[object]) -> Iterator[str]:
     """Yield the SI units in annotations; "1" for plain numbers comes last."""
     for annotation in annotations:
         if isinstance(annotation, SI):
@@ -140,7 +140,7 @@ def _units(annotations: Sequence[Any]) -> Iterator[str]:
         yield "1"
 
 
-def replaced(case: AnyPart, values: Mapping[str, Any]) -> AnyPart:
+def replaced(case: AnyPart, values: Mapping[str, object]) -> AnyPart:
     """Return a copy of a case with other values.
 
     A new value removes alternatives that exclude it: a damping ratio replaces a damping. Dampers store their gap: balls of
@@ -158,7 +158,7 @@ def replaced(case: AnyPart, values: Mapping[str, Any]) -> AnyPart:
         raise translate(error, "case", vocabulary(), tree) from None
 
 
-def places_of(case: Part, values: Mapping[str, Any]) -> dict[Place, Any]:
+def places_of(case: Part, values: Mapping[str, object]) -> dict[Place, Any]:
     """Return values by place, with None at the places of alternatives that they exclude."""
     paths: dict[Place, str] = {}
     for path in values:
@@ -198,7 +198,7 @@ def _with(node: Any, place: Place, value: Any) -> Any:
     return Given.changed(node, {**fields, step: _with(fields.get(step), tuple(rest), value)}, step)
 
 
-def _briefly(node: Any, kinds: Sequence[type[Part]]) -> Any:
+def _briefly(node: object, kinds: Sequence[type[Part]]) -> Any:
     """Return a copy with aliases such as "damper" for lists of one item, as in messages."""
     if isinstance(node, list):
         return [_briefly(item, kinds) for item in node]
@@ -212,7 +212,7 @@ def _briefly(node: Any, kinds: Sequence[type[Part]]) -> Any:
     return tree
 
 
-def _materials(node: Any) -> Iterator[Material]:
+def _materials(node: object) -> Iterator[Material]:
     if isinstance(node, Material):
         yield node
     elif isinstance(node, Part):
@@ -239,11 +239,11 @@ def _places(node: Any, place: Place) -> Iterator[Place]:
             yield from _places(item, (*place, number))
 
 
-def _is_row_of_parts(value: Any) -> bool:
+def _is_row_of_parts(value: object) -> bool:
     return isinstance(value, tuple) and (not value or isinstance(value[0], Part))
 
 
-def _only(row: Sequence[Any], path: str, name: str) -> int:
+def _only(row: Sequence[object], path: str, name: str) -> int:
     """Return the index of the only item of a list, 0."""
     if not row:
         raise Hint(f"{path}: there is no {name} in this case")

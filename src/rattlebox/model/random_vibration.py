@@ -141,7 +141,7 @@ class Random(FileSignal):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _from_file(cls, values: Any, handler: Any) -> Random:
+    def _from_file(cls, values: object, handler: Any) -> Random:
         if not isinstance(values, dict) or values.get("file") is None:
             if isinstance(values, dict) and values.get("columns") is not None:
                 raise Hint("columns need a file", 'file = "psd.csv"', ["columns"])
@@ -165,7 +165,7 @@ class Random(FileSignal):
 
     @model_validator(mode="before")
     @classmethod
-    def _in_si(cls, values: Any) -> Any:
+    def _in_si(cls, values: object) -> Any:
         if not isinstance(values, dict) or values.get("psd") is None:
             return values
         if isinstance(values["psd"], str):

@@ -152,7 +152,7 @@ def _paths(files: Source | Sequence[Source]) -> list[str]:
     return paths
 
 
-def _names(paths: Sequence[str], names: Any) -> list[str]:
+def _names(paths: Sequence[str], names: object) -> list[str]:
     """Return the names of the records in these files."""
     if names is not None:
         if isinstance(names, str) or not isinstance(names, Sequence) or len(names) != len(paths):

@@ -164,7 +164,7 @@ def _without_unit(options: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in options.items() if name != "unit"}
 
 
-def _column(value: Any) -> Vector:
+def _column(value: object) -> Vector:
     """Return a read-only array; that of another record itself."""
     if isinstance(value, np.ndarray) and value.base is None and not value.flags.writeable:
         return value
@@ -188,7 +188,7 @@ Column1D = Annotated[
 ]
 
 
-def _as_time_zero(value: Any) -> Any:
+def _as_time_zero(value: object) -> Any:
     return value if value is None or value == "first" else parse(value, ("s",))[0]
 
 
@@ -263,7 +263,7 @@ class Record(FileSignal):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _from_file(cls, values: Any, handler: Any) -> Record:
+    def _from_file(cls, values: object, handler: Any) -> Record:
         if not isinstance(values, dict):
             kept: Record = handler(values)
             return kept
@@ -421,7 +421,7 @@ class Record(FileSignal):
             yield f"the record begins at {first:.6g} s and is shifted: its time {zero:.6g} s is 0 s of the run (time_zero)"
 
     @classmethod
-    def excluded_by(cls, name: str, value: Any) -> list[str]:
+    def excluded_by(cls, name: str, value: object) -> list[str]:
         """Return the fields that a value of a field excludes; a step excludes times."""
         return [*super().excluded_by(name, value), *(["times"] if name == "dt" else [])]
 
@@ -460,7 +460,7 @@ class Record(FileSignal):
         return cls(file=os.fspath(path), **options)
 
     @classmethod
-    def from_sep005(cls, channels: Any, channel: str | None = None, **options: Any) -> Record:
+    def from_sep005(cls, channels: object, channel: str | None = None, **options: Any) -> Record:
         """Return the record of a dictionary of SEP005, the form of time histories of the packages of SDyPy.
 
         Parameters

@@ -23,7 +23,7 @@ Coefficients = tuple[str, dict[str, Any]]
 _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
 
 
-def _restitution(value: Any) -> float:
+def _restitution(value: object) -> float:
     try:
         number = float(plain(value))
     except (TypeError, ValueError, OverflowError):
@@ -48,7 +48,7 @@ class Restitution(Part):
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("restitution",)
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
     maximum: Fraction = 1.0
 
@@ -92,7 +92,7 @@ class Constant(Restitution):
 
     if TYPE_CHECKING:  # The first field is also a positional argument.
 
-        def __init__(self, e: Any = ..., **values: Any) -> None: ...
+        def __init__(self, e: object = ..., **values: Any) -> None: ...
 
     @property
     def constant_value(self) -> float | None:
@@ -313,7 +313,7 @@ class Johnson(Restitution):
         return "johnson", {"speed_scale": scale, "maximum": self.maximum}
 
 
-def as_restitution(value: Any) -> Any:
+def as_restitution(value: object) -> Any:
     """Return the table of a constant restitution for a bare number; return any other value unchanged."""
     return bare_number(
         value,

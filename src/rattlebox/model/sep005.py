@@ -18,7 +18,7 @@ _SAME = 1e-6  # relative difference of time steps that count as the same
 _LISTED = 12  # channels in a message
 
 
-def fields_of_sep005(given: Any, name: str | None, unit: Any) -> dict[str, Any]:
+def fields_of_sep005(given: object, name: str | None, unit: object) -> dict[str, Any]:
     """Return the fields of a record for a dictionary of SEP005, or for that of a name in a list.
 
     References
@@ -41,7 +41,7 @@ def fields_of_sep005(given: Any, name: str | None, unit: Any) -> dict[str, Any]:
     }
 
 
-def _chosen(given: Any, name: str | None) -> Mapping[str, Any]:
+def _chosen(given: object, name: str | None) -> Mapping[str, Any]:
     if isinstance(given, Mapping):
         channels: list[Any] = [given]
     elif isinstance(given, Sequence) and not isinstance(given, (str, bytes)):
@@ -61,7 +61,7 @@ def _chosen(given: Any, name: str | None) -> Mapping[str, Any]:
     return dict(channels[names.index(name)])
 
 
-def _vector(value: Any, where: str) -> Any:
+def _vector(value: object, where: str) -> Any:
     """Return a row of finite numbers."""
     try:
         array = np.asarray(value, dtype=float)
@@ -102,7 +102,7 @@ def _times(channel: Mapping[str, Any], count: int, where: str) -> Any:
     return times
 
 
-def _unit(channel: Mapping[str, Any], where: str, unit: Any) -> Any:
+def _unit(channel: Mapping[str, object], where: str, unit: object) -> Any:
     """Return the unit that the channel states; that of the user must agree with it."""
     text, quantity = str(channel.get("unit_str") or "").strip(), str(channel.get("quantity") or "").strip()
     stated = factor_of(text, UNITS) if text else None

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
 
 from rattlebox._util.quantities import amount
@@ -76,7 +76,7 @@ class HalfSine(Shock):
 
     kind: Literal["half_sine"] = "half_sine"
 
-    def evaluate(self, time: Any) -> NDArray[np.float64]:
+    def evaluate(self, time: ArrayLike) -> NDArray[np.float64]:
         """Return the values at the given times [s]."""
         t = np.asarray(time, dtype=float)
         inside = (t >= self.start) & (t < self.start + self.duration)

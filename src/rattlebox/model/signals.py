@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import BeforeValidator, WithJsonSchema, field_validator, model_validator
 
 from .as_written import Given
@@ -27,7 +27,7 @@ UNIT_NAMES = {"N": "a force", "m/s^2": "an acceleration", "m": "a displacement"}
 _EXAMPLES = {"N": "5 kN", "m/s^2": "9.81 m/s^2", "m": "1 mm"}
 
 
-def _amplitude(value: Any) -> float:
+def _amplitude(value: object) -> float:
     return parse(value, UNITS)[0]
 
 
@@ -59,7 +59,7 @@ class Signal(Part):
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     examples_in: ClassVar[dict[str, dict[str, str]]] = {
         "base": {"amplitude": '"9.81 m/s^2"'},
         "motion": {"amplitude": '"1 mm"'},
@@ -78,7 +78,7 @@ class Signal(Part):
 
     @field_validator("unit", mode="before")
     @classmethod
-    def _without_prefix(cls, value: Any) -> Any:
+    def _without_prefix(cls, value: object) -> Any:
         if not isinstance(value, str) or value in UNITS:
             return value
         known = factor_of(value, UNITS)
@@ -92,7 +92,7 @@ class Signal(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _read_amplitude(cls, values: Any) -> Any:
+    def _read_amplitude(cls, values: object) -> Any:
         try:
             return _with_unit_of_amplitude(values, UNITS) if isinstance(values, dict) else values
         except Hint as hint:
@@ -101,7 +101,7 @@ class Signal(Part):
             return values  # the field raises, together with other fields
 
     @classmethod
-    def excluded_by(cls, name: str, value: Any) -> list[str]:
+    def excluded_by(cls, name: str, value: object) -> list[str]:
         """Return the fields that a value of a field excludes; an amplitude with a unit excludes `unit`."""
         excluded = super().excluded_by(name, value)
         try:
@@ -149,7 +149,7 @@ class Signal(Part):
         return iter(())
 
     @abstractmethod
-    def evaluate(self, time: Any) -> NDArray[np.float64]:
+    def evaluate(self, time: ArrayLike) -> NDArray[np.float64]:
         """Return the values at the given times [s], in the unit of the signal, same shape."""
 
     @abstractmethod
@@ -216,7 +216,7 @@ class Polyline(Signal):
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times [s], in order, and values, (n,) each."""
 
-    def evaluate(self, time: Any) -> NDArray[np.float64]:
+    def evaluate(self, time: ArrayLike) -> NDArray[np.float64]:
         """Return the values at the given times [s], by linear interpolation; at a jump, the value after it."""
         t = np.asarray(time, dtype=float)
         times, values = self.polyline()
@@ -272,7 +272,7 @@ class Sampled(Polyline):
         times, _ = self.polyline()
         return bool(times[0] <= slack and times[-1] >= duration - slack)
 
-    def evaluate(self, time: Any) -> NDArray[np.float64]:
+    def evaluate(self, time: ArrayLike) -> NDArray[np.float64]:
         """Return the values at the given times [s]."""
         t = np.asarray(time, dtype=float)
         times, values = self.polyline()
@@ -297,7 +297,7 @@ def _with_unit_of_amplitude(values: dict[str, Any], units: tuple[Unit, ...]) -> 
     return Given.read_from(values, {**values, "amplitude": number, **({} if unit is None else {"unit": unit})})
 
 
-def as_several(value: Any) -> Any:
+def as_several(value: object) -> Any:
     """Return a tuple; a single value becomes a tuple of one, None an empty tuple."""
     if value is None:
         return ()
@@ -307,7 +307,7 @@ def as_several(value: Any) -> Any:
 def signals_in(*units: Unit) -> BeforeValidator:
     """Return a validator of one or several signals that reads their amplitudes in these units."""
 
-    def validate(value: Any) -> Any:
+    def validate(value: object) -> Any:
         signals, read = as_several(value), []
         # `placed` has better advice for a displacement.
         readable = (*units, "m") if units == ("m/s^2",) else units

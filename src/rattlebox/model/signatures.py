@@ -25,7 +25,7 @@ class PlainText(str):
         return str(self)
 
 
-def type_text(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
+def type_text(annotation: object, metadata: tuple[Any, ...] = ()) -> str:
     """Return the name of a type without validators.
 
     Examples
@@ -36,7 +36,7 @@ def type_text(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
     return " | ".join(_members(annotation, metadata))
 
 
-def _members(annotation: Any, metadata: tuple[Any, ...] = ()) -> list[str]:
+def _members(annotation: object, metadata: tuple[Any, ...] = ()) -> list[str]:
     """Return the members of a union, None last."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
@@ -63,7 +63,7 @@ def _members(annotation: Any, metadata: tuple[Any, ...] = ()) -> list[str]:
     return members
 
 
-def _takes_text(metadata: Any) -> bool:
+def _takes_text(metadata: object) -> bool:
     """Return whether a validator reads numbers from text with a unit."""
     if isinstance(metadata, WithJsonSchema):
         return {"type": "string"} in (metadata.json_schema or {}).get("anyOf", ())

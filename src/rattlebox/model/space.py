@@ -16,7 +16,7 @@ AXES = ("x", "y", "z")
 Triple = tuple[float, float, float]
 
 
-def _three(value: Any, what: str, example: str) -> list[Any]:
+def _three(value: object, what: str, example: str) -> list[Any]:
     if not isinstance(value, (list, tuple, np.ndarray)) or len(value) != 3:
         raise Hint(f"three {what}, along x, y and z, are needed", example)
     return list(value)
@@ -25,7 +25,7 @@ def _three(value: Any, what: str, example: str) -> list[Any]:
 def triple(unit: str, what: str, example: str) -> Any:
     """Return the annotations of a field that holds three quantities in this SI unit."""
 
-    def read(value: Any) -> Triple:
+    def read(value: object) -> Triple:
         read = []
         for index, item in enumerate(_three(value, what, example)):
             with at(index):
@@ -44,7 +44,7 @@ def triple(unit: str, what: str, example: str) -> Any:
     return SI(unit), BeforeValidator(read), WithJsonSchema(schema)
 
 
-def _direction(value: Any) -> Any:
+def _direction(value: object) -> Any:
     if isinstance(value, str):
         if value.removeprefix("-") not in AXES:
             raise Hint("a direction is x, y, z, one of them with a minus, or three numbers", '"z"')

@@ -52,11 +52,11 @@ if TYPE_CHECKING:
     from typing import Self
 
 
-def _numbers(value: Any) -> Any:
+def _numbers(value: object) -> Any:
     return _of_shape(numbers(value), 1, "a list of numbers")
 
 
-def _matrix(value: Any) -> Any:
+def _matrix(value: object) -> Any:
     return _of_shape(numbers(value), 2, "a list of rows of numbers")
 
 
@@ -66,18 +66,18 @@ def _of_shape(array: Vector, dimensions: int, wanted: str) -> Any:
     return array.tolist()
 
 
-def _shape(value: Any) -> Any:
+def _shape(value: object) -> Any:
     array = numbers(value)
     if array.ndim == 2 and array.shape[1] == 3:
         return array.tolist()
     return _of_shape(array, 1, "a list of numbers, one for each mode, or of three for each mode,")
 
 
-def _participation(value: Any) -> Any:
+def _participation(value: object) -> Any:
     return _shape(in_si(value, "kg^0.5"))
 
 
-def _weights(value: Any) -> Any:
+def _weights(value: object) -> Any:
     array = numbers(value)
     if array.ndim == 2 and len(array) == 3:
         return array.tolist()
@@ -111,7 +111,7 @@ class StructurePart(Part):
     field_names: ClassVar[tuple[str, ...]] = ("structure",)
     responds: ClassVar[bool] = True
     """Whether forces of the dampers move the structure."""
-    kinds: ClassVar[dict[str, type[Any]]] = {}
+    kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
 
     @abstractmethod
@@ -290,7 +290,7 @@ def check_damping(matrix: Vector, count: int) -> None:
         )
 
 
-def _one_each(value: Any) -> Any:
+def _one_each(value: object) -> Any:
     if isinstance(value, (int, float, str)) and not isinstance(value, bool):
         one = f'"{value}"' if isinstance(value, str) else f"{value}"
         raise Hint("a list is needed, with one number for each mode", f"[{one}] for one mode, [{one}, {one}] for two")
@@ -431,7 +431,7 @@ class Modal(FilePart, StructurePart):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _from_file(cls, values: Any, handler: Any) -> Self:
+    def _from_file(cls, values: object, handler: Any) -> Self:
         if not isinstance(values, dict) or values.get("file") is None:
             for name in ("points", "mode_count", "mode_numbers", "mass_unit", "modal_masses"):
                 if isinstance(values, dict) and values.get(name) is not None:

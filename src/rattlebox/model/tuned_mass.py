@@ -16,7 +16,7 @@ from .errors import Hint, at
 from .modes import ModalModel
 from .space import Direction, unit_vector
 from .structures import Ratio
-from .units import Length, PositiveFrequency, PositiveMass, Velocity
+from .units import Length, PositiveFrequency, PositiveMass, Quantity, Velocity
 
 if TYPE_CHECKING:
     from .structures import StructurePart
@@ -88,7 +88,7 @@ class TunedMass(Part):
         return tuned if len(tuned) == len(several) else ()
 
     @classmethod
-    def den_hartog(cls, structure: StructurePart, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
+    def den_hartog(cls, structure: StructurePart, mass: Quantity, *, mode: int = 1, **options: Any) -> TunedMass:
         """Return the tuned mass that minimises the largest response to a harmonic force on the structure.
 
         Parameters
@@ -127,7 +127,7 @@ class TunedMass(Part):
         return cls(mass=mass, frequency=frequency / (1 + ratio), damping_ratio=damping, **options)
 
     @classmethod
-    def warburton(cls, structure: StructurePart, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
+    def warburton(cls, structure: StructurePart, mass: Quantity, *, mode: int = 1, **options: Any) -> TunedMass:
         """Return the tuned mass that minimises the largest displacement under a harmonic acceleration of the base.
 
         Parameters
@@ -166,7 +166,9 @@ class TunedMass(Part):
         return cls(mass=mass, frequency=frequency * tuning, damping_ratio=damping, **options)
 
     @classmethod
-    def _of_mode(cls, structure: StructurePart, mass: Any, mode: int, options: dict[str, Any]) -> tuple[float, float]:
+    def _of_mode(
+        cls, structure: StructurePart, mass: Quantity, mode: int, options: dict[str, Any]
+    ) -> tuple[float, float]:
         """Return mass over modal mass, and the natural frequency [Hz]."""
         trial = cls(mass=mass, frequency=1.0, **options)
         modes = structure.modes()
@@ -195,7 +197,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
     names, springs = _springs(modes, tuned, coordinates)
     values, damping, vectors = _eigenmodes(*_matrices(modes, tuned, springs, coordinates))
 
-    def into_modes(first: Any, more: Sequence[Any], spatial: bool = False) -> Vector:
+    def into_modes(first: object, more: Sequence[object], spatial: bool = False) -> Vector:
         """Return a vector in the coordinates as one in the new modes."""
         vector = coordinates.joined(first, more, 2 if spatial else 1)
         return np.asarray(np.einsum("cm...,cd...->md..." if spatial else "cm...,c...->m...", vectors, vector))
@@ -263,12 +265,12 @@ class _Coordinates:
         axes = max(*(np.ndim(number) for number in numbers), *(vector.ndim - 1 for vector in vectors))
         return cls([power(part.mass, 0.5) for part in tuned], axes)
 
-    def lifted(self, value: Any, components: int) -> Vector:
+    def lifted(self, value: object, components: int) -> Vector:
         """Return an array of components with all axes of the grid."""
         array = np.asarray(value, dtype=float)
         return array.reshape((*array.shape, *(1,) * (components + self.grid_axes - array.ndim)))
 
-    def joined(self, first: Any, more: Sequence[Any], components: int = 1) -> Vector:
+    def joined(self, first: object, more: Sequence[object], components: int = 1) -> Vector:
         """Return a vector over the structure's modes and the tuned masses."""
         parts = [*self.lifted(first, components), *(self.lifted(one, components - 1) for one in more)]
         return np.stack(np.broadcast_arrays(*parts))

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,6 +139,22 @@ def _described(quantity: Any) -> str:
         if quantity.is_compatible_with(_pint_unit(unit)):
             return _article(name)
     return f"a quantity in {quantity.units:~}"
+
+
+class UnitQuantity(Protocol):
+    """A quantity of pint, or of a similar library."""
+
+    @property
+    def magnitude(self) -> object:
+        """Its number."""
+
+    @property
+    def units(self) -> object:
+        """Its unit."""
+
+
+Quantity = float | str | tuple[float, str] | UnitQuantity
+"""A number in SI units, a text with a unit, a pair of both, or a quantity of pint: what `parse` reads."""
 
 
 def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
@@ -312,7 +328,7 @@ def _check_comma(text: str) -> None:
         raise Hint("a number has a decimal point and no separator of thousands", " or ".join(readings))
 
 
-def as_written(value: Any) -> tuple[float, str] | None:
+def as_written(value: object) -> tuple[float, str] | None:
     """Return the number and the unit of a quantity as written, "" without unit; None for values of other types."""
     if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
         value = f"{value[0]} {value[1]}"
@@ -370,7 +386,7 @@ def _example(units: tuple[str, ...]) -> str:
     return " or ".join(f'"{_EXAMPLES[unit]}"' for unit in units if unit in _EXAMPLES)
 
 
-def radius_of_diameter(values: Any) -> Any:
+def radius_of_diameter(values: object) -> Any:
     """Return the fields of a round part with a radius in place of a diameter."""
     if not isinstance(values, dict) or values.get("diameter") is None:
         return values
@@ -381,7 +397,7 @@ def radius_of_diameter(values: Any) -> Any:
     return {**{name: value for name, value in values.items() if name != "diameter"}, "radius": radius}
 
 
-def numbers(value: Any) -> NDArray[np.float64]:
+def numbers(value: object) -> NDArray[np.float64]:
     """Read an array of finite numbers."""
     try:
         array = np.asarray(value, dtype=float)
@@ -438,7 +454,7 @@ class SI:
 def quantity(unit: str, description: str = "") -> Any:
     """Return the annotations of a field with a quantity in this SI unit."""
 
-    def read(value: Any) -> float:
+    def read(value: object) -> float:
         return parse(value, (unit,))[0]
 
     example = _EXAMPLES.get(unit, f"1 {unit}")
@@ -470,14 +486,14 @@ def _not_negative(value: float) -> float:
     return value
 
 
-def not_boolean(value: Any) -> Any:
+def not_boolean(value: object) -> Any:
     """Return a value unchanged unless it is a boolean, which is an integer in Python."""
     if isinstance(value, (bool, np.bool_)):
         raise Hint("a number is needed")
     return value
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> Any:
     """Return a value for a number without unit; percentages such as "36 %" become fractions."""
     if isinstance(value, str):
         _check_comma(value)
@@ -496,7 +512,7 @@ def whole_number(value: Any, name: str, least: int) -> int:
     return number
 
 
-def bare_number(value: Any, table: Callable[[float], dict[str, Any]], need: str, advice: str) -> Any:
+def bare_number(value: object, table: Callable[[float], dict[str, Any]], need: str, advice: str) -> Any:
     """Return the table for a bare number or percentage; return any other table unchanged."""
     if isinstance(value, bool):
         return value

@@ -21,6 +21,7 @@ from rattlebox.model.methods import Method
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
 from rattlebox.model.structures import SDOF, Fixed, Shaker
+from rattlebox.model.units import Quantity
 
 from .pack import pack
 from .particles import Prepared, pack_particles, prepare
@@ -67,8 +68,8 @@ def damper_case(
     damper: ImpactDamper | ParticleDamper,
     method: Method | None,
     motion: Signal | None,
-    structure_mass: Any,
-    duration: Any,
+    structure_mass: Quantity | None,
+    duration: Quantity,
 ) -> Case:
     """Return the case of a damper alone.
 

@@ -99,7 +99,7 @@ class Batch:
         return np.ravel_multi_index(np.ix_(*self.indices), tuple(shape)).ravel()
 
 
-def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> list[Batch]:
+def pack_parts(case: Case, columns: Mapping[str, object], shape: Sequence[int]) -> list[Batch]:
     """Pack many variants of a case for the core, in batches that differ in numbers only.
 
     As a check, some variants, the extreme ones included, are also packed one by one and compared with their batch.
@@ -120,7 +120,7 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
     return parts
 
 
-def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, Any]) -> list[Batch]:
+def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, object]) -> list[Batch]:
     """Return the batches of the variants over columns, with the fixed values in all of them."""
     whole = tuple(np.arange(n) for n in shape)
     # Numbers are broadcast; values of other kinds, such as a law, divide the grid into groups that are packed for
@@ -170,7 +170,7 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
 
 
 def _broadcast(
-    case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]
+    case: Case, columns: Columns, axes: int, fixed: Mapping[str, object]
 ) -> tuple[_core.Problem, dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]]]:
     """Pack the variants over columns of numbers; return the problem, the mode shapes at the points and the inertia."""
     # The case with the first value of each column has a field for each array.
@@ -260,11 +260,11 @@ def mode_coupling(modes: ModalModel, axes: int = 0) -> NDArray[np.float64]:
     return _vector(np.zeros(0) if matrix is None else matrix.reshape(-1, *matrix.shape[2:]), axes)
 
 
-def _array(values: Any) -> NDArray[np.float64]:
+def _array(values: object) -> NDArray[np.float64]:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def _vector(values: Any, axes: int) -> NDArray[np.float64]:
+def _vector(values: object, axes: int) -> NDArray[np.float64]:
     array = _array(values)
     return array.reshape(-1, *(1,) * axes) if axes and array.ndim == 1 else array
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -151,7 +151,7 @@ def resolve_softening(case: Case) -> tuple[Case, tuple[str, ...]]:
     return case.model_copy(update={"dampers": tuple(new_dampers)}), tuple(notes)
 
 
-def _array(values: Any) -> Array:
+def _array(values: object) -> Array:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 

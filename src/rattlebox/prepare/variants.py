@@ -28,7 +28,7 @@ _RANDOM = 8  # random variants that are compared, besides the extreme ones
 _CORNERS = 16
 
 
-def column(path: str, values: Any, shape: Sequence[int]) -> NDArray[Any]:
+def column(path: str, values: object, shape: Sequence[int]) -> NDArray[Any]:
     """Return the values of a parameter as numbers or objects, with the axes of the grid."""
     array = np.asarray(values)
     array = np.asarray(array, dtype=float if array.dtype.kind in "fiu" else object, order="C")
@@ -120,7 +120,7 @@ class Merger:
             raise self._obstacle(where)
         return first
 
-    def _merge_arrays(self, parts: Sequence[Any], where: Sequence[str]) -> Any:
+    def _merge_arrays(self, parts: Sequence[object], where: Sequence[str]) -> Any:
         axes = len(self._shape)
         arrays = [part if isinstance(part, np.ndarray) else np.full((1,) * axes, part) for part in parts]
         first = arrays[0]

@@ -56,7 +56,7 @@ def measures_argument(study: xr.Dataset, usual: Sequence[str] = ()) -> tuple[lis
 
 
 def call_with_measures(
-    function: str, study: xr.Dataset, arguments: Mapping[str, Any], usual: Sequence[str] = ()
+    function: str, study: xr.Dataset, arguments: Mapping[str, object], usual: Sequence[str] = ()
 ) -> Call:
     """Return a call with the measures that were asked for, besides the usual ones, which the study always has."""
     measures, remarks = measures_argument(study, usual)

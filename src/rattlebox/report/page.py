@@ -187,7 +187,7 @@ def _download(text: str) -> str:
     return f"data:text/plain;charset=utf-8;base64,{base64.b64encode(text.encode()).decode()}"
 
 
-def sections_of(result: Any, case: Case | None = None, question: str | None = None) -> Iterator[Section]:
+def sections_of(result: object, case: Case | None = None, question: str | None = None) -> Iterator[Section]:
     """Yield a section for each result of a mapping, or for the only one."""
     results: Mapping[str, Any] = {"": result}
     if isinstance(result, Mapping) and result and not hasattr(result, "data_vars"):

@@ -20,7 +20,7 @@ _SUFFIXES = (".html", ".htm")
 
 
 def write_report(
-    result: Any,
+    result: object,
     path: str | os.PathLike[str],
     *,
     title: str | None = None,
@@ -83,7 +83,7 @@ def write_report(
     return path
 
 
-def _compared(result: Any) -> Any:
+def _compared(result: object) -> Any:
     """Return a mapping of runs as their comparison, and other results unchanged."""
     from rattlebox.results.run import Run
     from rattlebox.results.summary import Comparison

@@ -53,7 +53,7 @@ def backbone(
     starts: int = 4,
     cycles: tuple[int, int] = (100, 100),
     workers: int | None = None,
-    backend: Any = "threads",
+    backend: object = "threads",
     progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
     r"""Compute frequency, damping and excitation at phase resonance over the amplitude: the backbone curve of a mode.

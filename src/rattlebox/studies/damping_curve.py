@@ -80,7 +80,7 @@ def damping_curve(
     packings: int = 4,
     cycles: tuple[int, int] | None = None,
     workers: int | None = None,
-    backend: Any = "threads",
+    backend: object = "threads",
     progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
     """Compute the damping ratio of a mode, with the dampers, over the amplitude of vibration.
@@ -241,7 +241,7 @@ def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = No
     `omega`: angular frequency at which accelerations are converted [rad/s]; None if only displacements are allowed.
     """
 
-    def displacement(amplitude: Any) -> float:
+    def displacement(amplitude: object) -> float:
         number, unit = parse(amplitude, ("m", "m/s^2"))
         if unit != "m/s^2":
             return number
@@ -577,7 +577,7 @@ def _dataset(ratios: FloatArray, levels: FloatArray, mode: CurveMode, way: Way) 
         spread = np.sqrt(np.nansum((ratios - mean) ** 2, axis=0) / (known - 1))
         half = np.where(enough, stdtrit(np.maximum(known - 1, 1), 0.975) * spread / np.sqrt(known), np.nan)
 
-    def over(values: Any, long_name: str, *more: str) -> Any:
+    def over(values: object, long_name: str, *more: str) -> Any:
         return (*more, "amplitude") if more else "amplitude", values, {"units": "1", "long_name": long_name}
 
     return xarray.Dataset(

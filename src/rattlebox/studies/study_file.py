@@ -129,7 +129,7 @@ def _flat_axes(table: Any) -> Any:
     return _flat(lines()) if table_shape(table) == "linked" else table
 
 
-def _flat_table(table: Any) -> Any:
+def _flat_table(table: object) -> Any:
     return _flat(_walk(table)) if isinstance(table, dict) else table
 
 
@@ -155,7 +155,7 @@ _NESTED = {
 # ---- content
 
 
-def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Material]]:
+def _case(given: object, source: str, folder: Path) -> tuple[Case, dict[str, Material]]:
     """Return the case and the materials that its file defines."""
     content: dict[str, Any] = given if isinstance(given, dict) else {"file": given}
     if "file" in content:
@@ -182,12 +182,12 @@ def _text(file: Path) -> str:
         raise error.restated(CaseError) from None
 
 
-def _with_materials(table: Any, own: Mapping[str, Material]) -> Any:
+def _with_materials(table: object, own: Mapping[str, Material]) -> Any:
     """Return a table of values by path, with the names of materials of the case replaced by the materials."""
     if not isinstance(table, dict):
         return table
 
-    def read(path: str, values: Any) -> Any:
+    def read(path: str, values: object) -> Any:
         if isinstance(values, list) and path.rpartition(".")[2] in ("material", "wall"):
             return [own.get(value, value) if isinstance(value, str) else value for value in values]
         return _with_materials(values, own)
@@ -195,7 +195,7 @@ def _with_materials(table: Any, own: Mapping[str, Material]) -> Any:
     return {path: read(path, values) for path, values in table.items()}
 
 
-def _with_records(table: Any, folder: Path) -> Any:
+def _with_records(table: object, folder: Path) -> Any:
     """Return a table with sets of records in place of tables such as { records = "quakes/*.at2", unit = "g" }."""
     if not isinstance(table, dict):
         return table

@@ -66,7 +66,7 @@ def read_nastran_hdf5(path: Path, _: ModesRequest) -> ModesInFile:
         )
 
 
-def _column(path: Path, tables: Mapping[str, Any], table: str, column: str) -> Any:
+def _column(path: Path, tables: Mapping[str, object], table: str, column: str) -> Any:
     """Return a column of a table."""
     name = f"{table}.{column}"
     if name not in tables:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
@@ -41,5 +40,5 @@ def sheet_lines(path: Path) -> list[str]:
         return ["\t".join(" ".join(str(cell).split()) for cell in row) for row in table]
 
 
-def _is_number(cell: Any) -> bool:
+def _is_number(cell: object) -> bool:
     return isinstance(cell, (int, float)) and not isinstance(cell, bool)

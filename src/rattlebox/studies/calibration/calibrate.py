@@ -326,7 +326,7 @@ class Calibration:
         return found
 
 
-def _variable(dims: str | tuple[str, ...], values: Any, long_name: str, **attributes: str) -> Any:
+def _variable(dims: str | tuple[str, ...], values: object, long_name: str, **attributes: str) -> Any:
     """Return a variable of a dataset."""
     return dims, values, {"long_name": long_name, **attributes}
 
@@ -355,9 +355,9 @@ def calibrate(
     checks: int = 8,
     log: Sequence[str] = (),
     seed: int = 0,
-    budget: Any = None,
+    budget: object = None,
     workers: int | None = None,
-    backend: Any = "threads",
+    backend: object = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
@@ -486,7 +486,7 @@ def calibrate(
     return save_result(result, KIND, store)
 
 
-def _seconds(budget: Any) -> float:
+def _seconds(budget: object) -> float:
     """Return the budget [s]."""
     with at("budget"):
         seconds, _ = parse(budget, ("s",))

@@ -106,7 +106,7 @@ class Space:
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.where(self.is_log, np.log(each / np.where(self.is_log, low, 1.0)) / np.log(high / low), linear)
 
-    def value(self, axis: int, point: Any) -> FloatArray:
+    def value(self, axis: int, point: object) -> FloatArray:
         """Return one parameter at its coordinates, of any shape."""
         each = np.asarray(point, dtype=float)
         return np.asarray(self.values(np.repeat(each[..., None], self.size, axis=-1))[..., axis])
@@ -130,7 +130,7 @@ class Space:
         return {path: (first, last) for path, first, last in ends}
 
 
-def _known(given: Any, paths: list[str], units: list[str]) -> dict[str, tuple[float, float]]:
+def _known(given: object, paths: list[str], units: list[str]) -> dict[str, tuple[float, float]]:
     """Return values and half widths of known parameters in SI units."""
     example = '{"damper.contact.restitution": (0.80, 0.02)}'
     if not isinstance(given, Mapping):

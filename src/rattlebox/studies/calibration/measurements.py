@@ -63,17 +63,17 @@ def read_column(place: str | tuple[str | int, ...], values: Any, units: tuple[st
     return Column(np.array(numbers), found[0])
 
 
-def _has_shared_unit(values: Any) -> bool:
+def _has_shared_unit(values: object) -> bool:
     """Return whether values are a pair of numbers and their unit."""
     return isinstance(values, tuple) and len(values) == 2 and isinstance(values[1], str) and _is_list(values[0])
 
 
-def _is_list(values: Any) -> bool:
+def _is_list(values: object) -> bool:
     """Return whether values are several; quantities and arrays without dimensions are single."""
     return not isinstance(values, str) and hasattr(values, "__iter__") and getattr(values, "ndim", 1) > 0
 
 
-def _pure(value: Any) -> float:
+def _pure(value: object) -> float:
     """Return a number without unit; percentages become fractions."""
     try:
         number = float(plain(value))
@@ -84,7 +84,7 @@ def _pure(value: Any) -> float:
     return number
 
 
-def read_error(value: Any, measured: FloatArray, units: tuple[str, ...]) -> FloatArray:
+def read_error(value: object, measured: FloatArray, units: tuple[str, ...]) -> FloatArray:
     """Return the standard uncertainty of measured values.
 
     `measured`: the values, (M,).
@@ -250,7 +250,7 @@ def _check_contacts(times: FloatArray) -> None:
         )
 
 
-def _uncertainty(value: Any, unit: str) -> float:
+def _uncertainty(value: object, unit: str) -> float:
     """Return a standard uncertainty in SI units."""
     with at("error"):
         number, _ = parse(value, (unit,))
@@ -320,9 +320,9 @@ class RingDown:
         cls,
         time: ArrayLike,
         displacement: ArrayLike,
-        amplitudes: Any,
+        amplitudes: object,
         *,
-        error: Any,
+        error: object,
         mode: int = 1,
         point: str | None = None,
     ) -> RingDown:
@@ -438,7 +438,7 @@ Losses = RingDown | ShakerLoss
 """Data that are compared with simulations."""
 
 
-def read_data(data: Any) -> tuple[list[Contacts], list[Losses]]:
+def read_data(data: object) -> tuple[list[Contacts], list[Losses]]:
     """Return the measurements of single impacts, and those of losses."""
     items = list(data) if isinstance(data, Sequence) and not isinstance(data, str) else [data]
     example = 'rb.Drops(height="300 mm", rebound=["192 mm", "189 mm", "194 mm"])'
@@ -464,7 +464,7 @@ def source_of(data: Contacts | Losses) -> str:
     return f"rb.{type(data).__name__}({', '.join(words)})"
 
 
-def _source(value: Any) -> str:
+def _source(value: object) -> str:
     if isinstance(value, Sphere):
         return f"rb.Sphere(radius={value.half!r}, mass={value.weight!r}, material='steel')"
     if isinstance(value, tuple) and isinstance(value[0], np.ndarray):

@@ -72,7 +72,7 @@ class Decay:
     def simulate(self, case: Case, threads: int, proceed: Proceed) -> tuple[FloatArray, int]:
         """Return the simulated values of a start, (M,), and exceeded limits as bits in the order of `WARNINGS`."""
 
-        def evaluate(cases: Sequence[Case], row_of: Callable[..., Any]) -> list[Any]:
+        def evaluate(cases: Sequence[Case], row_of: Callable[..., object]) -> list[Any]:
             return [row_of(simulate_many([each], threads=threads, progress=proceed)[0]) for each in cases]
 
         mode, remarks = mode_of(case, self.data.mode, self.data.point), Remarks()
@@ -163,7 +163,7 @@ class Shaken:
         }
 
 
-def _on_shaker(case: Case, data: ShakerLoss, direction: Any) -> Case:
+def _on_shaker(case: Case, data: ShakerLoss, direction: object) -> Case:
     """Return a case with its dampers on a shaker at the first point of the data."""
     motion: dict[str, Any] = {
         "amplitude": f"{float(data.amplitude[0])!r} {data.unit}",

@@ -438,7 +438,7 @@ class DesignSearch:
             case=("front", cases, {"long_name": "case file"}),
         )
 
-    def on(self, where: Mapping[str, Any]) -> DesignSearch:
+    def on(self, where: Mapping[str, object]) -> DesignSearch:
         """Return the search with the backend and the workers of a study (see `Study.where`)."""
         return replace(self, where={"backend": where["backend"], "workers": where["workers"], "progress": False})
 
@@ -472,7 +472,7 @@ def _exceeded(trial: int, warnings: int) -> str:
     return f"trial {trial}: {', '.join(text for bit, text in enumerate(FLAGS.values()) if warnings & 2**bit)}"
 
 
-def _rows(rows: Sequence[Any], *shape: int) -> Vector:
+def _rows(rows: Sequence[object], *shape: int) -> Vector:
     """Return lists of numbers as an array; NaN for None."""
     nothing = np.full(shape, np.nan)
     return np.array([nothing if row is None else np.asarray(row, float).reshape(shape) for row in rows]).reshape(

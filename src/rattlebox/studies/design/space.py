@@ -107,11 +107,11 @@ class DesignVariable:
         share = generator.random()
         return low * (high / low) ** share if self.log else low + (high - low) * share
 
-    def in_case(self, value: Any) -> dict[str, Any]:
+    def in_case(self, value: object) -> dict[str, Any]:
         """Return the values of a case by path."""
         return {self.name: value} if self.bounds else self.choices[value]
 
-    def coordinates(self, values: Sequence[Any]) -> dict[str, tuple[list[Any], dict[str, str]]]:
+    def coordinates(self, values: Sequence[object]) -> dict[str, tuple[list[Any], dict[str, str]]]:
         """Return the values of each parameter in several trials, and the attributes of the coordinate, by path."""
         if self.bounds:
             return {self.name: (list(values), self.attrs[self.name])}
@@ -131,7 +131,7 @@ class DesignVariable:
         """Return a description of each parameter in JSON types, by path."""
         together = {"together": self.name} if len(self.attrs) > 1 else {}
 
-        def plain(value: Any) -> Any:
+        def plain(value: object) -> Any:
             return value if isinstance(value, (int, float)) else str(value)
 
         return {
@@ -174,7 +174,7 @@ class Objective:
         return -1.0 if self.maximise else 1.0
 
 
-def read_objectives(objective: Any) -> list[Objective]:
+def read_objectives(objective: object) -> list[Objective]:
     """Return the objectives of a search with their directions."""
     if isinstance(objective, str) or not hasattr(objective, "__iter__"):
         objective = [objective]

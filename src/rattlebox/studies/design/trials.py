@@ -152,7 +152,7 @@ def trial_seed(seed: int, number: int) -> int:
 class Trials:
     """Trials of a design search: those that are finished, and the next one."""
 
-    def __init__(self, optuna: Any, study: Any, search: DesignSearch, seed: int, wanted: int | None) -> None:
+    def __init__(self, optuna: object, study: object, search: DesignSearch, seed: int, wanted: int | None) -> None:
         self._optuna, self._study, self._search, self._seed = optuna, study, search, seed
         self._stored = finished_trials(optuna, study)
         combinations = search.combinations
@@ -249,13 +249,13 @@ def _fixed(samplers: Any, values: Values) -> Any:
     """Return a sampler of Optuna that suggests given values."""
 
     class Fixed(samplers.BaseSampler):  # type: ignore[misc]
-        def infer_relative_search_space(self, study: Any, trial: Any) -> dict[str, Any]:
+        def infer_relative_search_space(self, study: object, trial: object) -> dict[str, Any]:
             return {}
 
-        def sample_relative(self, study: Any, trial: Any, search_space: Any) -> dict[str, Any]:
+        def sample_relative(self, study: object, trial: object, search_space: object) -> dict[str, Any]:
             return {}
 
-        def sample_independent(self, study: Any, trial: Any, param_name: str, param_distribution: Any) -> Any:
+        def sample_independent(self, study: object, trial: object, param_name: str, param_distribution: object) -> Any:
             return values[param_name]
 
     return Fixed()

@@ -155,7 +155,7 @@ class _Reader:
         self.case, self.source = case, source
         self.materials = materials_in(case)
 
-    def directions(self, axes: Any) -> list[_Direction]:
+    def directions(self, axes: object) -> list[_Direction]:
         """Return the dimensions of all axes."""
         directions: list[_Direction] = []
         for part in axes if isinstance(axes, (list, tuple)) else [axes]:
@@ -173,10 +173,10 @@ class _Reader:
             raise Hint("nothing varies", f"{_EXAMPLE}, or rb.simulate for one run")
         return directions
 
-    def parameter(self, path: Any) -> Parameter:
+    def parameter(self, path: object) -> Parameter:
         return Parameter(self.case, path, self.source, self.materials)
 
-    def axis(self, key: Any, values: Any) -> _Direction:
+    def axis(self, key: object, values: object) -> _Direction:
         """Return the dimension of an item of a mapping."""
         if isinstance(values, Mapping) and not isinstance(values, RecordSet):
             linked = dict(values)
@@ -363,7 +363,7 @@ def _words(path: str) -> str:
 # ---- axes of repeated runs
 
 
-def robust_axes(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
+def robust_axes(case: Case, levels: object = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
     """Return the axes of load levels and start positions; an empty list for one run."""
     axes = list(levels) if isinstance(levels, (list, tuple)) else [] if levels is None else [levels]
     if starts is not None:

@@ -108,7 +108,7 @@ def _summary(values: Column) -> dict[str, Any]:
     return {"count": flat.size, "sha256": sha256(b"".join(digests[id(value)] for value in flat)).hexdigest()}
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Return an object in JSON types."""
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
@@ -125,7 +125,7 @@ def labels(items: Column) -> Column:
     return np.array([texts[id(item)] for item in items])
 
 
-def _label(value: Any) -> str:
+def _label(value: object) -> str:
     """Return a short text for a value."""
     if isinstance(value, float):
         return f"{value:.6g}"
@@ -159,7 +159,7 @@ class Values:
 class Parameter:
     """A parameter of a case, addressed by its path."""
 
-    def __init__(self, case: Case, path: Any, source: str, materials: dict[str, Material]) -> None:
+    def __init__(self, case: Case, path: object, source: str, materials: dict[str, Material]) -> None:
         if not isinstance(path, str):
             raise Hint(f"{path!r} is not a path", '"damper.gap"')
         self.path, self.source, self.materials = path, source, materials
@@ -187,7 +187,7 @@ class Parameter:
             if (other.name, self.name) in pairs or (self.name, other.name) in pairs:
                 raise Hint(f"{other.path} and {self.path} exclude each other", "one of them")
 
-    def read(self, value: Any, which: int | str | None = None) -> Any:
+    def read(self, value: object, which: int | str | None = None) -> Any:
         """Return a value as the case stores it."""
         content = {self.name: _put(get_field(self.part, self.name), self.inner, value)}
         try:
@@ -203,7 +203,7 @@ class Parameter:
             result = result[step]
         return result
 
-    def number(self, value: Any, which: int | str | None = None) -> tuple[float, str] | None:
+    def number(self, value: object, which: int | str | None = None) -> tuple[float, str] | None:
         """Return a value in SI units with its unit; None if it is not a number."""
         if isinstance(self.part, Signal) and self.name == "amplitude":
             # The field itself would accept the units of other signals.
@@ -225,7 +225,7 @@ class Parameter:
             return None
         return float(result), self.unit or "1"
 
-    def ends(self, low: Any, high: Any, names: Sequence[str | int] = (0, 1)) -> tuple[float, float, str]:
+    def ends(self, low: object, high: object, names: Sequence[str | int] = (0, 1)) -> tuple[float, float, str]:
         """Return the ends of a range in SI units with their unit."""
         if self.unit is None:
             raise self.wrong("its values are not numbers", "a list of values")
@@ -239,7 +239,7 @@ class Parameter:
             raise self.mixed()
         return start[0], stop[0], start[1]
 
-    def values(self, given: Any) -> Values:
+    def values(self, given: object) -> Values:
         """Validate a list of values."""
         if isinstance(given, RecordSet):
             given = list(given.values())
@@ -287,13 +287,13 @@ class Parameter:
         """Return an error about start positions of both kinds."""
         return self.wrong("some values are fractions of the gap and some are lengths", "all of one kind")
 
-    def not_a_list(self, given: Any) -> CaseError:
+    def not_a_list(self, given: object) -> CaseError:
         """Return an error about a single value in place of a list."""
         suggestion = f"[{given!r}]" if isinstance(given, (str, int, float)) else ""
         return self.wrong("a list of values is needed", suggestion, None, given)
 
 
-def _numbers(annotation: Any) -> set[type]:
+def _numbers(annotation: object) -> set[type]:
     """Return the types of numbers in an annotation."""
     if annotation in (int, float):
         return {annotation}
@@ -318,7 +318,7 @@ def _put(node: Any, inner: Place, value: Any) -> Any:
     return copy
 
 
-def _as_numbers(given: Any) -> NDArray[np.float64] | None:
+def _as_numbers(given: object) -> NDArray[np.float64] | None:
     """Return values as a vector if all are plain numbers; else None."""
     if isinstance(given, (list, tuple, range)):
         if not all(isinstance(item, (int, float, np.number)) and not isinstance(item, bool) for item in given):
@@ -332,7 +332,7 @@ def _as_numbers(given: Any) -> NDArray[np.float64] | None:
     return array.astype(float) if array.ndim == 1 and array.dtype.kind in "iuf" else None
 
 
-def objects(items: Sequence[Any]) -> Column:
+def objects(items: Sequence[object]) -> Column:
     """Return an array of objects, without conversion of the items."""
     array = np.empty(len(items), dtype=object)
     for number, item in enumerate(items):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint, nearest
-from rattlebox.model.units import are_alike, as_written, whole_number
+from rattlebox.model.units import Quantity, are_alike, as_written, whole_number
 
 Vector = NDArray[np.float64]
 Method = Literal["sobol", "halton", "lhs", "random"]
@@ -21,7 +21,7 @@ MOST_VARIANTS = 10**8
 """Most values of an axis and most variants of a study; the results of one measure then take 1 GB."""
 
 
-def number_of_variants(value: Any, name: str = "count") -> int:
+def number_of_variants(value: object, name: str = "count") -> int:
     """Return a number of values or variants."""
     count = whole_number(value, name, 1)
     if count > MOST_VARIANTS:
@@ -52,7 +52,7 @@ class Spaced:
         return np.geomspace(start, stop, count)
 
 
-def linspace(start: Any, stop: Any, count: int) -> Spaced:
+def linspace(start: Quantity, stop: Quantity, count: int) -> Spaced:
     """Return evenly spaced values of a parameter, start + (stop - start) k / (count - 1), k = 0 ... count - 1.
 
     Parameters
@@ -79,7 +79,7 @@ def linspace(start: Any, stop: Any, count: int) -> Spaced:
     return _spaced(start, stop, count)
 
 
-def geomspace(start: Any, stop: Any, count: int) -> Spaced:
+def geomspace(start: Quantity, stop: Quantity, count: int) -> Spaced:
     """Return geometrically spaced values of a parameter, start (stop / start)^(k / (count - 1)), k = 0 ... count - 1.
 
     Parameters
@@ -106,7 +106,7 @@ def geomspace(start: Any, stop: Any, count: int) -> Spaced:
     return _spaced(start, stop, count, log=True)
 
 
-def _spaced(start: Any, stop: Any, count: Any, *, log: bool = False) -> Spaced:
+def _spaced(start: object, stop: object, count: object, *, log: bool = False) -> Spaced:
     """Return spaced values, after the checks that do not need the parameter."""
     low, high = as_written(start), as_written(stop)
     if low and high:
@@ -146,7 +146,7 @@ class RandomDesign:
 
 
 def random_design(
-    ranges: Mapping[str, Any],
+    ranges: Mapping[str, object],
     count: int,
     *,
     method: Method = "sobol",
@@ -219,7 +219,7 @@ class Replicas:
         return 2 * _stratified(len(self.reach), self.count, self.seed) - 1
 
 
-def replicas(reach: Mapping[str, Any], count: int, *, seed: int = 0) -> Replicas:
+def replicas(reach: Mapping[str, object], count: int, *, seed: int = 0) -> Replicas:
     """Repeat each variant with small offsets, along the dimension "replica", to estimate the scatter of chaotic results.
 
     The offsets are a Latin hypercube sample (see `random_design`) between -reach and +reach, the same for every variant.
@@ -259,6 +259,6 @@ def _stratified(width: int, count: int, seed: int) -> Vector:
     return qmc.LatinHypercube(width, rng=seed).random(count)
 
 
-def _by_path(values: Any, name: str, example: str) -> None:
+def _by_path(values: object, name: str, example: str) -> None:
     if not isinstance(values, Mapping) or not values:
         raise Hint(f"{name} is not a mapping of paths to values, or is empty", example)

@@ -60,7 +60,7 @@ _FALL = 0.98
 """Limit at a larger amplitude over the largest one, below which the limit counts as falling."""
 
 
-def _as_case(value: Any) -> Any:
+def _as_case(value: object) -> Any:
     return Case(structure=value, duration="1 s") if isinstance(value, StructurePart) else value
 
 
@@ -365,7 +365,7 @@ class StabilityLobes(Study):
             "amplitudes": [] if self._own_amplitudes is None else self._own_amplitudes.tolist(),
         }
 
-    def _limits(self, tool: _Tool, samples: list[SampledResponse], amplitudes: Any) -> _Limits:
+    def _limits(self, tool: _Tool, samples: list[SampledResponse], amplitudes: object) -> _Limits:
         """Return the limits of a tool for the response at each amplitude."""
         period = 60 / (self._speeds * self.teeth)
         smallest, lobes = [], []
@@ -514,7 +514,7 @@ class StabilityLobes(Study):
         speeds = self._speeds
         data: dict[str, Any] = {}
 
-        def add(name: str, dims: tuple[str, ...], values: Any, units: str, long_name: str) -> None:
+        def add(name: str, dims: tuple[str, ...], values: object, units: str, long_name: str) -> None:
             data[name] = dims, values, {"units": units, "long_name": long_name}
 
         add("limit", over, found.limit, "m", "depth of cut that is stable at all speeds")

@@ -286,7 +286,7 @@ def check_softening(
     softenings: Sequence[float] | None = None,
     packings: int = 4,
     tolerance: float = 0.1,
-    skip: Any = 0.0,
+    skip: object = 0.0,
     cycles: tuple[int, int] | None = None,
     workers: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
@@ -354,7 +354,7 @@ def check_softening(
     ['reduced_loss', 'reduced_loss_change']
     """
 
-    def variants(case: Case, _: Mapping[str, Any]) -> dict[float, Case]:
+    def variants(case: Case, _: Mapping[str, object]) -> dict[float, Case]:
         largest = max(damper.softening_factor for damper in case.particle_dampers)
         return {value: _softened(case, value, largest) for value in _values(largest, softenings)}
 
@@ -393,7 +393,7 @@ def check_step(
     parts: Sequence[int] = (1, 2),
     packings: int = 4,
     tolerance: float = 0.1,
-    skip: Any = 0.0,
+    skip: object = 0.0,
     cycles: tuple[int, int] | None = None,
     workers: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
@@ -461,7 +461,7 @@ def check_step(
     if len(divisors) < 2 or np.any(np.diff(divisors) <= 0):
         raise Hint("two parts or more are needed, ascending", "parts = (1, 2)", ["parts"])
 
-    def variants(case: Case, seeds: Mapping[str, Any]) -> dict[float, Case]:
+    def variants(case: Case, seeds: Mapping[str, object]) -> dict[float, Case]:
         # The duration of a run over cycles, and with it the step that fits into it, is known to the work of a study only.
         runs = Variants(case, read_axes(case, seeds, source="packings"), cycles=cycles)
         prepared = ParticleEngine(runs).variant(0)

@@ -57,7 +57,7 @@ class LossTable:
     limits: str
 
     @classmethod
-    def read(cls, source: Any) -> LossTable:
+    def read(cls, source: object) -> LossTable:
         """Read a map."""
         import xarray
 

@@ -38,10 +38,10 @@ def response_from_map(
     structure: StructurePart,
     loss_map: xarray.Dataset | str | os.PathLike[str],
     *,
-    level: Any,
+    level: object,
     number: int | Sequence[int] = 1,
     at: str | tuple[str, ...] | list[str | tuple[str, ...]] | None = None,
-    frequencies: Any = None,
+    frequencies: object = None,
     point: str | None = None,
     load_point: str | None = None,
     load_direction: str | Triple | None = None,
@@ -171,12 +171,12 @@ def response_from_map(
 # ---- arguments
 
 
-def listed(value: Any) -> list[Any]:
+def listed(value: object) -> list[Any]:
     """Return a value as a list; a tuple, which stands for several points at once, is one value."""
     return list(value) if isinstance(value, (list, np.ndarray, range)) else [value]
 
 
-def modes_of(structure: Any) -> ModalModel:
+def modes_of(structure: object) -> ModalModel:
     """Return the modes of a structure; raise if it has none."""
     if isinstance(structure, Case):
         raise Hint("a case is not a structure", "case.structure", ["structure"])
@@ -190,7 +190,7 @@ def modes_of(structure: Any) -> ModalModel:
     return model
 
 
-def _quantities(value: Any, units: tuple[str, ...], name: str) -> tuple[FloatArray, str | None]:
+def _quantities(value: object, units: tuple[str, ...], name: str) -> tuple[FloatArray, str | None]:
     """Return values in SI and their unit, None if they are bare numbers."""
     if isinstance(value, Spaced):
         first, last = parse(value.start, units), parse(value.stop, units)
@@ -205,7 +205,7 @@ def _quantities(value: Any, units: tuple[str, ...], name: str) -> tuple[FloatArr
     return np.array(found), units_found.pop()
 
 
-def _levels(level: Any) -> tuple[FloatArray, str]:
+def _levels(level: object) -> tuple[FloatArray, str]:
     levels, unit = _quantities(level, ("N", "m/s^2"), "level")
     if unit is None:
         raise Hint(
@@ -216,7 +216,7 @@ def _levels(level: Any) -> tuple[FloatArray, str]:
     return levels, unit
 
 
-def points_of_dampers(at: Any, model: ModalModel) -> list[tuple[str, ...]]:
+def points_of_dampers(at: object, model: ModalModel) -> list[tuple[str, ...]]:
     """Return the points of each arrangement of dampers."""
     places = []
     for item in listed(at):
@@ -302,7 +302,9 @@ def _observed(model: ModalModel, name: str, axis: FloatArray | None, given: str 
     return name, lines[name]
 
 
-def default_frequencies(given: Any, table: MassTable, model: ModalModel, shapes: FloatArray, number: int) -> FloatArray:
+def default_frequencies(
+    given: object, table: MassTable, model: ModalModel, shapes: FloatArray, number: int
+) -> FloatArray:
     """Return the frequencies [Hz]: the given ones, or a grid that is finer where resonances are."""
     low, high = table.frequency[0], table.frequency[-1]
     if given is not None:

@@ -48,7 +48,7 @@ class Backend(Protocol):
         """Run the blocks of several chains: chains in parallel, the blocks of each chain in order."""
 
 
-def make_backend(backend: Any = "threads", workers: int | None = None) -> Backend:
+def make_backend(backend: object = "threads", workers: int | None = None) -> Backend:
     """Return the backend for the arguments of a study."""
     if backend == "threads":
         return Threads(workers or cores())

@@ -40,7 +40,7 @@ class Stopped(KeyboardInterrupt):
 def run_work(
     work: Work,
     *,
-    backend: Any = "threads",
+    backend: object = "threads",
     workers: int | None = None,
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] = True,
@@ -151,10 +151,10 @@ def _stop_message(done: int, total: int, store: str | os.PathLike[str] | None) -
 
 def evaluate_cases(
     cases: Sequence[Case],
-    evaluate: Callable[[Run], Any],
+    evaluate: Callable[[Run], object],
     *,
     simulate: Callable[..., Run] | None = None,
-    backend: Any = "threads",
+    backend: object = "threads",
     workers: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> list[Any]:

@@ -431,7 +431,7 @@ def save_result(result: xr.Dataset, kind: str, path: str | os.PathLike[str] | No
 
 
 def save_finished(
-    result: xr.Dataset, kind: str, path: str | os.PathLike[str] | None, manifest: Mapping[str, Any]
+    result: xr.Dataset, kind: str, path: str | os.PathLike[str] | None, manifest: Mapping[str, object]
 ) -> xr.Dataset:
     """Add the kind of a study without runs to its result, and write the result to a store of its own.
 

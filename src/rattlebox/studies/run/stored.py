@@ -247,7 +247,7 @@ def _intact_only() -> Any:
             self._chunks = chunks
             self._intact: dict[int, bool] = {}
 
-        def _with_store(self, store: Any) -> Any:
+        def _with_store(self, store: object) -> Any:
             return type(self)(store, self._chunks)
 
         async def get(self, key: str, prototype: Any, byte_range: Any = None) -> Any:
@@ -450,6 +450,6 @@ def _field(name: object) -> str:
     return field if field[:1].isalpha() else f"x{field}"
 
 
-def _text(value: Any) -> Any:
+def _text(value: object) -> Any:
     """Return an attribute as text, and a list of texts as cells."""
     return as_cells(value) if isinstance(value, (list, tuple)) else str(value)

@@ -250,19 +250,19 @@ class SpacedTable(Range):
         return Spaced(self.start, self.to, self.count, self.spacing == "log", ("from", "to"))
 
 
-def table_shape(value: Any) -> str:
+def table_shape(value: object) -> str:
     """Return "spaced" for a table of spaced values, "linked" for other tables, "value" for text and numbers, or "other"."""
     if isinstance(value, Mapping) and not isinstance(value, RecordSet):
         return "linked" if value and not value.keys() & {"from", "to", "count", "spacing"} else "spaced"
     return "value" if isinstance(value, (str, int, float)) or value is None else "other"
 
 
-def _spaced_or_other(value: Any) -> str:
+def _spaced_or_other(value: object) -> str:
     shape = table_shape(value)
     return "spaced" if shape == "linked" else shape
 
 
-def _if_table(value: Any, handler: Callable[[Any], Any]) -> Any:
+def _if_table(value: object, handler: Callable[[Any], Any]) -> Any:
     """Validate a table; return other forms, which only Python calls have, unchanged."""
     if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
         return handler(value)
@@ -274,7 +274,7 @@ def _if_table(value: Any, handler: Callable[[Any], Any]) -> Any:
 measure_function("1", "equivalent damping ratio")(equivalent_damping)
 
 
-def _as_measures(value: Any) -> Any:
+def _as_measures(value: object) -> Any:
     if isinstance(value, str) or callable(value):
         value = [value]
     if not isinstance(value, Iterable):
@@ -306,7 +306,7 @@ def whole_cycles(cycles: Any, least: int = 1) -> tuple[int, int]:
     return skip, count
 
 
-def _check_bounds(bounds: Any) -> Any:
+def _check_bounds(bounds: object) -> Any:
     if not isinstance(bounds, Mapping) or not bounds:
         raise Hint("a mapping of paths to bounds or choices is required", '{"damper.gap": ("0.1 mm", "2 mm")}')
     return bounds

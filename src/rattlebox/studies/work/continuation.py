@@ -53,7 +53,7 @@ def check_variants(variants: Variants) -> None:
             raise CaseError(f"{path} is an initial value, which affects only the first run", "an axis of a sweep")
 
 
-def require_periodic(packed: _core.Problem, period: Any) -> None:
+def require_periodic(packed: _core.Problem, period: object) -> None:
     """Raise if a load or motion is not periodic with the first one."""
     for load in packed.loads:
         signal = load.signal

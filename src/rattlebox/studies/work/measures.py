@@ -123,7 +123,7 @@ def named_functions() -> dict[str, Callable[..., Any]]:
     return {name: function for name, (function, _) in _FUNCTIONS.items()}
 
 
-def about(measure: Any) -> Measure:
+def about(measure: object) -> Measure:
     """Return the declaration of a measure; that of a function which is not registered has no unit."""
     name = name_of(measure)
     if name in MEASURES:
@@ -155,7 +155,7 @@ RESERVED_NAMES = _VARIANT_NAMES | _IMPACT_NAMES | _DESIGN_NAMES
 """Names of variables of studies that a function of a Run must not have."""
 
 
-def name_of(measure: Any) -> str:
+def name_of(measure: object) -> str:
     """Return the name of a measure, or of a function of a Run.
 
     `measure`: name, function, partial or callable object.
@@ -165,7 +165,7 @@ def name_of(measure: Any) -> str:
     return measure if isinstance(measure, str) else getattr(measure, "__name__", type(measure).__name__)
 
 
-def check_names(measures: Iterable[Any]) -> None:
+def check_names(measures: Iterable[object]) -> None:
     """Raise if two measures have the same name, or a function has a reserved name.
 
     `measures`: names and functions. Raises CaseError if a name is not allowed.
@@ -225,7 +225,7 @@ def shortest_windows(packed: _core.Problem, shape: Sequence[int], output: BlockO
     if not modes:  # a cavity with a given motion
         return np.zeros(math.prod(shape))
 
-    def over_grid(values: Any) -> Any:
+    def over_grid(values: object) -> Any:
         array = np.asarray(values, dtype=float)
         array = array.reshape(modes, *(1,) * (len(shape) + 1 - array.ndim), *array.shape[1:])
         return np.broadcast_to(array, (modes, *shape)).reshape(modes, -1)
@@ -239,7 +239,7 @@ def shortest_windows(packed: _core.Problem, shape: Sequence[int], output: BlockO
 
 def interval_of(
     name: str,
-    value: Any,
+    value: object,
     parts: Mapping[str, NDArray[np.float64]],
     lengths: NDArray[np.float64],
     shortest: ArrayLike = 0.0,

@@ -64,7 +64,7 @@ class Orbits(NamedTuple):
     residual: Vector
 
 
-def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) -> tuple[Vector, Vector]:
+def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: object) -> tuple[Vector, Vector]:
     """Return stroboscopic states with velocities as lengths, and the range of each component, in gaps.
 
     Lengths are divided by the gap of the damper (of the first one for the structure), velocities by gap times angular

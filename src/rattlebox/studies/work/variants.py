@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 # ---- fingerprints of functions
 
 
-def fingerprint(function: Callable[..., Any]) -> str:
+def fingerprint(function: Callable[..., object]) -> str:
     """Return a digest of the source of a function and of the values that it refers to."""
     return _Digest(function).hexdigest()
 
@@ -48,7 +48,7 @@ _PLAIN = (str, bytes, bool, int, float, complex, type(None))
 class _Digest:
     """Digest of a function, to which the values that it refers to are added recursively."""
 
-    def __init__(self, function: Any) -> None:
+    def __init__(self, function: object) -> None:
         self._hash = sha256()
         self._added: list[Any] = []  # functions and types
         self._parents: list[Any] = []  # other objects, parts of which are being added
@@ -67,7 +67,7 @@ class _Digest:
             text = value if isinstance(value, bytes) else re.sub(r" at 0x[0-9a-fA-F]+", "", str(value)).encode()
             self._hash.update(b"%d " % len(text) + text)
 
-    def _add(self, value: Any) -> None:
+    def _add(self, value: object) -> None:
         if isinstance(value, _PLAIN):
             return self._update(repr(value))
         known = [number for number, each in enumerate([*self._added, *self._parents]) if each is value]
@@ -81,7 +81,7 @@ class _Digest:
         self._parents.pop()
         return None
 
-    def _add_content(self, value: Any) -> None:
+    def _add_content(self, value: object) -> None:
         if isinstance(value, (FunctionType, type)) and _package(value) != self._package:
             self._update(value.__module__, value.__qualname__)
         elif isinstance(value, FunctionType):
@@ -121,7 +121,7 @@ class _Digest:
             self._add(otherwise)
 
 
-def _package(value: Any) -> str:
+def _package(value: object) -> str:
     module = getattr(value, "__module__", None) or type(value).__module__
     return str(module).partition(".")[0]
 

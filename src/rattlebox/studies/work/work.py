@@ -327,7 +327,7 @@ class Work:
         last = self.order.order(block.start, block.stop)[-1] - block.start
         return {name: array[last : last + 1] for name, array in values.items()}
 
-    def first_refused(self, status: Any) -> str:
+    def first_refused(self, status: object) -> str:
         """Return the values of the first refused variant and the reason; "" if none is refused."""
         refused = np.flatnonzero(status == Status.refused)
         if not refused.size or not (why := self.engine.refusal_reason(int(refused[0]))):
