@@ -363,8 +363,52 @@ for case in (stacked, stacked.replaced({"damper.packing": {"kind": "vibrated", "
     bed = rb.measure_bed(damper)
     assert run.status == "finished" and np.isfinite(start).all() and bed.count == 8, (run.status, bed)
     rb.plot_case(case)
+    assert rb.Case.from_toml(case.to_toml()) == case
     if case is stacked: assert np.array_equal(start, damper.packing.place(damper.cavity, damper.contents.radius))
     else: assert bed.height < 0.02, bed
+try: stacked.replaced({"damper.packing": {"kind": "stak"}})
+except rb.CaseError as error: assert "did you mean 'stack'?" in str(error), error
+else: raise AssertionError
+""",
+    )
+    assert result.returncode == 0, result.stderr
+
+
+def test_a_method_of_another_package_runs_and_is_listed(tmp_path: Path) -> None:
+    """A new method runs with its settings in runs, sweeps and steppers, and messages list it; the list was closed."""
+    (tmp_path / "case.toml").write_text(
+        CASE.partition("[damper]")[0]
+        + """
+damper = { kind = "impact", ball = { diameter = "20 mm", material = "steel" }, gap = "0.4 mm", \
+contact = { kind = "tsuji", restitution = 0.7 } }
+method = { kind = "coarse" }
+"""
+    )
+    result = program(
+        tmp_path,
+        """
+import numpy as np, rattlebox as rb
+from pathlib import Path
+from typing import Literal
+from rattlebox.model.methods import ImpactMethod
+class Coarse(ImpactMethod):
+    kind: Literal["coarse"] = "coarse"
+    def settings(self): return "event_driven", {"tolerance": 1e-6, "max_events": 1000, "collocation": False}
+    @property
+    def has_stepper(self): return True
+case = rb.Case.from_file("case.toml")
+assert rb.Case.from_toml(case.to_toml()) == case
+alike = {"kind": "event_driven", "tolerance": 1e-6, "max_events": 1000, "collocation": False}
+methods = {"kind": "coarse"}, alike, {"kind": "event_driven"}
+ends = [rb.simulate(case.replaced({"method": method}), progress=False) for method in methods]
+own, same, usual = (run.motion.displacement.values[-1, 0] for run in ends)
+assert own == same != usual and abs(own - usual) < 1e-3 * abs(usual), (own, same, usual)
+swept = rb.sweep(case, {"damper.gap": ["0.4 mm", "0.5 mm"]}, "peak", progress=False)
+assert np.isfinite(swept.peak).all()
+rb.Stepper(case)
+try: rb.Case.from_toml(Path("case.toml").read_text().replace("coarse", "course"))
+except rb.CaseError as error: assert "did you mean 'coarse'?" in str(error), error
+else: raise AssertionError
 """,
     )
     assert result.returncode == 0, result.stderr
