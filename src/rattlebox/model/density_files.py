@@ -22,9 +22,10 @@ from .units_in_text import unit_above
 _UNIT = 'unit = "g", if the densities are in g^2/Hz'
 _SHOWN = 60  # characters of a text of a file in a message
 _LARGEST_TEXT = 300  # characters of a line that are searched for a unit
-_PER_HERTZ = re.compile(r"/\s*(?:hz|hertz)\b\)?|[m²2]\s*/\s*s\s*(?:\^?3\b|³)", re.I)
+_PER_HERTZ = re.compile(r"/\s*k?(?:hz|hertz)\b\)?|[m²2]\s*/\s*s\s*(?:\^?3\b|³)", re.I)
 _ROOT = re.compile(r"(?:/\s*|per\s+)(?:sqrt|√|root|rt)\s*\(?\s*hz|hz\s*\^?\s*\(?\s*(?:1/2|0?\.5)", re.I)
 _DECIBEL = re.compile(r"(?<![a-z])dB(?![a-z])", re.I)
+_OTHER_MEASURE = re.compile(r"/\s*oct|[\s·*.]s\s*/\s*hz|\bESD\b|energy spectral", re.I)
 _TWO_SIDED = re.compile(r"\b(?:two|double|2)[- ]?sided\b|\bzweiseitig|\bbilat[eé]ral", re.I)
 _PEAK = re.compile(r"\bpeak(?:[- ]hold|[- ]to[- ]peak)?\b|\bmax(?:imum)?[- ]hold\b", re.I)
 _ANGULAR = re.compile(r"rad\s*/\s*s|\bomega\b|ω", re.I)
@@ -122,6 +123,8 @@ def _unit_of(found: DensityInFile, wanted: str | None, name: str) -> tuple[tuple
     above = found.unit
     if text := next((each for each in (above, found.name) if _ROOT.search(each)), ""):
         raise Hint(f"{text.strip()[:_SHOWN]!r} is the root of a density", "its square, in g^2/Hz or (m/s^2)^2/Hz")
+    if _OTHER_MEASURE.search(above):
+        raise Hint(f"{above.strip()[:_SHOWN]!r} is no mean square per Hz", "densities such as g^2/Hz")
     if _DECIBEL.search(above):
         raise Hint(f"{above.strip()[:_SHOWN]!r} are decibels of an unknown reference", "densities such as g^2/Hz")
     own = None

@@ -230,16 +230,18 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
 def density_factor(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
     """Return the factor of the unit of a density in a file to SI, and the SI unit of the signal; None if it is none."""
     text = unit.translate(_SUPERSCRIPTS).replace("**", "^").replace("[", "(").replace("]", ")")
-    text = re.sub(r"\s*/\s*(?:hz|hertz)\b\.?", "/Hz", text.strip(), flags=re.I)
+    per_kilohertz = re.search(r"/\s*khz\)?\.?\s*$", text, re.I)
+    text = re.sub(r"\s*/\s*k?(?:hz|hertz)\b\.?", "/Hz", text.strip(), flags=re.I)
     text = re.sub(r"[ _]*rms(?=[\d)^/ ])", "", text, flags=re.I)  # a density is a mean square
     text = re.sub(r"(?<=[A-Za-z)])2(?=[)/ ])", "^2", text)
     text = re.sub(r"(?<=[A-Za-z)])([34])(?=[)/ ]|$)", r"^\1", text)
     text = re.sub(r"^\((.*\^2)\)/Hz$", r"\1/Hz", text)
     text = re.sub(r"^([^()/^]+)\^2 ?/ ?s\^4/Hz$", r"(\1/s^2)^2/Hz", text)
     try:
-        return parse_density(f"1 {text}", units) if text else None  # type: ignore[return-value]
+        factor, si = parse_density(f"1 {text}", units) if text else (1.0, None)
     except Hint:
         return None
+    return None if si is None else (factor / 1e3 if per_kilohertz else factor, si)
 
 
 def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
@@ -363,7 +365,9 @@ def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
         raise Hint(f"unknown unit {text[:_LONGEST_UNIT]!r}...", _example(units))
     ureg = registry()
     try:
-        return number * ureg.parse_units(text.replace("µ", "u").replace("^", "**").replace("²", "**2"))
+        unit = ureg.parse_units(text.replace("µ", "u").replace("^", "**").replace("²", "**2"))
+        _ = unit.dimensionality  # pint computes it late, and fails for octaves and other logarithmic units
+        return number * unit
     except Exception as error:
         known = {name for unit in units for name in _COMMON.get(unit, {})}
         raise Hint(f"unknown unit {text!r}", nearest(text, known) if known else _example(units)) from error

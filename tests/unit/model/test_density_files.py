@@ -31,6 +31,8 @@ POINTS = [(10, 0.002), (40, 0.05), (350, 0.05), (900, 0.004)]
         ("f (Hz), PSD (V^2/Hz)\n", {"unit": "kN"}, 1e6, "N"),
         ("f (Hz), PSD (g^2/Hz)\n", {"unit": "g"}, G**2, "m/s^2"),
         ("f (Hz), PSD two-sided (N^2/Hz)\n", {}, 2, "N"),
+        ("f (Hz), S (g^2/kHz)\n", {}, 1e-3 * G**2, "m/s^2"),
+        ("f (Hz), S (mm^2/s^4/Hz)\n", {}, 1e-6, "m/s^2"),
     ],
 )
 def test_tables(tmp_path: Path, head: str, fields: dict, factor: float, unit: str) -> None:
@@ -65,6 +67,8 @@ def test_other_tables(tmp_path: Path) -> None:
         ("f (Hz), S\n" + LINES, {}, r"no unit of the density is stated\n.*unit = \"g\""),
         ("f (Hz), S (g)\n" + LINES, {}, "states the unit of m/s\\^2, not that of a density"),
         ("f (Hz), S (g/sqrt(Hz))\n" + LINES, {"unit": "g"}, "is the root of a density"),
+        ("f (Hz), S (g^2/oct)\n" + LINES, {"unit": "g"}, "is no mean square per Hz"),
+        ("f (Hz), S (g^2 s/Hz)\n" + LINES, {"unit": "g"}, "is no mean square per Hz"),
         ("f (Hz), S (dB)\n" + LINES, {}, "decibels of an unknown reference"),
         ("f (Hz), S (V^2/Hz)\n" + LINES, {}, r"V\^2/Hz.* is no unit of a density"),
         ("f (Hz), S (g^2/Hz)\n" + LINES, {"unit": "m/s^2"}, r"states another unit of the density.*\n.*unit left out"),
@@ -162,6 +166,15 @@ def test_every_type_of_function(tmp_path: Path, kind: int) -> None:
         uses |= dict.fromkeys((4, 5), "rb.analysis.read_frequency_response")
         used = uses.get(kind, "an export")
         assert f"try: {used}" in str(error.value)
+
+
+def test_times_in_the_unit_of_the_label(tmp_path: Path) -> None:
+    """Times of a set 58 were taken as seconds whatever its label says, since no sample has another label."""
+    path = tmp_path / "a.uff"
+    text = set58(1, np.array([0.0, 1.0, -2.0, 0.5]), "N", step=2.5, over=17)
+    for label, factor in (("s", 1), ("ms", 1e-3), ("sec", 1), ("NONE", 1), ("Zeit", 1)):
+        path.write_text(text.replace("s                   \n", f"{label:<20}\n", 1))
+        np.testing.assert_allclose(rb.Record.from_file(path).times, 2.5 * factor * np.arange(4), rtol=1e-12)
 
 
 def test_exponents_of_fortran(tmp_path: Path) -> None:

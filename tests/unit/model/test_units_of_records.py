@@ -158,3 +158,9 @@ def test_a_note_without_a_unit(tmp_path: Path) -> None:
     """The note on a record that no one gave a unit has its peak, not "None": only records in cases had been looked at."""
     notes = " ".join(rb.Record.from_file(written(tmp_path, "")).notes())
     assert "SI is assumed, with a peak of 0.2; set unit" in notes
+
+
+def test_logarithmic_units_are_unknown() -> None:
+    """A unit with octaves ended in an AttributeError of the library of units, which computes dimensions late."""
+    with pytest.raises(rb.CaseError, match=r"unknown unit 'g\^2/oct'"):
+        rb.HalfSine(amplitude="5 g^2/oct", duration="1 ms")
