@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from .errors import Hint, nearest
-from .signals import UNIT_NAMES, UNITS
+from .signals import UNIT_NAMES, UNITS, Unit
 from .units import factor_of
 
 _EXAMPLE = '{"name": "tip", "data": [...], "fs": 1000.0, "unit_str": "m/s^2"}'
-_QUANTITIES = {"a": "m/s^2", "f": "N", "d": "m"}
+_QUANTITIES: dict[str, Unit] = {"a": "m/s^2", "f": "N", "d": "m"}
 _OTHERS = {"v": "a velocity", "e": "a strain", "s": "a stress"}
 _SAME = 1e-6  # relative difference of time steps that count as the same
 _LISTED = 12  # channels in a message
@@ -26,7 +26,7 @@ def fields_of_sep005(given: object, name: str | None, unit: object) -> dict[str,
     SDyPy enhancement proposal 5: data format for time series.
     """
     channel = _chosen(given, name)
-    label = str(channel.get("name") or "")
+    label = _text(channel, "name")
     where = f"the channel {label[:60]!r}" if label else "the channel"
     if "data" not in channel:
         key = next((key for key in channel if str(key).lower() == "data"), None)
@@ -50,22 +50,36 @@ def _chosen(given: object, name: str | None) -> Mapping[str, Any]:
         channels = [None]
     if not channels or not all(isinstance(each, Mapping) for each in channels):
         raise Hint("a dictionary of SEP005, or a list of them, is needed", _EXAMPLE)
-    names = [str(each.get("name", "")) for each in channels]
+    names = [_text(each, "name") for each in channels]
     if name is None:
         if len(channels) > 1:
             raise Hint(f"{len(channels)} channels are given: {_listed(names)}", f"channel = {names[0]!r}")
         return dict(channels[0])
     if names.count(name) != 1:
         count = "no channel is" if name not in names else f"{names.count(name)} channels are"
-        raise Hint(f"{count} called {name!r}; there are {_listed(names)}", nearest(name, names))
+        raise Hint(
+            f"{count} called {name[:60]!r}; there are {_listed(names)}",
+            nearest(name[:60], [each[:60] for each in names[:_LISTED]]),
+        )
     return dict(channels[names.index(name)])
+
+
+def _text(channel: Mapping[str, Any], key: str) -> str:
+    """Return a text of a channel; "" if there is none."""
+    value = channel.get(key)
+    if value is not None and not isinstance(value, str):
+        raise Hint(f"{key} of a channel is {value!r:.60}, not text", _EXAMPLE)
+    return (value or "").strip()
 
 
 def _vector(value: object, where: str) -> Any:
     """Return a row of finite numbers."""
     try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+        given = np.asarray(value)
+        if given.dtype.kind not in "fiuO":  # text, time stamps and complex numbers would be converted
+            raise TypeError
+        array = given.astype(float)
+    except (TypeError, ValueError, OverflowError):
         raise Hint(f"{where} has items that are no numbers", "a list of numbers without gaps") from None
     if array.ndim == 2 and 1 in array.shape:
         array = array.ravel()
@@ -83,7 +97,7 @@ def _times(channel: Mapping[str, Any], count: int, where: str) -> Any:
     if rate is not None:
         try:
             rate = float(rate)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise Hint(
                 f"{where} has fs = {channel['fs']!r:.60}", "the sampling frequency in Hz, such as 1000.0"
             ) from None
@@ -104,7 +118,7 @@ def _times(channel: Mapping[str, Any], count: int, where: str) -> Any:
 
 def _unit(channel: Mapping[str, object], where: str, unit: object) -> Any:
     """Return the unit that the channel states; that of the user must agree with it."""
-    text, quantity = str(channel.get("unit_str") or "").strip(), str(channel.get("quantity") or "").strip()
+    text, quantity = _text(channel, "unit_str"), _text(channel, "quantity")
     stated = factor_of(text, UNITS) if text else None
     if quantity in _OTHERS:
         raise Hint(
@@ -117,7 +131,7 @@ def _unit(channel: Mapping[str, object], where: str, unit: object) -> Any:
         )
     if stated and quantity in _QUANTITIES and _QUANTITIES[quantity] != stated[1]:
         raise Hint(
-            f"{where} has unit_str = {text!r}, but quantity {quantity!r}, {UNIT_NAMES[_known(_QUANTITIES[quantity])]}",
+            f"{where} has unit_str = {text!r}, but quantity {quantity!r}, {UNIT_NAMES[_QUANTITIES[quantity]]}",
             "unit_str and quantity that agree",
         )
     if stated and isinstance(unit, str) and factor_of(unit, UNITS) not in (None, stated):
@@ -125,10 +139,6 @@ def _unit(channel: Mapping[str, object], where: str, unit: object) -> Any:
     if not text and unit is None:
         raise Hint(f"{where} has no unit_str", 'unit = "m/s^2"')
     return unit if stated is None else text if unit is None else unit
-
-
-def _known(unit: str) -> Any:
-    return unit
 
 
 def _listed(names: Any) -> str:

@@ -42,6 +42,10 @@ def test_as_a_set() -> None:
         ({"data": None}, {}, "data has the shape"),
         ({"data": [1.0, None, 2.0]}, {}, "data has nan at index 1"),
         ({"data": [1.0, "x"]}, {}, "data has items that are no numbers"),
+        ({"data": np.array([1.0, 2j])}, {}, "data has items that are no numbers"),
+        ({"data": ["1.0", "2.0"]}, {}, "data has items that are no numbers"),
+        ({"data": [1.0, 10**400]}, {}, "data has items that are no numbers"),
+        ({"unit_str": np.arange(3)}, {}, "unit_str of a channel is array"),
         ({"data": [[1.0, 2.0], [3.0, 4.0]]}, {}, r"data has the shape \(2, 2\)"),
         ({"fs": None}, {}, "has neither time nor fs"),
         ({"fs": 0}, {}, "has fs = 0 Hz"),
@@ -69,3 +73,24 @@ def test_no_dictionaries(given: Any) -> None:
     """Other values, lists without a choice and keys in capitals are refused."""
     with pytest.raises(rb.CaseError, match="try: "):
         rb.Record.from_sep005(given, *(["tip"] if given == [TIP, TIP] else []))
+
+
+def test_damaged_dictionaries() -> None:
+    """Fields of any type and size are read to finite numbers or refused, never with another error."""
+    junk = [None, "", "x" * 10**5, float("nan"), -1, 10**400, [], [[]], {}, [None], b"a", True, np.arange(4), "kN", {1}]
+    junk += [np.arange(4) * 1j, np.zeros((2, 2)), np.array(["a"] * 4), range(4), object(), [1e308] * 4, "a\x00b"]
+    random = np.random.default_rng(11)
+    for number in range(300):
+        given: Any = {**TIP, "time": [0.0, 0.005, 0.01, 0.015]}
+        for _ in range(random.integers(1, 4)):
+            key = str(random.choice(list(TIP)))
+            given[key.upper() if random.random() < 0.2 else key] = junk[random.integers(len(junk))]
+            if random.random() < 0.2:
+                given.pop(key, None)
+        message = ""
+        try:
+            record = rb.Record.from_sep005([given, PUSH] if random.random() < 0.3 else given, "tip")
+            assert np.isfinite(record.values).all()
+        except rb.RattleboxError as error:
+            message = str(error)
+        assert len(message) < 5000, f"mutant {number}"
