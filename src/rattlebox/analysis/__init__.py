@@ -1,6 +1,7 @@
 """Functions of runs and of sampled signals: spectra, portraits, decay, measures, energy, chaos."""
 
 from rattlebox._util.batch_means import Interval, mean_interval
+from rattlebox.results.extremes import largest_acceleration, largest_drift
 
 from .chaos import lyapunov_exponent
 from .damping_curve import damping_over_amplitude, equivalent_damping
@@ -33,6 +34,8 @@ __all__ = [
     "energy_shares",
     "equivalent_damping",
     "impacts_per_cycle",
+    "largest_acceleration",
+    "largest_drift",
     "loss_factor",
     "lyapunov_exponent",
     "mean_interval",

@@ -16,8 +16,8 @@ from rattlebox._util.html import bullets, paragraph, table
 from rattlebox._util.quantities import MISSING, digits, quantity
 from rattlebox.core import _core
 
-from .acceleration import accelerations_of_steps, base_at_points
 from .damper_force import mean_damper_force
+from .extremes import accelerations, largest_acceleration, own_points, peak_drifts
 from .free_decay import free_decay
 from .schema import PARTNERS
 
@@ -151,7 +151,7 @@ def _main_results(run: Record) -> dict[str, Value]:
         values |= {f"share_in[{damper}]": float(share) for damper, share in shares}
     values["energy_residual"] = run.energy_residual
     if arrays.mode_frequency.size:
-        relative, absolute = _accelerations(run)
+        relative, absolute = accelerations(run)
         for k, point in enumerate(arrays.points):
             x = arrays.displacement[:, k]
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
@@ -160,7 +160,7 @@ def _main_results(run: Record) -> dict[str, Value]:
                 values |= _peak_and_rms(f"acceleration[{point}]", arrays.time, absolute[:, :, k])
             if relative is not None and relative is not absolute:
                 values |= _peak_and_rms(f"relative_acceleration[{point}]", arrays.time, relative[:, :, k])
-        values |= _storey_drifts(arrays)
+        values |= _extremes(run)
         values |= _modal_motion(arrays)
         if is_driven(arrays):
             values |= _steady_results(run, absolute)
@@ -232,23 +232,16 @@ def _squares(values: FloatArray) -> FloatArray:
     return np.asarray(values**2 if values.ndim == 1 else (values**2).mean(axis=0))
 
 
-def _accelerations(run: Record) -> tuple[FloatArray | None, FloatArray | None]:
-    """Return the accelerations of the points in each output step, relative to the base and absolute, (2, T - 1, P).
-
-    They are the same array if the base does not move, and None without the case, which knows the shapes of the modes.
-    """
-    arrays = run.arrays
-    if not run.source or arrays.time.size < 2:
-        return None, None
-    with suppress(RattleboxError), np.errstate(over="ignore", invalid="ignore"):
-        case = run.case
-        shapes = np.array(list(case.modes.lines().values())).reshape(len(arrays.points), -1)
-        relative = accelerations_of_steps(arrays, case, shapes.T)
-        if not arrays.base_acceleration.any():
-            return relative, relative
-        base = base_at_points(case, arrays.base_acceleration)
-        return relative, relative + np.stack([base[:-1], base[1:]])
-    return None, None
+def _extremes(run: Record) -> dict[str, Value]:
+    """Return the drift of each storey of a building and the largest one, and the largest acceleration of several points."""
+    drifts = peak_drifts(run.arrays)
+    values: dict[str, Value] = {f"peak_drift[{storey}]": drift for storey, drift in drifts.items()}
+    if drifts:
+        values["largest_drift"] = max(drifts.values())
+    with suppress(RattleboxError):  # of the case of a run from a file, which may name files that are gone
+        if run.source and len(own_points(run.case)) > 1 and run.arrays.time.size > 1:
+            values["largest_acceleration"] = largest_acceleration(run)
+    return values
 
 
 def _modal_motion(arrays: RunArrays) -> dict[str, Value]:
@@ -313,17 +306,6 @@ def _settling_times(reference: Mapping[str, Value], arrays: RunArrays) -> dict[s
                 arrays.time, arrays.displacement[:, k], SETTLED * peak
             )
     return times
-
-
-def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
-    """Return the peak drift of each storey of a shear building: the displacement of its floor over that of the one below."""
-    values: dict[str, Value] = {}
-    below: FloatArray = np.zeros(arrays.time.size)
-    while (storey := f"storey {len(values) + 1}") in arrays.points:
-        floor = arrays.displacement[:, arrays.points.index(storey)]
-        values[f"peak_drift[{storey}]"] = _largest(np.abs(floor - below))
-        below = floor
-    return values
 
 
 def _steady_results(run: Record, accelerations: FloatArray | None) -> dict[str, Value]:
@@ -416,6 +398,8 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         if key in detailed:
             rows += [replace(row, key=f"{row.key}[{point}]", label=row.label + where) for row in _OF_POINT]
     rows += named("peak_drift", "peak drift, ", "m")
+    rows.append(_Row("largest_drift", "largest drift of all storeys", "m"))
+    rows.append(_Row("largest_acceleration", "largest acceleration of all points", "m/s^2"))
     rows += named("peak_modal_displacement", "peak modal displacement, ", "kg^0.5 m")
     rows += [_DECAY, *named("peak_load", "peak load, ", "N")]
     rows.append(_Row("peak_base_acceleration", "peak acceleration of the base", "m/s^2"))
@@ -525,7 +509,8 @@ class Summary(_Report):
         output step), the same for `relative_acceleration[point]` if the base moves, `damper_force[damper]` (mean over each
         output step),
         `interface_force`, `base_acceleration`, `load[load]` and, with several modes, `modal_displacement[mode 1]`;
-        `peak_drift[storey 2]` of shear buildings, `computing_time`. For runs
+        `peak_drift[storey 2]` of shear buildings and their `largest_drift`; `largest_acceleration` of several points without
+        tuned masses; `computing_time`. For runs
         that are driven to their end `steady_rms_displacement[point]` over the second half, and
         `steady_rms_displacement_error[point]`, half of its 95 % interval, see `rattlebox.analysis.mean_interval` (NaN: the
         run is too short). For

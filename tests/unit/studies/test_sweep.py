@@ -13,7 +13,7 @@ from rattlebox.model.paths import replaced
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.run.runner import run_work
 from rattlebox.studies.work.impact import ImpactEngine
-from rattlebox.studies.work.measures import MEASURES
+from rattlebox.studies.work.measures import MEASURES, OF_RUN
 from rattlebox.studies.work.variants import Variants
 from rattlebox.studies.work.work import Work
 
@@ -24,7 +24,7 @@ AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "
 @pytest.fixture(scope="module")
 def swept() -> Any:
     """Return a sweep of six variants with every measure that needs no cycle and the samples of single runs."""
-    names = [name for name, measure in MEASURES.items() if not measure.cyclic]
+    names = [name for name, measure in MEASURES.items() if not measure.cyclic and not measure.of_run]
     return rb.sweep(rb.reference_case(PLASTIC_RIGID, duration=2.0), AXES, names, samples=2001)
 
 
@@ -84,8 +84,9 @@ def test_settling_is_that_of_the_analysis_however_short_the_window() -> None:
 
 
 def test_all_measures_of_the_core_are_listed() -> None:
-    """The table of measures is that of the core, in its order, with the requirements of each measure."""
-    assert [row.name for row in _core.measures()] == list(MEASURES)
+    """The table of measures is that of the core, in its order, with the requirements of each measure, and those of a run."""
+    assert [*(row.name for row in _core.measures()), *OF_RUN] == list(MEASURES)
+    assert set(OF_RUN) == {name for name, measure in MEASURES.items() if measure.of_run}
     assert {name for name, measure in MEASURES.items() if measure.of_impacts} == {
         "impacts",
         "impacts_per_cycle",

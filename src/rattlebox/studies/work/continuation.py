@@ -24,7 +24,7 @@ from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
-from rattlebox.studies.work.measures import MEASURES, check_names, name_of, shortest_windows, with_intervals
+from rattlebox.studies.work.measures import MEASURES, OF_RUN, check_names, name_of, shortest_windows, with_intervals
 from rattlebox.studies.work.variants import gather_values, gather_variants
 from rattlebox.studies.work.work import Cancelled, Values, proceed_unless
 
@@ -44,9 +44,10 @@ _CLOSED = -1e-12
 
 def check_variants(variants: Variants) -> None:
     """Raise if a measure or a parameter is not valid in a continuation."""
+    known = [name for name in MEASURES if name not in OF_RUN]
     for name in variants.measures:
-        if name not in MEASURES:
-            raise Hint(f"there is no measure {name_of(name)!r} in a continuation", nearest(name_of(name), MEASURES))
+        if name not in known:
+            raise Hint(f"there is no measure {name_of(name)!r} in a continuation", nearest(name_of(name), known))
     check_names(variants.measures)
     for path, column in variants.grid.columns.items():
         if column.shape[-1] > 1 and place_of(variants.case, path)[-1] in _INITIAL_VALUES:

@@ -20,6 +20,7 @@ from rattlebox.prepare.pack import Batch, contact_samples, pack_parts
 from rattlebox.studies.work import continuation
 from rattlebox.studies.work.measures import CONTACTS, MEASURES, parts_needed, shortest_windows, with_intervals
 from rattlebox.studies.work.variants import FREQUENCY, Observed, Variants
+from rattlebox.studies.work.window import cut_before
 from rattlebox.studies.work.work import Cancelled, Outputs, Reduction, Signals, Values, proceed_unless
 
 if TYPE_CHECKING:
@@ -56,8 +57,8 @@ class ImpactEngine:
 
     @property
     def block(self) -> int:
-        """Preferred number of variants in a block: the square root of all, or 1 with functions of a Run."""
-        if self.variants.functions:
+        """Preferred number of variants in a block: the square root of all, or 1 with measures of a Run."""
+        if self.variants.needs_run:
             return 1
         size = math.isqrt(self.grid.size)
         return max(1, min(size, _NUMBERS // (2 * self.output.samples * (1 + self._balls)))) if self.motion else size
@@ -158,7 +159,7 @@ class ImpactEngine:
     ) -> Values | None:
         """Run variants; see `Engine.run`."""
         proceed = proceed_unless(cancelled)
-        if self.variants.functions:
+        if self.variants.needs_run:
             rows = []
             for index in numbers:
                 row = self._run_with_functions(index, proceed)
@@ -239,8 +240,12 @@ class ImpactEngine:
         if values is None:
             return None
         (run,) = (run_from_core(case, raw) for raw in values.pop("runs"))
-        own = self.variants.call_functions(run, index) if run.status == "finished" else {}
-        return values | {name: np.array([own.get(name, np.nan)]) for name in self.variants.functions}
+        own = {}
+        if run.ok:
+            start = float(np.broadcast_to(output.start, part.shape).flat[number])
+            own = self.variants.call_functions(run, cut_before(run, start), index)
+        names = (*self.variants.names_of_run, *self.variants.functions)
+        return values | {name: np.array([own.get(name, np.nan)]) for name in names}
 
     # ---- input of the core
 
@@ -279,7 +284,7 @@ class ImpactEngine:
         """Return a batch with its duration, and the quantities to return."""
         packed = part.packed
         settings = packed.settings
-        self.variants.require_interface_force()
+        self.variants.require_structure()
         observed = self.variants.observed or Observed.of(self.case.modes, self._point)
         period = _period(packed)
         if self.variants.cycles is not None:
@@ -332,6 +337,8 @@ class ImpactEngine:
 
     @property
     def _point(self) -> str:
+        if not (self.motion or any(MEASURES[name].samples for name in self.variants.names)):
+            return next(iter(self.case.modes.lines()), "")  # nothing observes it
         return self.case.modes.point(self.case.dampers[0].point if self.case.dampers else None)
 
 

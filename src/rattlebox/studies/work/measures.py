@@ -16,6 +16,7 @@ from rattlebox._util.plugins import Registry, load_plugins, owner_of
 from rattlebox.core import _core
 from rattlebox.engines.batch import BlockOutput
 from rattlebox.model.errors import Hint
+from rattlebox.results.extremes import largest_acceleration, largest_drift
 from rattlebox.results.schema import OUTCOMES
 from rattlebox.studies.work.work import Values
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rattlebox.model.case import Case
+    from rattlebox.results import Run
 
 
 class Measure(NamedTuple):
@@ -42,6 +44,8 @@ class Measure(NamedTuple):
     of_loss_in_cycle: bool = False
     of_first_harmonic: bool = False
     of_acceleration: bool = False
+    # Whether it is computed from a Run, with the samples of its output, and not by the core
+    of_run: bool = False
 
 
 class Measures(Catalogue[Measure]):
@@ -55,6 +59,8 @@ class Measures(Catalogue[Measure]):
         mean over a step     of the force of a damper, from the change of the momentum of its balls
         acceleration         a_k + c_k, that of springs, dashpots, base and harmonic loads at both ends of a step, with the
                              mean c_k of contacts and other loads over the step, whose pulses may be shorter
+        largest_drift        max abs(x_k - x_(k - 1)) over the storeys k, see `rattlebox.analysis.largest_drift`
+        largest_acceleration largest peak_acceleration over the points, see `rattlebox.analysis.largest_acceleration`
         settling_time        see `rattlebox.analysis.settling_time`
         loss_per_cycle       W = loss in the damper / n
         reduced_loss         W / (m V^2); m is the mass of all balls or particles, V the velocity amplitude of the cavity
@@ -62,6 +68,9 @@ class Measures(Catalogue[Measure]):
         damping_mass         m''
         loss_factor          m'' / abs(m')
         energy_residual      see `rattlebox.results.ledger.Ledger`
+
+    `largest_drift` and `largest_acceleration` are of all storeys or points, whatever point is observed. Their samples are
+    those of the output of the case.
 
     With several dampers, the power of all of them is referred to the motion of the first cavity.
 
@@ -96,7 +105,19 @@ MEASURES = Measures(
         )
         for row in _core.measures()
     }
+    | {
+        "largest_drift": Measure("m", "largest drift of all storeys", of_run=True),
+        "largest_acceleration": Measure(
+            "m/s^2", "largest absolute acceleration of all points, without peaks of contacts", of_run=True
+        ),
+    }
 )
+
+OF_RUN: dict[str, Callable[[Run], float]] = {
+    "largest_drift": largest_drift,
+    "largest_acceleration": largest_acceleration,
+}
+"""Functions of the measures that are computed from a Run."""
 
 
 _FUNCTIONS: Registry[tuple[Callable[..., Any], Measure]] = Registry("measure")

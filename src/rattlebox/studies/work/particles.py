@@ -103,7 +103,7 @@ class ParticleEngine:
         self._check_ends()
         if variants.cycles is None:
             self._check_window(frequency)
-        variants.require_interface_force()
+        variants.require_structure()
         _ = variants.observed  # raises if there is no such point
 
     def _check_window(self, frequency: float) -> None:
@@ -276,7 +276,7 @@ class ParticleEngine:
             row["warnings"] |= _UNSTEADY
         row |= window.values(names)
         row |= window.intervals(self.variants.averages, row, self.variants.observed)
-        row |= self.variants.call_functions(run, index)
+        row |= self.variants.call_functions(run, window.run, index)
         if reduction is not None:
             found = reduction.reduce(self._signals(case, run, window))
             row |= {name: np.asarray(values)[0] for name, values in found.items()}

@@ -23,8 +23,9 @@ from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.foreign_code import foreign_code
 from rattlebox.model.modes import ModalModel
 from rattlebox.model.paths import all_paths, get
+from rattlebox.results.extremes import require_storeys
 from rattlebox.studies.grid.grid import Grid
-from rattlebox.studies.work.measures import INTERVAL, MEASURES, about, name_of
+from rattlebox.studies.work.measures import INTERVAL, MEASURES, OF_RUN, about, name_of
 from rattlebox.studies.work.work import AlongLast, Independent, Outputs
 
 if TYPE_CHECKING:
@@ -198,8 +199,13 @@ class Variants:
 
     @cached_property
     def names(self) -> list[str]:
-        """Measures that are given by name."""
-        return [measure for measure in self.measures if isinstance(measure, str)]
+        """Measures that are given by name and computed by the core."""
+        return [measure for measure in self.measures if isinstance(measure, str) and measure not in OF_RUN]
+
+    @cached_property
+    def names_of_run(self) -> list[str]:
+        """Measures that are given by name and computed from a Run."""
+        return [measure for measure in self.measures if isinstance(measure, str) and measure in OF_RUN]
 
     @cached_property
     def functions(self) -> dict[str, UserMeasure]:
@@ -224,6 +230,8 @@ class Variants:
                 for name in self.names
             },
         }
+        for name in self.names_of_run:
+            outputs[name] = ((), "float64", {"units": MEASURES[name].units, "long_name": MEASURES[name].long_name})
         for name in self.averages:
             text = f"half of the 95 % interval, {MEASURES[name].long_name}"
             outputs[name + INTERVAL] = ((), "float64", {"units": self._units(name), "long_name": text})
@@ -245,8 +253,10 @@ class Variants:
     def _units(self, name: str) -> str:
         return self.units_of(MEASURES[name].units) if MEASURES[name].samples else MEASURES[name].units
 
-    def require_interface_force(self) -> None:
-        """Raise if the force on the base is requested and the participation of the modes is unknown."""
+    def require_structure(self) -> None:
+        """Raise if a measure needs floors or the participation of the modes, which the structure lacks."""
+        if "largest_drift" in self.names_of_run:
+            require_storeys(self.case.modes.lines())
         asked = [name for name in self.names if MEASURES[name].of_base_force]
         modes = self.case.modes
         if not asked:
@@ -261,14 +271,19 @@ class Variants:
         functions = (f"{name} {fingerprint(function)}" for name, function in self.functions.items())
         return {
             **describe_case(self.case, self.grid.columns),
-            "measures": [*self.names, *functions],
+            "measures": [*self.names, *self.names_of_run, *functions],
             "cycles": None if self.cycles is None else list(self.cycles),
             **{name: getattr(self, name) for name in ("skip", "samples", "point")},
         }
 
-    def call_functions(self, run: Run, index: int) -> dict[str, float]:
-        """Return the values of the functions of a Run."""
-        values = {}
+    @property
+    def needs_run(self) -> bool:
+        """Whether a measure is computed from a Run."""
+        return bool(self.functions or self.names_of_run)
+
+    def call_functions(self, run: Run, evaluated: Run, index: int) -> dict[str, float]:
+        """Return the values of the functions of a Run, and of the measures of its evaluated part."""
+        values = {name: OF_RUN[name](evaluated) for name in self.names_of_run}
         for name, function in self.functions.items():
             with _function_lock:
                 value: Any = function(run)
