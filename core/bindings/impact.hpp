@@ -30,9 +30,9 @@ struct LoadNumbers : Node {
     bool base = false;
 };
 
-// A damper with its balls.
+// A damper with its balls, or a stop, which has none.
 struct DamperNumbers : Node {
-    Number clearance, gravity;
+    Number clearance, gravity, base;
     Vector shape, mass, position, velocity;
 };
 
@@ -115,6 +115,7 @@ inline void fill_problem(rattlebox::Problem& target, const ProblemNumbers& given
     Filler fill(batch);
     const std::size_t modes = fill_structure(fill, target, given);
     std::size_t balls = 0;
+    int stops = 0;
     target.dampers.resize(given.dampers.size());
     for (std::size_t i = 0; i < given.dampers.size(); ++i) {
         if (given.dampers[i].mass.ndim() == 0) throw std::invalid_argument("masses must be a vector");
@@ -123,8 +124,13 @@ inline void fill_problem(rattlebox::Problem& target, const ProblemNumbers& given
         damper.first_contact = static_cast<int>(balls + i);
         damper.balls = static_cast<int>(given.dampers[i].mass.shape(0));
         balls += static_cast<std::size_t>(damper.balls);
+        if (damper.is_stop())
+            ++stops;
+        else if (stops > 0)
+            throw std::invalid_argument("stops come after all dampers");
         target.ball_damper.resize(balls, static_cast<int>(i));
     }
+    target.stop_count = stops;
     target.ball_mass.resize(balls);
     target.ball_position.resize(balls);
     target.ball_velocity.resize(balls);
@@ -138,6 +144,7 @@ inline void fill_problem(rattlebox::Problem& target, const ProblemNumbers& given
                    first = static_cast<std::size_t>(damper.first_ball);
         fill.number(damper.clearance, one.clearance);
         fill.number(damper.gravity, one.gravity);
+        fill.number(damper.base, one.base);
         fill.vector(damper.shape, one.shape, modes);
         for (std::size_t b = 0; b < own; ++b) {
             fill.component(target.ball_mass[first + b], one.mass, b, own);
@@ -148,7 +155,7 @@ inline void fill_problem(rattlebox::Problem& target, const ProblemNumbers& given
             Contact& contact = target.contacts[static_cast<std::size_t>(damper.first_contact + k)];
             contact.damper = static_cast<int>(i);
             contact.below = k == 0 ? wall : damper.first_ball + k - 1;
-            contact.above = k == damper.balls ? wall : damper.first_ball + k;
+            contact.above = k < damper.balls ? damper.first_ball + k : damper.is_stop() ? ground : wall;
         }
     }
     for (std::size_t c = 0; c < given.contacts.size(); ++c) {
@@ -198,10 +205,13 @@ inline void add_problem(nb::module_& module) {
               field("collocation", &S::collocation, usual.collocation),
               field("contact_samples", &S::contact_samples, usual.contact_samples));
     using D = DamperNumbers;
-    define<D>(module, "Damper",
-              "An impact damper with its balls; positions are relative to the closely packed, centred row.",
-              field("clearance", &D::clearance), field("gravity", &D::gravity), field("shape", &D::shape),
-              field("mass", &D::mass), field("position", &D::position), field("velocity", &D::velocity));
+    define<D>(
+        module, "Damper",
+        "An impact damper with its balls, whose positions are relative to the closely packed, centred row; "
+        "without balls a stop with half of the clearance as its gap.",
+        field("clearance", &D::clearance), field("gravity", &D::gravity), field("shape", &D::shape),
+        field("mass", &D::mass), field("position", &D::position), field("velocity", &D::velocity),
+        field("base", &D::base, 0.0));
     using C = ContactNumbers;
     define<C>(module, "Contact", "The contact of two neighbours: effective mass and laws.",
               field("mass", &C::mass), field("normal", &C::normal), field("restitution", &C::restitution));

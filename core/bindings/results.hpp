@@ -68,7 +68,7 @@ struct RunResult : Node {
           stopped_value(r.stopped_value), stopped_contact(r.stopped_contact), seconds(elapsed) {
         Samples& s = r.samples;
         const std::size_t n = s.time.size(), d = problem.dampers.size();
-        const std::size_t states = 2 * (problem.modes.size() + problem.ball_mass.size());
+        const std::size_t states = problem.state_size();
         time = owned<Doubles<1>>(std::move(s.time));
         state = owned<Doubles<2>>(std::move(s.state), {n, states});
         chosen = owned<Flags>(std::move(s.given));

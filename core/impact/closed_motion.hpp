@@ -60,6 +60,8 @@ struct ClosedMotion {
     // Returns the rounding error of a gap.
     real gap_rounding(int c, const real* y) const {
         const Contact& k = run.contact(c);
+        if (k.above == ground)
+            return contact_gap_rounding * std::fmax(stop_terms(problem, k, y, run.state.t), deepest);
         const Damper& damper = problem.dampers[run.damper_of(c)];
         const real* at = positions(problem, y);
         real size = damper.clearance + std::fabs(gap(problem, k, y).value);
@@ -100,7 +102,8 @@ struct ClosedMotion {
             permitted_error += error_of(a, depth(a));
         }
         if (run.system.active.empty())
-            for (real y : run.state.y) speed = std::max(speed, std::fabs(y));
+            for (std::size_t i = 0; i < problem.motion_size(); ++i)
+                speed = std::max(speed, std::fabs(run.state.y[i]));
         if (speed == 0) speed = 1;
         const auto bound = [&](real size, real v) {
             return std::fmax(tolerance * size, epsilon * std::fabs(v));
@@ -191,7 +194,7 @@ private:
         for (int side : {k.below, k.above})
             size = std::fmax(
                 size, std::fabs(side == wall ? cavity(problem.dampers[run.damper_of(a.contact)], y.data()).p
-                                             : velocities(problem, y.data())[side]));
+                                             : of_body(velocities(problem, y.data()), side)));
         const real x = expected_x(a);
         return 0.25 * epsilon * size / a.speed * x * cube(x / depth);
     }

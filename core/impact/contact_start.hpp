@@ -99,10 +99,8 @@ public:
                 const real rate = gap(problem_, run_.contact(c), y).rate;
                 speed = std::fmax(speed, -rate);
                 balanced = balanced && speed_loss(c, y, length) <= std::fabs(rate);
-                negligible =
-                    negligible &&
-                    rate * length <= contact_gap_rounding * problem_.dampers[run_.damper_of(c)].clearance &&
-                    is_force_negligible(c, y, length, 0);
+                negligible = negligible && rate * length <= contact_gap_rounding * run_.gap_length(c, y) &&
+                             is_force_negligible(c, y, length, 0);
             }
             if (balanced) rest_speed_ = std::fmax(rest_speed_, speed);
             if (negligible) break;

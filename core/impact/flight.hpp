@@ -43,7 +43,7 @@ class Flight {
     // Calls add(weight, series) for the series whose sum is the gap.
     template <class Add> void each_part(const Contact& contact, Add&& add) const {
         const std::vector<Series>&balls = series_motion_.balls(), &modes = series_motion_.modes();
-        if (contact.above != wall) add(1.0, balls[static_cast<std::size_t>(contact.above)]);
+        if (contact.above >= 0) add(1.0, balls[static_cast<std::size_t>(contact.above)]);
         if (contact.below != wall) add(-1.0, balls[static_cast<std::size_t>(contact.below)]);
         if (contact.below != wall && contact.above != wall) return;
         const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
@@ -155,6 +155,7 @@ public:
             position[i] = s0[i] + s * (v0[i] + 0.5 * g * s);
             velocity[i] = v0[i] + g * s;
         }
+        for (std::size_t i = problem_.motion_size(); i < out.y.size(); ++i) out.y[i] = start_->y[i];
     }
 
     // Adds work and viscous loss over [0, s], by quadrature or in closed form rather than as a difference of
@@ -267,6 +268,8 @@ public:
     real gap_rounding(const Contact& contact, const State& state) const {
         const real half = 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
         const int ball = contact.below == wall ? contact.above : contact.below;
+        if (ball == ground)
+            return flight_gap_rounding * stop_terms(problem_, contact, state.y.data(), state.t);
         return flight_gap_rounding * (half + std::fabs(positions(problem_, state.y.data())[ball]));
     }
 

@@ -33,7 +33,7 @@ class HardContacts {
     RunState& run_;
     const Problem& problem_;
     TaylorMotion motion_;           // accelerations after an impact
-    real largest_impact_speed_ = 0; // largest speed of a ball relative to its cavity at any impact so far
+    real largest_impact_speed_ = 0; // largest of largest_speed() at any impact so far
     std::vector<Closing> closing_;
     // Of the complementarity problem: contacts, whether impulses of both signs are allowed, and the arrays.
     std::vector<int> taking_part_;
@@ -51,6 +51,8 @@ class HardContacts {
             v[k.below] -= j / problem_.ball_mass[static_cast<std::size_t>(k.below)];
         if (k.above == wall)
             on_cavity += j;
+        else if (k.above == ground)
+            run_.state.y[impulse_index(problem_, k)] += j;
         else
             v[k.above] += j / problem_.ball_mass[static_cast<std::size_t>(k.above)];
         const Damper& damper = problem_.dampers[run_.damper_of(c)];
@@ -72,7 +74,7 @@ class HardContacts {
         return rate > 0 ? 2 * pi / rate : 0;
     }
 
-    // Returns the largest speed of a ball relative to its cavity.
+    // Returns the largest speed of a ball relative to its cavity, and of a point relative to its stop.
     real largest_speed() const {
         const real* v = velocities(problem_, run_.state.y.data());
         real largest = 0;
@@ -80,6 +82,8 @@ class HardContacts {
             const Damper& damper = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])];
             largest = std::max(largest, std::fabs(v[i] - cavity(damper, run_.state.y.data()).p));
         }
+        for (std::size_t d = problem_.first_stop(); d < problem_.dampers.size(); ++d)
+            largest = std::max(largest, std::fabs(cavity(problem_.dampers[d], run_.state.y.data()).p));
         return largest;
     }
 

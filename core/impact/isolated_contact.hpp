@@ -306,7 +306,7 @@ public:
         if (loads.active() && !expand_loads(longest)) return false;
         constant_ = side_ * damper_->gravity;
         base_moves_ = false;
-        if (loads.active() && side_ != 0)
+        if (loads.active() && side_ != 0 && c.above != ground)
             for (std::size_t l = 0; l < loads.size(); ++l) base_moves_ = base_moves_ || loads.load(l).base;
         const real natural_end = law.zero_overlap != 0 || zeta == 0 ? pi : 2 * std::acos(zeta);
         grid_.build(psi_end > 0 ? psi_end : natural_end);
@@ -508,8 +508,14 @@ private:
             s1[i] = s0[i] + t * (v0[i] + 0.5 * gravity * t) + base_shift;
             v1[i] = v0[i] + gravity * t + base_speed;
         }
+        for (std::size_t i = problem_.motion_size(); i < out.y.size(); ++i) out.y[i] = start_->y[i];
         const real impulse = contact_->mass * drift, overlap = square(now.x * now.x);
-        if (side_ != 0) {
+        if (contact_->above == ground) { // the point, not a ball, follows the overlap
+            out.y[impulse_index(problem_, *contact_)] += impulse;
+            const real miss = gap(problem_, *contact_, out.y.data()).value + overlap;
+            for (std::size_t k = 0; k < modes_; ++k)
+                out.y[2 * k] += damper_->shape[k] * contact_->mass * miss;
+        } else if (side_ != 0) {
             const std::size_t i = static_cast<std::size_t>(side_ > 0 ? contact_->below : contact_->above);
             const ModeState z = cavity(*damper_, out.y.data());
             const real half = 0.5 * damper_->clearance;

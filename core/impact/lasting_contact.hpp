@@ -97,6 +97,7 @@ private:
             const Contact& c = problem_.contacts[static_cast<std::size_t>(system.active[j].contact)];
             const auto& shape = problem_.dampers[static_cast<std::size_t>(c.damper)].shape;
             for (const auto& [ball, sign] : {std::pair(c.below, 1.0), std::pair(c.above, -1.0)}) {
+                if (ball == ground) continue;
                 if (ball != wall)
                     share_[j * bodies() + modes() + static_cast<std::size_t>(ball)] += sign;
                 else
@@ -437,6 +438,8 @@ public:
             const real d = at_end ? end_of(approach_[j], overlap0_[j], rate0_[j]).first : value(overlap[j]);
             out[system.x_index(j)] = std::sqrt(std::sqrt(d - system.active[j].state.origin()));
             out[system.x_index(j) + 1] += sum(lost[j]);
+            const Contact& c = problem_.contacts[static_cast<std::size_t>(system.active[j].contact)];
+            if (c.above == ground) out[impulse_index(problem_, c)] += sum(force[j]);
         }
     }
 };

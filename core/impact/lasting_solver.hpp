@@ -151,6 +151,23 @@ class LastingSolver {
         }
     }
 
+    // Moves the integrated state at rest to a time since the start; only impulses on stops change.
+    void rest_until(real since) {
+        const std::size_t clock = run_.system.time_index();
+        for (std::size_t j = 0; j < run_.system.active.size(); ++j) {
+            const Contact& c = run_.contact(run_.system.active[j].contact);
+            if (c.above == ground)
+                motion_.y[impulse_index(problem_, c)] +=
+                    run_.system.force(motion_.y.data(), j) * (since - motion_.y[clock]);
+        }
+        motion_.y[clock] = since;
+    }
+
+    void sample_at_rest(real t) {
+        if (problem_.stop_count > 0) rest_until(t - run_.state.t);
+        samples_.sample(motion_.y, t, true);
+    }
+
     void record_peaks() {
         for (std::size_t j = 0; j < run_.system.active.size(); ++j) {
             Impact& impact = run_.result.impacts[static_cast<std::size_t>(run_.system.active[j].impact)];
@@ -192,9 +209,8 @@ public:
         for (real h = 1.5 * shortest;;) {
             if (run_.is_stopped()) return advanced;
             if (is_at_rest(frequency)) {
-                while (output_.is_due(run_.state.t + remaining))
-                    samples_.sample(motion_.y, output_.next_time(), true);
-                motion_.y[clock] = remaining;
+                while (output_.is_due(run_.state.t + remaining)) sample_at_rest(output_.next_time());
+                rest_until(remaining);
                 return true;
             }
             const real now = run_.state.t + motion_.y[clock], left = remaining - motion_.y[clock];

@@ -48,7 +48,7 @@ public:
     std::size_t last() const { return count() - 1; }
     real time(std::size_t i) const { return samples().time[first_ + i]; }
     const real* state(std::size_t i) const {
-        return samples().state.data() + (first_ + i) * 2 * (problem_.modes.size() + balls());
+        return samples().state.data() + (first_ + i) * problem_.state_size();
     }
     real length() const { return time(last()) - time(0); }
     real cycles() const { return length() / window_.period; }
@@ -91,6 +91,8 @@ public:
         each_contact_force(i, [&](std::size_t damper, real force) {
             mean += force * along(problem_.dampers[damper].shape);
         });
+        for (std::size_t stop = 0; stop < static_cast<std::size_t>(problem_.stop_count); ++stop)
+            mean -= mean_stop_force(stop, i) * along(problem_.dampers[problem_.first_stop() + stop].shape);
         std::array<real, 2> result{};
         for (std::size_t end = 0; end < 2; ++end) {
             const real* y = state(i - 1 + end);
@@ -128,14 +130,21 @@ public:
         }
     }
 
+    // Contact force of a stop, mean over the interval before sample i.
+    real mean_stop_force(std::size_t stop, std::size_t i) const {
+        const std::size_t at = problem_.motion_size() + stop;
+        return (state(i)[at] - state(i - 1)[at]) / (time(i) - time(i - 1));
+    }
+
     real mean_damper_force(std::size_t i) const {
         real force = 0;
         each_contact_force(i, [&](std::size_t, real each) { force += each; });
         return force;
     }
 
-    // Force of the structure on the base at sample i, in springs and dashpots and by the residual mass. NaN
-    // if the participation is unknown or nothing moves.
+    // Force of the structure on the base at sample i, in springs and dashpots and by the residual mass, and
+    // at stops, there as mean over the interval before the sample. NaN if the participation is unknown or
+    // nothing moves.
     real interface_force(std::size_t i) const {
         const std::size_t m = problem_.modes.size();
         if (window_.participation.empty() || m == 0) return not_a_number;
@@ -153,6 +162,8 @@ public:
             load.signal.piece(time(i)).add_taylor(time(i), 1, 0, value);
             force -= window_.residual_mass * value[0];
         }
+        for (std::size_t stop = 0; i > 0 && stop < static_cast<std::size_t>(problem_.stop_count); ++stop)
+            force += problem_.dampers[problem_.first_stop() + stop].base * mean_stop_force(stop, i);
         return force;
     }
 
@@ -197,6 +208,8 @@ public:
         if (!std::isfinite(b.residual)) return Status::not_finite;
         real floor = run_.rounding(problem_.settings) * b.turnover;
         for (real mass : problem_.ball_mass) floor += mass * square(speed_at_rest);
+        for (const Contact& contact : problem_.contacts)
+            if (contact.above == ground) floor += contact.mass * square(speed_at_rest);
         const real permitted =
             std::fmin(bound * b.supplied + run_.permitted_error, worst_energy_residual * b.supplied);
         const bool open = b.residual > permitted && b.residual > floor;
@@ -293,7 +306,7 @@ public:
     }
 
     std::complex<real> apparent_mass() const {
-        if (problem_.dampers.empty()) return 0;
+        if (!has_dampers()) return 0;
         std::complex<real> power = 0;
         const std::complex<real> base_acceleration = base();
         for (std::size_t b = 0; b < balls(); ++b) {
@@ -318,7 +331,7 @@ public:
         return std::abs(cavity_acceleration(problem_.dampers[0])) * window_.period / (2 * pi);
     }
 
-    bool has_dampers() const { return !problem_.dampers.empty(); }
+    bool has_dampers() const { return balls() > 0; }
     real loss_per_cycle() const { return impact(last()) / cycles(); }
 
     // ---- batches: equal parts of the window, of whole cycles if it has cycles, up to its end

@@ -1,8 +1,12 @@
-// The problem of the 1-D engine: modes, signals, balls in rows, contacts between neighbours.
+// The problem of the 1-D engine: modes, signals, balls in rows, contacts between neighbours, stops.
 //
 // The frame of reference is the base. Positions of balls are reduced: s = 0 for each ball of a closely
 // packed, centred row, so that each gap is a difference of positions. Contact 0 of a damper with n balls is
 // at its left wall, contact n at its right wall, and contact i between balls i and i + 1.
+//
+// A stop is a damper without balls, after all dampers with balls. Its one contact is between the wall and the
+// ground, a body at position 0 that never moves, so that the gap is half of the clearance minus the
+// displacement of the wall. Between two points, the shape is the difference of their mode shapes.
 #pragma once
 
 #include <algorithm>
@@ -16,18 +20,21 @@
 
 namespace rattlebox {
 
-inline constexpr int wall = -1;
+inline constexpr int wall = -1, ground = -2;
 
 struct Damper {
     int first_ball = 0, balls = 0, first_contact = 0;
     real clearance = 0;      // G, total
     real gravity = 0;        // along the line, m/s^2
     std::vector<real> shape; // mode shapes at the damper's point
+    real base = 0;           // of a stop: force on the base per contact force, 1, -1, or 0 between two points
+
+    bool is_stop() const { return balls == 0; }
 };
 
 struct Contact {
     int damper = 0;
-    int below = wall, above = wall; // global index of the ball on each side
+    int below = wall, above = wall; // global index of the ball on each side, wall or ground
     real mass = 0;                  // effective mass, kg; that of a wall follows from the mode shapes
     NormalLaw normal;
     RestitutionLaw restitution;
@@ -65,6 +72,7 @@ struct Problem {
     std::vector<Contact> contacts;
     std::vector<real> ball_mass, ball_position, ball_velocity;
     std::vector<int> ball_damper;
+    int stop_count = 0;             // the last dampers
     std::vector<real> sample_times; // increasing, within [0, duration]
     Settings settings;
 
@@ -72,6 +80,9 @@ struct Problem {
     int ball_count() const { return static_cast<int>(ball_mass.size()); }
     int contact_count() const { return static_cast<int>(contacts.size()); }
     int damper_count() const { return static_cast<int>(dampers.size()); }
+    std::size_t first_stop() const { return dampers.size() - static_cast<std::size_t>(stop_count); }
+    std::size_t motion_size() const { return 2 * (modes.size() + ball_mass.size()); }
+    std::size_t state_size() const { return motion_size() + static_cast<std::size_t>(stop_count); }
 };
 
 } // namespace rattlebox

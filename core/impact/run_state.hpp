@@ -55,6 +55,7 @@ struct RunState {
         const real* y = state.y.data();
         real sum = damper.clearance;
         for (const int side : {contact(c).below, contact(c).above}) {
+            if (side == ground) continue;
             if (side != wall) {
                 sum += std::fabs(positions(problem, y)[side]);
                 continue;
@@ -63,6 +64,12 @@ struct RunState {
                 sum += std::fabs(damper.shape[m] * y[2 * m]);
         }
         return sum;
+    }
+
+    // Returns the length whose rounding error is that of a gap: that of a stop may be zero.
+    real gap_length(int c, const real* y) const {
+        return contact(c).above == ground ? stop_terms(problem, contact(c), y, state.t)
+                                          : problem.dampers[damper_of(c)].clearance;
     }
 
     // Stored energy of a released contact that still overlaps in state y.
@@ -79,7 +86,7 @@ struct RunState {
     void open_all_released(int touched, bool after_flight = false) {
         for (std::size_t i = released.size(); i-- > 0;) {
             const int c = released[i].contact;
-            const real rounding = contact_gap_rounding * problem.dampers[damper_of(c)].clearance;
+            const real rounding = contact_gap_rounding * gap_length(c, state.y.data());
             const Gap g = gap(problem, contact(c), state.y.data());
             const bool is_recovering = g.value < -rounding && !(after_flight && g.rate < 0);
             if (c != touched && is_recovering) continue;
@@ -93,7 +100,8 @@ struct RunState {
     void find_touching() {
         for (int c = 0; c < problem.contact_count(); ++c) {
             const Gap g = gap(problem, contact(c), state.y.data());
-            if (g.value <= 0 && g.rate == 0) phase(c) = Phase::touching;
+            const real rounding = contact(c).above == ground ? contact_gap_rounding * gap_terms(c) : 0;
+            if (g.value <= rounding && g.rate == 0) phase(c) = Phase::touching;
         }
     }
 

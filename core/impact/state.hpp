@@ -1,6 +1,7 @@
 // State vector and energy ledger of the 1-D engine.
 //
-// The state vector y holds q and p of each mode, then the positions of all balls, then their velocities.
+// The state vector y holds q and p of each mode, then the positions of all balls, then their velocities, then
+// the impulse that each stop has received since the start.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@ struct State {
     real t = 0;
     std::vector<real> y;
 
-    explicit State(const Problem& p) : y(2 * (p.modes.size() + p.ball_mass.size())) {
+    explicit State(const Problem& p) : y(p.state_size()) {
         for (std::size_t k = 0; k < p.modes.size(); ++k) {
             y[2 * k] = p.start[k].q;
             y[2 * k + 1] = p.start[k].p;
@@ -33,6 +34,14 @@ inline const real* velocities(const Problem& p, const real* y) {
 }
 inline real* positions(const Problem& p, real* y) { return y + 2 * p.modes.size(); }
 inline real* velocities(const Problem& p, real* y) { return y + 2 * p.modes.size() + p.ball_mass.size(); }
+
+// Index in y of the impulse of the stop with contact c; the ground, not a ball, is on its other side.
+inline std::size_t impulse_index(const Problem& p, const Contact& c) {
+    return p.motion_size() + static_cast<std::size_t>(c.damper) - p.first_stop();
+}
+
+// Position, velocity or acceleration of a ball or of the ground.
+inline real of_body(const real* of_balls, int body) { return body == ground ? 0 : of_balls[body]; }
 
 // Displacement and velocity of a cavity; with a derivative dy in place of y, velocity and acceleration.
 inline ModeState cavity(const Damper& damper, const real* y) {
@@ -57,8 +66,18 @@ inline Gap gap(const Problem& problem, const Contact& contact, const real* y) {
     const Damper& damper = problem.dampers[static_cast<std::size_t>(contact.damper)];
     const ModeState z = cavity(damper, y);
     const real half = 0.5 * damper.clearance;
-    if (contact.below == wall) return {(s[contact.above] - z.q) + half, v[contact.above] - z.p};
+    if (contact.below == wall)
+        return {(of_body(s, contact.above) - z.q) + half, of_body(v, contact.above) - z.p};
     return {half - (s[contact.below] - z.q), z.p - v[contact.below]};
+}
+
+// Returns the sum of the magnitudes of the terms of the gap of a stop, with the way of the point in the time
+// t: the gap of a stop may be zero, and the time of a touch is known to its own rounding only.
+inline real stop_terms(const Problem& problem, const Contact& contact, const real* y, real t) {
+    const Damper& damper = problem.dampers[static_cast<std::size_t>(contact.damper)];
+    real sum = damper.clearance + t * std::fabs(cavity(damper, y).p);
+    for (std::size_t k = 0; k < damper.shape.size(); ++k) sum += std::fabs(damper.shape[k] * y[2 * k]);
+    return sum;
 }
 
 // Work done and energy lost since the start of the run.

@@ -53,13 +53,14 @@ class System {
     // Returns the rate at which the two sides approach.
     real approach_rate(const Contact& c, const real* ball_speed, const real* cavity_speed) const {
         const real below = c.below == wall ? cavity_speed[c.damper] : ball_speed[c.below];
-        const real above = c.above == wall ? cavity_speed[c.damper] : ball_speed[c.above];
+        const real above = c.above == wall ? cavity_speed[c.damper] : of_body(ball_speed, c.above);
         return below - above;
     }
 
     void add_force(const Contact& c, real force) {
         (c.below == wall ? cavity_force_[static_cast<std::size_t>(c.damper)]
                          : ball_force_[static_cast<std::size_t>(c.below)]) -= force;
+        if (c.above == ground) return;
         (c.above == wall ? cavity_force_[static_cast<std::size_t>(c.damper)]
                          : ball_force_[static_cast<std::size_t>(c.above)]) += force;
     }
@@ -108,7 +109,7 @@ public:
         clock_.resize(active.size());
     }
 
-    std::size_t time_index() const { return 2 * (mode_count() + ball_count()); }
+    std::size_t time_index() const { return problem_.state_size(); }
     std::size_t x_index(std::size_t j) const { return time_index() + 4 + 2 * j; }
     std::size_t size() const { return time_index() + 4 + 2 * active.size(); }
 
@@ -190,6 +191,8 @@ public:
             ds[i] = clock * v[i];
             dv[i] *= clock;
         }
+        for (std::size_t d = problem_.first_stop(); d < problem_.dampers.size(); ++d)
+            dy[problem_.motion_size() + d - problem_.first_stop()] = -clock * cavity_force_[d];
         const std::size_t at = time_index();
         dy[at] = clock;
         dy[at + 1] = clock * work[0];

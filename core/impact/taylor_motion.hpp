@@ -25,7 +25,7 @@ inline real contact_coupling(const Problem& problem, const Contact& a, const Con
         return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
     };
     for (int ball : {a.below, a.above})
-        if (ball != wall)
+        if (ball >= 0)
             sum -= side(a, ball) * side(b, ball) / problem.ball_mass[static_cast<std::size_t>(ball)];
     const real wall_a = side(a, wall), wall_b = side(b, wall);
     if (wall_a != 0 && wall_b != 0) {
@@ -50,6 +50,7 @@ class TaylorMotion {
     std::vector<Follower> followers_;
     std::vector<Series> forces_; // by held contact
     std::vector<real> response_, matrix_, right_, cavity_force_, ball_force_;
+    std::vector<real> impulses_; // of the stops, at the start
 
     const Contact& contact(int c) const { return problem_.contacts[static_cast<std::size_t>(c)]; }
     const Damper& damper_of(const Contact& c) const {
@@ -61,9 +62,7 @@ class TaylorMotion {
     void find_followers() {
         followers_.clear();
         std::vector<char> is_placed(problem_.ball_mass.size(), false), is_done(held_.size(), false);
-        const auto placed = [&](int body) {
-            return body == wall || is_placed[static_cast<std::size_t>(body)];
-        };
+        const auto placed = [&](int body) { return body < 0 || is_placed[static_cast<std::size_t>(body)]; };
         for (std::size_t done = 0; done < held_.size();) {
             std::size_t next = held_.size(), first = held_.size();
             for (std::size_t i = 0; i < held_.size() && next == held_.size(); ++i) {
@@ -143,12 +142,13 @@ class TaylorMotion {
                 real cavity = 0;
                 for (std::size_t k = 0; k < m; ++k) cavity += damper.shape[k] * modes_[k].c[n + 2];
                 const auto of = [&](int body) {
+                    if (body == ground) return 0.0;
                     return body == wall ? cavity : balls_[static_cast<std::size_t>(body)].c[n + 2];
                 };
                 right_[i] = of(c.above) - of(c.below);
             }
             matrix_ = response_;
-            solve_definite(matrix_, right_);
+            solve_definite(matrix_, right_, response_);
             std::fill(cavity_force_.begin(), cavity_force_.end(), 0.0);
             std::fill(ball_force_.begin(), ball_force_.end(), 0.0);
             for (std::size_t i = 0; i < held; ++i) {
@@ -159,7 +159,7 @@ class TaylorMotion {
                                         : ball_force_[static_cast<std::size_t>(body)];
                 };
                 on(c.below) -= right_[i];
-                on(c.above) += right_[i];
+                if (c.above != ground) on(c.above) += right_[i];
             }
             // What they add, and the next coefficients of the motion.
             for (std::size_t k = 0; k < m; ++k) {
@@ -171,7 +171,32 @@ class TaylorMotion {
             for (std::size_t b = 0; b < balls; ++b)
                 balls_[b].c[n + 2] = (balls_[b].c[n + 2] + ball_force_[b] / problem_.ball_mass[b]) / both;
         }
+        keep_at_stops();
         lead_balls();
+    }
+
+    // Removes the part of the motion that opens or closes held stops: no ball follows the wall there, and the
+    // rounding errors of each flight would add up.
+    void keep_at_stops() {
+        for (const int held : held_) {
+            const Contact& c = contact(held);
+            if (c.above != ground) continue;
+            const std::vector<real>& shape = damper_of(c).shape;
+            for (int n = 0; n <= Series::order; ++n) {
+                real miss = n == 0 ? 0.5 * damper_of(c).clearance : 0;
+                for (std::size_t k = 0; k < shape.size(); ++k) miss -= shape[k] * modes_[k].c[n];
+                for (std::size_t k = 0; k < shape.size(); ++k) modes_[k].c[n] += shape[k] * c.mass * miss;
+            }
+        }
+    }
+
+    void add_impulses(real s, State& out) const {
+        std::copy(impulses_.begin(), impulses_.end(),
+                  out.y.begin() + static_cast<std::ptrdiff_t>(problem_.motion_size()));
+        for (std::size_t i = 0; i < held_.size(); ++i) {
+            const Contact& c = contact(held_[i]);
+            if (c.above == ground) out.y[impulse_index(problem_, c)] += forces_[i].integral(s);
+        }
     }
 
 public:
@@ -207,6 +232,8 @@ public:
         for (std::size_t k = 0; k < problem_.modes.size(); ++k)
             for (std::size_t l = 0; l < loads.size(); ++l)
                 mode_forces_[k].add(loads.load(l).shape[k], loads_[l]);
+        impulses_.assign(start.y.begin() + static_cast<std::ptrdiff_t>(problem_.motion_size()),
+                         start.y.end());
         const std::size_t balls = problem_.ball_mass.size();
         balls_.resize(balls);
         accelerations_.assign(balls, base);
@@ -233,6 +260,7 @@ public:
         real cavity = 0;
         for (std::size_t k = 0; k < modes_.size(); ++k) cavity += damper_of(c).shape[k] * modes_[k].c[2];
         const auto of = [&](int body) {
+            if (body == ground) return 0.0;
             return body == wall ? cavity : balls_[static_cast<std::size_t>(body)].c[2];
         };
         return 2 * (of(c.above) - of(c.below));
@@ -244,6 +272,7 @@ public:
             out.y[2 * k] = modes_[k].value(s);
             out.y[2 * k + 1] = modes_[k].slope(s);
         }
+        add_impulses(s, out);
         real *x = positions(problem_, out.y.data()), *v = velocities(problem_, out.y.data());
         for (std::size_t i = 0; i < balls_.size(); ++i) {
             x[i] = balls_[i].value(s);

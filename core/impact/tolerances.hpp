@@ -9,7 +9,8 @@ namespace rattlebox {
 
 // Largest energy residual over the energy supplied for which a run counts as finished, for every method.
 inline constexpr real worst_energy_residual = 0.01;
-// Balls below this speed [m/s] count as at rest: an energy residual below their kinetic energy is rounding.
+// Balls and points at stops below this speed [m/s] count as at rest: an energy residual below their kinetic
+// energy is rounding.
 inline constexpr real speed_at_rest = 1e-9;
 // Rounding errors of the energies at one time, as part of the largest energy of a run.
 inline constexpr real energy_rounding = 64 * epsilon;

@@ -75,6 +75,10 @@ class TwoStep {
             extra_rate[3 + c] = p.lost;
             (k.below == wall ? cavity_force_[static_cast<std::size_t>(k.damper)]
                              : ball_force_[static_cast<std::size_t>(k.below)]) -= p.force;
+            if (k.above == ground) {
+                dy[impulse_index(problem_, k)] = p.force;
+                continue;
+            }
             (k.above == wall ? cavity_force_[static_cast<std::size_t>(k.damper)]
                              : ball_force_[static_cast<std::size_t>(k.above)]) += p.force;
         }

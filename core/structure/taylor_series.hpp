@@ -29,6 +29,13 @@ struct Series {
         return sum;
     }
 
+    // Integral over [0, s].
+    real integral(real s) const {
+        real sum = c[order] / (order + 1);
+        for (int n = order - 1; n >= 0; --n) sum = sum * s + c[n] / (n + 1);
+        return sum * s;
+    }
+
     void add(real weight, const Series& other) {
         for (int n = 0; n <= order; ++n) c[n] += weight * other.c[n];
     }

@@ -543,10 +543,10 @@ class Settings(Node):
 
 class Damper(Node):
     """
-    An impact damper with its balls; positions are relative to the closely packed, centred row.
+    An impact damper with its balls, whose positions are relative to the closely packed, centred row; without balls a stop with half of the clearance as its gap.
     """
 
-    def __init__(self, *, clearance: float | numpy.typing.NDArray[numpy.float64], gravity: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], position: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, *, clearance: float | numpy.typing.NDArray[numpy.float64], gravity: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], position: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], base: float | numpy.typing.NDArray[numpy.float64] = 0.0) -> None: ...
 
     @property
     def clearance(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
@@ -565,6 +565,9 @@ class Damper(Node):
 
     @property
     def velocity(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def base(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
 
     @staticmethod
     def fields() -> dict[str, Varies]: ...
