@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.model.dampers import ImpactDamper
     from rattlebox.model.particle_damper import ContactTable, ParticleDamper
+    from rattlebox.model.stops import Stop
     from rattlebox.prepare.particles import Prepared
     from rattlebox.results.arrays import Table
 
@@ -38,8 +39,13 @@ def _named(dampers: Sequence[Damper]) -> Iterator[tuple[str, Damper]]:
         yield " ".join(damper.label(index).split()), damper
 
 
-def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tuple[str, ...]:
-    """Return the warnings about a finished 1-D run; `offsets` are those of balls from the packed row, (T, balls) [m]."""
+def impact_notes(
+    case: Case, offsets: NDArray[np.float64], stop_gaps: NDArray[np.float64], impacts: Table
+) -> tuple[str, ...]:
+    """Return the warnings about a finished 1-D run.
+
+    `offsets` are those of balls from the packed row, (T, balls) [m], `stop_gaps` those of the stops, (T, stops) [m].
+    """
     notes: list[str] = []
     first = 0
     for index, (name, damper) in enumerate(_named(case.impact_dampers)):
@@ -52,7 +58,44 @@ def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tu
         else:
             notes += _no_impacts(damper, name, offsets[:, first : first + count])
         first += count
+    for index, stop in enumerate(case.each_stop, len(case.impact_dampers)):
+        here = impacts.damper == index
+        if here.any():
+            notes += _stop_notes(case, stop, impacts, here)
+        else:
+            smallest = float(stop_gaps[:, index - len(case.impact_dampers)].min())
+            name, gap = " ".join(stop.name.split()), _length(stop.gap)
+            notes.append(f"note: no impact at {name} (smallest gap {_length(smallest)}, at rest {gap})")
     return tuple(notes)
+
+
+def _stop_notes(case: Case, stop: Stop, impacts: Table, here: NDArray[np.bool_]) -> Iterator[str]:
+    """Yield the warnings about the contacts of a stop: the limits of its law, and modes that it excites."""
+    name = " ".join(stop.name.split())
+    overlap, law = float(np.nanmax(impacts.peak_overlap[here])), stop.contact
+    if stop.radius is not None and overlap > law.overlap_limit * stop.radius:
+        yield (
+            f"warning: overlaps in {name} reach {100 * overlap / stop.radius:.3g} % of the radius; the contact law holds "
+            f"below {100 * law.overlap_limit:g} %: use a stiffer contact or slower impacts"
+        )
+    speed = float(np.nanmax(impacts.approach_speed[here]))
+    yield from _fast_impact(law, name, speed)
+    if law.measured_overlap is not None:
+        if overlap == 0:  # a hard impact has none; use the overlap that the curve gives for its speed
+            overlap = _core.normal_law(*law.coefficients(stop.pair(case.modes))).largest_overlap(speed)
+        yield from _beyond_measurement(name, [(overlap, law.measured_overlap)])
+    # An impact excites the modes up to about the inverse of twice its duration; further ones would change its force.
+    stiffness = case.modes.stiffness
+    frequencies = np.sqrt(stiffness) / (2 * np.pi)
+    lasted = impacts.duration[here & impacts.complete]
+    shortest = float(lasted.min()) if lasted.size else 0.0
+    if case.structure.is_truncated and 2 * shortest * float(frequencies.max(initial=0.0)) < 1:
+        length = f"{quantity(shortest, 's', 3)} long" if shortest else "hard"
+        yield (
+            f"note: impacts at {name} are {length}, shorter than half a period of the highest mode, at "
+            f"{quantity(float(frequencies.max()), 'Hz', 3)}: force and loss depend on the number of modes; compare with "
+            "twice as many modes, or use a softer contact"
+        )
 
 
 def component_notes(case: Case, overlaps: NDArray[np.float64], speeds: NDArray[np.float64]) -> Iterator[str]:

@@ -193,7 +193,7 @@ def run_from_core(case: Case, raw: _core.Result) -> Run:
     status, message = _status_and_message(case, arrays, raw)
     notes = plausibility_notes(case)
     if raw.status == Status.finished:
-        notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.impacts)
+        notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.stop_gap, arrays.impacts)
         notes += tuple(extrapolation_notes(raw.counts.extrapolated))
         notes += tuple(simultaneous_notes(raw.counts.simultaneous_impacts))
         notes += tuple(vibration_notes(raw.counts.contact_steps))
@@ -214,6 +214,7 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
     if raw.status in (Status.finished, Status.law_domain, Status.no_rebound):
         ledger = Ledger(arrays)
         mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
+        mass += sum(float(stop.pair(case.modes).mass) for stop in case.each_stop)
         end = final_status(
             ledger, raw.energy_residual_limit, mass, permitted=raw.permitted_error, rounding=raw.energy_rounding
         )
@@ -221,35 +222,49 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
         if raw.status == Status.finished or end != Status.finished:
             time = case.duration if raw.status == Status.finished else raw.stopped_at
             return describe(end, time, "", ledger.energy_residual if end else 0.0, case.method.kind)
-    counts = [len(damper.balls) for damper in case.impact_dampers]
+    counts = [*(len(damper.balls) for damper in case.impact_dampers), *(0 for _ in case.each_stop)]
     contact = contact_name(arrays.dampers, counts, raw.stopped_contact)
     return describe(raw.status, raw.stopped_at, contact, raw.stopped_value, case.method.kind)
 
 
 def _arrays(case: Case, raw: _core.Result) -> RunArrays:
     """Return the arrays of a run: those of the structure, and positions and energies of the balls."""
-    dampers = case.impact_dampers
+    dampers, stops = case.impact_dampers, case.each_stop
     m, d = len(case.modes.decay), len(dampers)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     counts = [len(damper.balls) for damper in dampers]
     ball_damper = np.repeat(np.arange(d), counts)
     b = ball_damper.size
-    # The state has displacement and velocity of each mode by turns, then the positions and the velocities of all balls.
+    # The state has displacement and velocity of each mode by turns, then the positions and the velocities of all balls,
+    # then the impulses on all stops.
     q, p = raw.state[:, 0 : 2 * m : 2], raw.state[:, 1 : 2 * m : 2]
-    position, velocity = raw.state[:, 2 * m : 2 * m + b], raw.state[:, 2 * m + b :]
+    position, velocity, impulse = np.split(raw.state[:, 2 * m :], [b, 2 * b], axis=1)
     shapes = np.array([case.modes.shape(damper.point) for damper in dampers]).reshape(d, m)
+    stop_shapes = np.array([stop.shape(case.modes) for stop in stops]).reshape(len(stops), m)
+    # The core counts the motion of a point and the force on it positive towards the stop.
+    signs = np.array([stop.sign for stop in stops])
+    force = raw.cavity_force * np.concatenate([np.ones(d), signs])
+    on_base = np.array([stop.other is None for stop in stops], dtype=bool)
     centre = np.concatenate([np.zeros(0), *(damper.centres for damper in dampers)])
     mass = np.concatenate([np.zeros(0), *(damper.masses for damper in dampers)])
     gravity = np.array([damper.gravity for damper in dampers])
-    potential = np.zeros((raw.time.size, d))
+    potential = np.zeros((raw.time.size, d + len(stops)))
     np.add.at(potential.T, ball_damper, -(mass * gravity[ball_damper])[:, None] * position.T)
+    structure = structure_arrays(
+        case, raw.time, q, p, _base_motion(case, raw.time), force, np.concatenate([shapes, stop_shapes])
+    )
+    # The other side of a stop on the ground pushes the base.
+    structure["interface_force"] = structure["interface_force"] - force[:, d:][:, on_base].sum(axis=1)
     return RunArrays(
-        **structure_arrays(case, raw.time, q, p, _base_motion(case, raw.time), raw.cavity_force, shapes),
+        **structure,
         balls=tuple(f"{name}/{k + 1}" for name, count in zip(names, counts, strict=True) for k in range(count)),
-        dampers=tuple(names),
+        dampers=(*names, *(stop.name for stop in stops)),
+        stops=tuple(stop.name for stop in stops),
+        stop_gap=np.array([stop.gap for stop in stops]) - signs * (q @ stop_shapes.T),
+        stop_impulse=-signs * impulse,
         ball_damper=ball_damper,
         ball_centre=centre,
-        clearance=np.array([damper.clearance for damper in dampers]),
+        clearance=np.array([*(damper.clearance for damper in dampers), *(2 * stop.gap for stop in stops)]),
         ball_position=position + centre,
         ball_velocity=velocity,
         relative_position=position + centre - (q @ shapes.T)[:, ball_damper],

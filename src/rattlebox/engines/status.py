@@ -94,6 +94,8 @@ def contact_name(dampers: Sequence[str], counts: Sequence[int], contact: int) ->
     for name, balls in zip(dampers, counts, strict=True):
         if 0 <= contact <= balls:
             between = f"ball {contact} - {contact + 1}"
+            if balls == 0:
+                return name
             return f"{name} ({'trailing wall' if contact == 0 else 'leading wall' if contact == balls else between})"
         contact -= balls + 1
     return ""

@@ -38,6 +38,7 @@ from .particle_damper import ParticleDamper
 from .paths import replaced
 from .shocks import Shock
 from .signals import Sampled, Signal, Unit, as_several, signals_in
+from .stops import Stop
 from .structures import Shaker
 from .tuned_mass import TunedMass, with_tuned_masses
 from .units import MOST_MEMORY, PositiveTime, Whole
@@ -72,6 +73,8 @@ class Case(Part):
         One ImpactDamper or ParticleDamper, several of one kind, or none.
     tuned_mass, tuned_masses
         One TunedMass, several, or none; with or without dampers.
+    stop, stops
+        One Stop, several, or none; with or without impact dampers.
     load, loads
         Forces on the structure: one signal, several (they add), or none.
     base
@@ -101,11 +104,17 @@ class Case(Part):
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("",)
-    aliases: ClassVar[dict[str, str]] = {"damper": "dampers", "tuned_mass": "tuned_masses", "load": "loads"}
+    aliases: ClassVar[dict[str, str]] = {
+        "damper": "dampers",
+        "tuned_mass": "tuned_masses",
+        "stop": "stops",
+        "load": "loads",
+    }
     name: str = ""
     structure: AnyStructure
     dampers: Annotated[tuple[AnyDamper, ...], BeforeValidator(as_several), AlsoAccepts()] = ()
     tuned_masses: Annotated[tuple[TunedMass, ...], BeforeValidator(as_several), AlsoAccepts()] = ()
+    stops: Annotated[tuple[Stop, ...], BeforeValidator(as_several), AlsoAccepts()] = ()
     loads: Annotated[tuple[AnySignal, ...], signals_in("N"), AlsoAccepts()] = ()
     base: Annotated[tuple[AnySignal, ...], signals_in("m/s^2"), AlsoAccepts()] = ()
     duration: PositiveTime
@@ -144,6 +153,7 @@ class Case(Part):
                     self._check_laws(damper)
                 else:
                     self._check_particle_laws(damper)
+        self._check_stops(names)
         return self
 
     def _signals_in_unit(self, field: str, unit: Unit, place: str) -> tuple[Signal, ...]:
@@ -338,6 +348,55 @@ class Case(Part):
                         _, values = law.impact_restitution.coefficients(pair)
                         _check_finite(values)
 
+    def _check_stops(self, names: set[str]) -> None:
+        """Raise if a stop cannot be computed; `names` are those of the dampers."""
+        for index, stop in enumerate(self.stops):
+            with at("stops", index):
+                if self.particle_dampers:
+                    raise Hint(
+                        "stops are computed with impact dampers, not with particle dampers",
+                        "an ImpactDamper with balls of the same mass in place of the particles, or no stop",
+                    )
+                if not self.modes.decay.size:
+                    raise Hint(f"a {self.structure.kind} structure does not move against a stop", "an SDOF, or modes")
+                with at("point"):
+                    point = self.modes.point(stop.point)
+                if stop.other is not None:
+                    with at("other"):
+                        if self.modes.point(stop.other, "other") == point:
+                            raise Hint("a point cannot meet itself", "another point, or none for the ground")
+                stop.check(self.modes)
+                if isinstance(self.method, Newton) and stop.side == "both" and not stop.gap > 0:
+                    raise Hint(
+                        "hard impacts need room between stops on both sides: the point would never move",
+                        'gap = "1 um", or the EventDriven method, whose contacts have a duration',
+                        ["gap"],
+                    )
+                self._check_stop_law(stop)
+                for each in stop.each(index):
+                    if each.name in names:
+                        raise Hint(f"two dampers or stops are called {each.name!r}", "different names", ["name"])
+                    names.add(each.name)
+
+    def _check_stop_law(self, stop: Stop) -> None:
+        """Check that the contact law of a stop is finite; laws of spheres need its radius and material."""
+        pair = stop.pair(self.modes)
+        with at("contact"):
+            try:
+                with _raise_if_not_finite():
+                    if self.method.hard_restitution(stop.contact, pair) is None:
+                        _check_finite(stop.contact.coefficients(pair)[1])
+            except Hint as hint:
+                if not hint.complaint.startswith(_NOT_COMPUTABLE) or stop.is_sized:
+                    raise
+                raise Hint(
+                    f"the contact law {stop.contact.kind!r} follows from radius and material, and the stop has not both",
+                    'radius = "20 mm" and material = "steel" of the stop, or a law with a stiffness',
+                ) from None
+            if stop.contact.impact_restitution is not None:
+                with at("restitution"), _raise_if_not_finite():
+                    _check_finite(stop.contact.impact_restitution.coefficients(pair)[1])
+
     def _check_particle_laws(self, damper: ParticleDamper) -> None:
         """Check that the coefficients of all laws of a particle damper are finite for their pairs of bodies."""
         for entry in damper.contact_table.entries:
@@ -353,6 +412,11 @@ class Case(Part):
     def impact_dampers(self) -> tuple[ImpactDamper, ...]:
         """The impact dampers, identical ones (`ImpactDamper.number`) one by one."""
         return tuple(each for damper in self.dampers if isinstance(damper, ImpactDamper) for each in damper.each())
+
+    @property
+    def each_stop(self) -> tuple[Stop, ...]:
+        """The stops, those on both sides (`Stop.side`) one by one."""
+        return tuple(each for index, stop in enumerate(self.stops) for each in stop.each(index))
 
     def cavity_displacement(self, damper: ImpactDamper) -> Any:
         """Return the displacement of the cavity of an impact damper at the start [m], an array in a batch of variants."""
@@ -501,7 +565,8 @@ class Case(Part):
         return case
 
     def __repr__(self) -> str:
-        counts = Counter(type(part).__name__ for part in (*self.dampers, *self.tuned_masses, *self.loads, *self.base))
+        counts = Counter(type(part).__name__ for part in (*self.dampers, *self.tuned_masses, *self.stops, *self.loads, *self.base)
+        )
         parts = ", ".join([type(self.structure).__name__, *(f"{n} {kind}" for kind, n in counts.items())])
         return f"<Case{f' {self.name!r}' if self.name else ''}: {parts}; {self.duration:g} s, {self.method.kind}>"
 

@@ -67,6 +67,7 @@ class Matrices(FilePart, DampedModes):
         ("damping_ratio", "rayleigh"),
     )
     file_fields: ClassVar[tuple[str, ...]] = ("M", "C", "K")
+    is_truncated: ClassVar[bool] = False
     kind: Literal["matrices"] = "matrices"
     M: Annotated[Matrix, SI("kg")] = Field(examples=[[[2, 0], [0, 1]]])
     C: Annotated[Matrix | None, SI("N s/m")] = None

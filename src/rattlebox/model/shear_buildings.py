@@ -54,6 +54,7 @@ class ShearBuilding(DampedModes):
     """
 
     elementwise: ClassVar[bool] = False
+    is_truncated: ClassVar[bool] = False
     kind: Literal["shear_building"] = "shear_building"
     masses: list[PositiveMass] = Field(examples=[["50 t", "50 t"]])
     stiffnesses: list[PositiveStiffness] = Field(examples=[["60 MN/m", "60 MN/m"]])

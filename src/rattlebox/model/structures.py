@@ -111,6 +111,8 @@ class StructurePart(Part):
     field_names: ClassVar[tuple[str, ...]] = ("structure",)
     responds: ClassVar[bool] = True
     """Whether forces of the dampers move the structure."""
+    is_truncated: ClassVar[bool] = True
+    """Whether the structure may have more modes than are computed."""
     kinds: ClassVar[dict[str, type[Part]]] = {}
     kind: str
 
@@ -177,6 +179,7 @@ class SDOF(StructurePart):
         ("stiffness", "frequency"),
         ("damping", "damping_ratio"),
     )
+    is_truncated: ClassVar[bool] = False
     kind: Literal["sdof"] = "sdof"
     mass: PositiveMass
     stiffness: Stiffness | None = None

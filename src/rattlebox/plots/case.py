@@ -15,6 +15,7 @@ from ..results import Run
 from ..results.case_words import each_damper
 from ..results.figures import run_figure
 from .case_dampers import draw_damper
+from .case_stops import draw_stops
 from .case_structures import draw_structure
 from .style import StyledFigure, figure_style, shorten
 from .types import Size
@@ -32,7 +33,7 @@ class _Group(NamedTuple):
 
 
 def plot_case(case: Case, *, size: Size = "page") -> Figure:
-    """Draw a case: the structure with its loads and the points of its dampers, and each damper to scale with its dimensions.
+    """Draw a case: the structure with its loads and the points of its dampers, each damper to scale, and its stops.
 
     Beams and plates are drawn to scale, with the shape of the first mode of a beam in grey; oscillators, buildings and modal
     models have no geometry and are drawn as symbols. Beds of more than 2000 particles are drawn as a level.
@@ -47,7 +48,7 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
     Returns
     -------
     Figure
-        Figure with a panel for the structure, and one for each of up to three different dampers.
+        Figure with a panel for the structure, one for each of up to three different dampers, and one for stops.
 
     Raises
     ------
@@ -67,10 +68,11 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
         raise TypeError(f"a case is needed, not {case!r:.60}")
     groups = _groups(case)
     shown = groups[:_MAX_DAMPERS]
-    count = 1 + len(shown)
+    stops = [stop.model_copy(update={"name": stop.label(index)}) for index, stop in enumerate(case.stops)]
+    count = 1 + len(shown) + bool(stops)
     with figure_style(size):
         narrow = size == "column"
-        shape = (count, 1) if narrow else (2, 2) if count > 2 else (1, count)
+        shape = (count, 1) if narrow else (-(-count // 2), 2) if count > 2 else (1, count)
         figure = StyledFigure(size, (0.72 if narrow else 0.4) * shape[0])
         panels: list[Axes] = list(figure.subplots(*shape, squeeze=False).ravel())
         marks = {number: str(k + 1) for k, group in enumerate(groups) for number in group.numbers}
@@ -79,7 +81,10 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
         for k, (panel, group) in enumerate(zip(panels[1:], shown, strict=False)):
             draw_damper(group.damper, panel)
             panel.set_title(_heading(case, group, k + 1 if len(groups) > 1 else 0), parse_math=False)
-        for panel in panels[1 + len(shown) :]:
+        if stops:
+            draw_stops(panels[1 + len(shown)], stops, [case.modes.point(stop.point) for stop in stops])
+            panels[1 + len(shown)].set_title("stops" if len(stops) > 1 else "stop")
+        for panel in panels[count:]:
             panel.set_axis_off()
         if len(groups) > len(shown):
             panels[0].set_xlabel(f"{len(groups) - len(shown)} further dampers are not drawn")

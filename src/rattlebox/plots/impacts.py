@@ -31,6 +31,7 @@ _SIDES: dict[str, Style] = {
     "trailing wall": {"marker": "o", "color": "colour", "linewidths": 0.0},
     "leading wall": {"marker": "o", "facecolors": "none", "edgecolors": "colour", "linewidths": 0.6},
     "between balls": {"marker": "x", "color": "colour", "linewidths": 0.6},
+    "stop": {"marker": "D", "color": "colour", "linewidths": 0.0},
 }
 
 
@@ -38,8 +39,8 @@ _SIDES: dict[str, Style] = {
 def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figure:
     """Draw approach speed, peak force and restitution of every impact over the time at which its contact begins.
 
-    Filled markers are impacts on the trailing wall, open ones on the leading wall, and crosses impacts between balls; each
-    damper has its colour. Quantities without values (force of hard impacts, restitution of hysteretic laws) are omitted.
+    Filled circles are impacts on the trailing wall, open ones on the leading wall, crosses impacts between balls, and
+    diamonds impacts at stops; each damper and stop has its colour. Quantities without values (force of hard impacts, restitution of hysteretic laws) are omitted.
 
     Parameters
     ----------
@@ -118,7 +119,8 @@ def _sides(arrays: RunArrays) -> NDArray[np.str_]:
     """Return the name of the side of each impact."""
     last = np.bincount(arrays.ball_damper, minlength=len(arrays.dampers))[arrays.impacts.damper]
     contact = arrays.impacts.contact
-    return np.select([contact == 0, contact == last], ["trailing wall", "leading wall"], "between balls")
+    sides = ["stop", "trailing wall", "leading wall"]
+    return np.select([last == 0, contact == 0, contact == last], sides, "between balls")
 
 
 def _marker_style(marks: Style, colour: str) -> Style:

@@ -20,6 +20,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Method
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
+from rattlebox.model.stops import refuse_stops
 from rattlebox.model.structures import SDOF, Fixed, Shaker
 from rattlebox.model.units import Quantity
 
@@ -96,6 +97,9 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     """
     if not case.method.has_stepper:
         raise Hint(f"the method {case.method.kind} has no stepper", "method = EventDriven(), or Newton()")
+    refuse_stops(
+        case.stops, "a stepper has dampers and a structure without stops", "simulate(case), or a stepper without stops"
+    )
     if alone and len(_dampers(case)) != 1:
         raise Hint(f"a damper alone is needed, but the case has {len(_dampers(case))}", "a stepper for each of them")
     return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)

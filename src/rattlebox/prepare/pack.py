@@ -19,13 +19,14 @@ from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.model.base import Part
 from rattlebox.model.contact_pairs import contact_pairs
-from rattlebox.model.contacts import FixedDamping
+from rattlebox.model.contacts import Contact, FixedDamping
 from rattlebox.model.elementwise import stacked
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import ImpactMethod
 from rattlebox.model.pairs import Pair
 from rattlebox.model.paths import Place, part_at, place_of, replaced
 from rattlebox.model.restitutions import Constant
+from rattlebox.model.stops import Stop
 from rattlebox.prepare.laws import pack_restitution, restitution_of_alpha
 from rattlebox.prepare.variants import (
     Columns,
@@ -244,13 +245,29 @@ def _problem(case: Case, axes: int = 0) -> _core.Problem:
                 velocity=_vector(damper.velocities0, axes),
             )
             for damper in case.impact_dampers
-        ],
+        ]
+        + [_stop(stop, modes, axes) for stop in case.each_stop],
         contacts=[
-            _contact(case, index, pair, place)
+            _contact_of_balls(case, index, pair, place)
             for index in range(len(case.impact_dampers))
             for place, pair in enumerate(contact_pairs(case, index))
-        ],
+        ]
+        + [_contact(case, stop.contact, stop.pair(modes)) for stop in case.each_stop],
         sample_times=np.zeros(0),
+    )
+
+
+def _stop(stop: Stop, modes: ModalModel, axes: int) -> _core.Damper:
+    """Pack a stop: a damper without balls, whose shape is positive in the direction that closes the gap."""
+    nothing = np.zeros((0, *(1,) * axes))
+    return _core.Damper(
+        clearance=2 * stop.gap,
+        gravity=0.0,
+        shape=_vector(stop.sign * stop.shape(modes), axes),
+        mass=nothing,
+        position=nothing,
+        velocity=nothing,
+        base=stop.sign if stop.other is None else 0.0,
     )
 
 
@@ -298,10 +315,14 @@ def _participation(modes: ModalModel) -> NDArray[np.float64]:
     return _array(np.zeros(modes.decay.size) if modes.participation is None else modes.participation)
 
 
-def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> _core.Contact:
+def _contact_of_balls(case: Case, damper_index: int, pair: Pair, place: int) -> _core.Contact:
     damper = case.impact_dampers[damper_index]
     between_balls = 0 < place < len(damper.balls)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
+    return _contact(case, law, pair)
+
+
+def _contact(case: Case, law: Contact, pair: Pair) -> _core.Contact:
     hard = case.method.hard_restitution(law, pair)
     if hard is None:
         rebound = law.impact_restitution

@@ -152,6 +152,11 @@ def invalid_starts(packed: _core.Problem, shape: Sequence[int]) -> Iterator[Inde
     for damper in packed.dampers:
         position, half = damper.position, 0.5 * np.asarray(damper.clearance)
         cavity = np.sum(damper.shape * packed.mode_displacement, axis=0)
+        if not len(position):  # a stop: the point may start inside it
+            inside = np.argwhere(np.asarray(cavity > half * (1 + 1e-12)))
+            if len(inside):
+                yield _grid_index(np.atleast_1d(inside[0]), shape)
+            continue
         overlap = np.argwhere(np.diff(position, axis=0) < 0)
         if len(overlap):
             yield _grid_index(overlap[0][1:], shape)

@@ -22,7 +22,13 @@ _MAX_NUMBERS = 6
 """Longest list that is written out."""
 _MAX_MODES = 6
 """Most modes in the line of natural frequencies."""
-_PARTS = {"dampers": "Damper", "tuned_masses": "Tuned mass", "loads": "Load", "base": "Motion of the base"}
+_PARTS = {
+    "dampers": "Damper",
+    "tuned_masses": "Tuned mass",
+    "stops": "Stop",
+    "loads": "Load",
+    "base": "Motion of the base",
+}
 _HIDDEN = ("name", "kind", "title", "source")
 
 
@@ -33,7 +39,7 @@ def input_tables(case: Case) -> list[Table]:
     for field, title in _PARTS.items():
         items = getattr(case, field)
         for number, part in enumerate(items):
-            computed = _damper_lines(case, number) if field == "dampers" else iter(())
+            computed = _computed_lines(case, field, number)
             name = getattr(part, "name", "") or (str(number + 1) if len(items) > 1 else "")
             heading = f"{title} {name}".rstrip() + f": {_kind(part)}"
             tables.append(Table(heading, (), [*computed, *_lines(part)]))
@@ -53,6 +59,14 @@ def _structure_lines(case: Case) -> Iterator[tuple[str, str]]:
     yield "= damping ratios", ", ".join(amount(float(each), "%", 3) for each in ratios[:_MAX_MODES]) + more
     if modes.total_mass is not None and np.ndim(modes.total_mass) == 0:
         yield "= total mass", amount(float(modes.total_mass), "kg")
+
+
+def _computed_lines(case: Case, field: str, number: int) -> Iterator[tuple[str, str]]:
+    """Yield numbers that follow from the fields of a part and the structure."""
+    if field == "dampers":
+        yield from _damper_lines(case, number)
+    if field == "stops":
+        yield from ((f"= {name}", value) for name, value in case.stops[number].facts(case.modes))
 
 
 def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:

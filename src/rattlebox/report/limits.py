@@ -13,7 +13,7 @@ import numpy as np
 
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.quantities import amount, digits
-from rattlebox.engines.run_notes import worst_overlap
+from rattlebox.engines.run_notes import Overlap, worst_overlap
 from rattlebox.model.contacts import MAX_OVERLAP
 from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE
 from rattlebox.prepare.time_step import MIN_STEPS_PER_CONTACT
@@ -64,7 +64,7 @@ def run_limits(run: Run) -> Iterator[Limit]:
     yield from mode_limits(case)
     if "impacts" in run.groups:
         yield from _impact_limits(run, case)
-    if case.dampers:
+    if case.dampers or case.stops:
         yield limit("run", "one run of a chaotic motion", "1 run")
 
 
@@ -85,6 +85,10 @@ def _impact_limits(run: Run, case: Case) -> Iterator[Limit]:
         mine = known & (impacts.damper == index)
         if mine.any():
             worst.append(worst_overlap(damper, impacts.contact[mine], impacts.peak_overlap[mine]))
+    for index, stop in enumerate(case.each_stop, len(case.impact_dampers)):
+        mine = known & (impacts.damper == index)
+        if mine.any() and stop.radius is not None:
+            worst.append(Overlap(float(impacts.peak_overlap[mine].max()) / stop.radius, stop.contact.overlap_limit))
     if worst:
         ratio, allowed = max(worst, key=lambda overlap: overlap.ratio / overlap.limit)
         yield limit("run", "overlap in contacts", f"{amount(ratio, '%', 3)} of the radius", f"{100 * allowed:g} %")

@@ -221,7 +221,7 @@ def study_limits(study: xr.Dataset) -> Iterator[Limit]:
     if repeated := replica_dims(study):
         count = math.prod(study.sizes[dim] for dim in repeated)
         yield limit("replicas", "statistical error", f"{count} random starts")
-    elif case is None or case.dampers:
+    elif case is None or case.dampers or case.stops:
         has_intervals = any(str(name).endswith(INTERVAL) for name in study.data_vars)
         intervals = "Intervals are those of time averages in one run (95 %); o" if has_intervals else "O"
         yield limit("study", "statistical error", "1 run of each variant", intervals=intervals)

@@ -97,6 +97,7 @@ def accelerations_of_steps(arrays: RunArrays, case: Case, shapes: FloatArray) ->
         cavities = [modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
     else:
         cavities = [modes.shape(damper.point) for damper in case.impact_dampers]
+        cavities += [stop.shape(modes) for stop in case.each_stop]
     mean = force_on_modes(
         case, pulses, np.zeros_like(arrays.base_acceleration[1:]), mean_damper_force(arrays, case), cavities
     )

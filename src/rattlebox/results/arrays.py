@@ -166,8 +166,8 @@ class Table(_Frozen):
 class RunArrays(_Frozen):
     """All arrays of one run, in SI units, as attributes; `schema.VARIABLES` lists their names, dimensions and units.
 
-    Dimensions: T times, P points, B balls (of all dampers, damper after damper), D dampers, L loads, M modes, three axes,
-    two contact partners (another particle, the wall). Variables that are left out are zero. Arrays are read-only;
+    Dimensions: T times, P points, B balls (of all dampers, damper after damper), D dampers and behind them S stops, L loads,
+    M modes, three axes, two contact partners (another particle, the wall). Variables that are left out are zero. Arrays are read-only;
     equality compares every value, NaN equals NaN.
 
     Parameters
@@ -182,6 +182,7 @@ class RunArrays(_Frozen):
     balls: tuple[str, ...]
     dampers: tuple[str, ...]
     loads: tuple[str, ...]
+    stops: tuple[str, ...]
     impacts: Table
     particles: Table
     # For editors and type checkers; a run has the variables of its engine.
@@ -197,6 +198,8 @@ class RunArrays(_Frozen):
     relative_position: FloatArray
     relative_velocity: FloatArray
     cavity_force: FloatArray
+    stop_gap: FloatArray
+    stop_impulse: FloatArray
     base_displacement: FloatArray
     base_velocity: FloatArray
     base_acceleration: FloatArray
@@ -235,13 +238,15 @@ class RunArrays(_Frozen):
         balls: tuple[str, ...] = (),
         dampers: tuple[str, ...] = (),
         loads: tuple[str, ...] = (),
+        stops: tuple[str, ...] = (),
         **values: Any,
     ) -> None:
         if engine not in BOTH:
             raise ValueError(f"there is no engine {engine!r}; there are {', '.join(BOTH)}")
         fields = vars(self)
         fields.update(engine=engine, time=_as_time(time))
-        for name, labels in {"points": points, "balls": balls, "dampers": dampers, "loads": loads}.items():
+        names = {"points": points, "balls": balls, "dampers": dampers, "loads": loads, "stops": stops}
+        for name, labels in names.items():
             fields[name] = _as_labels(name, labels)
         sizes = {
             "time": self.time.size,
@@ -249,6 +254,7 @@ class RunArrays(_Frozen):
             "ball": len(self.balls),
             "damper": len(self.dampers),
             "source": len(self.loads),
+            "stop": len(self.stops),
             "mode": np.size(values.get("mode_frequency", ())),
             "axis": len(AXES),
             "partner": len(PARTNERS),
@@ -280,7 +286,7 @@ class RunArrays(_Frozen):
             return
         if np.any(np.diff(self.ball_damper) < 0):
             raise ValueError("ball_damper must not decrease: balls come damper after damper")
-        # A row of n balls has n + 1 contacts, from wall to wall.
+        # A row of n balls has n + 1 contacts, from wall to wall, and a stop has one.
         last = np.bincount(self.ball_damper, minlength=max(dampers, 1))[self.impacts.damper]
         contact = self.impacts.contact
         if np.any(contact < 0) or np.any(contact > last):
@@ -304,6 +310,7 @@ class RunArrays(_Frozen):
             "ball": self.balls,
             "damper": self.dampers,
             "source": self.loads,
+            "stop": self.stops,
             "mode": np.arange(1, self.mode_frequency.size + 1),
             "axis": AXES,
             "partner": PARTNERS,
@@ -317,6 +324,8 @@ class RunArrays(_Frozen):
         """Return the names of the contacts of a damper, in the order of the impact log's `contact`."""
         balls = int(np.count_nonzero(self.ball_damper == damper))
         between = (f"ball {k} - ball {k + 1}" for k in range(1, balls))
+        if self.dampers[damper] in self.stops:
+            return ("stop",)
         return ("trailing wall", *between, "leading wall") if balls else ()
 
 

@@ -18,11 +18,12 @@ def each_damper(case: Case) -> tuple[Damper, ...]:
 
 
 def dampers_words(case: Case) -> str:
-    """Return a phrase about all dampers and tuned masses of a case; empty if there are none."""
+    """Return a phrase about all dampers, tuned masses and stops of a case; empty if there are none."""
     phrases = [damper.words() for damper in each_damper(case)]
     phrases += [
         f"a tuned mass of {amount(part.mass, 'kg')} at {amount(part.frequency, 'Hz')}" for part in case.tuned_masses
     ]
+    phrases += [stop.words() for stop in case.stops]
     counts = {phrase: phrases.count(phrase) for phrase in phrases}
     return joined([phrase if count == 1 else f"{count} times {phrase}" for phrase, count in counts.items()])
 

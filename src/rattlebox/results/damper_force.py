@@ -1,4 +1,4 @@
-"""Force of the balls and particles on their cavities, averaged over each output step."""
+"""Force of balls, particles and stops on the structure, averaged over each output step."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
     """Return the force on each cavity, averaged between output times, from the balance of momentum of its balls.
+
+    The force of stops on their points follows from their impulses.
 
     Samples of `cavity_force` miss most of the short contacts.
 
@@ -36,4 +38,6 @@ def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
         masses = np.asarray(damper.masses, dtype=float)
         inertia = (np.diff(arrays.ball_velocity[:, in_damper], axis=0) + base[:, None]) @ masses
         force[:, index] = masses.sum() * damper.gravity - inertia / step
+    if arrays.stops:
+        force[:, -len(arrays.stops) :] = np.diff(arrays.stop_impulse, axis=0) / step[:, None]
     return force

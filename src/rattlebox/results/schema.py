@@ -63,7 +63,8 @@ DIMENSIONS: tuple[Dimension, ...] = (
     Dimension("time", "time", "s"),
     Dimension("point", "point of the structure"),
     Dimension("ball", "ball", engines=_IMPACT),
-    Dimension("damper", "damper"),
+    Dimension("damper", "damper, or stop"),
+    Dimension("stop", "stop", engines=_IMPACT),
     Dimension("source", "load"),
     Dimension("mode", "number of the mode", "1"),
     Dimension("axis", "axis", engines=_DEM),
@@ -99,6 +100,7 @@ _BALL = ("time", "ball")
 _BASE = ("time", "axis")
 _DAMPER = ("time", "damper")
 _CAVITY = ("time", "damper", "axis")
+_STOP = ("time", "stop")
 _PARTNER = ("time", "damper", "partner")
 _LOG = ("impact",)
 _EACH = ("particle",)
@@ -121,7 +123,9 @@ VARIABLES: tuple[Variable, ...] = (
     _1d("relative_velocity", "motion", _BALL, "m/s", "ball velocity relative to the cavity"),
     _3d("cavity_displacement", "motion", _CAVITY, "m", "displacement of the cavity"),
     _3d("cavity_velocity", "motion", _CAVITY, "m/s", "velocity of the cavity"),
-    Variable("cavity_force", "motion", _CAVITY, "N", "contact force on the cavity"),
+    Variable("cavity_force", "motion", _CAVITY, "N", "contact force on the cavity, or on the point at a stop"),
+    _1d("stop_gap", "motion", _STOP, "m", "gap of the stop, negative while it is closed"),
+    _1d("stop_impulse", "motion", _STOP, "N s", "impulse of the stop on the point since the start"),
     _3d("cavity_moment", "motion", _CAVITY, "N m", "contact moment about the cavity's centre"),
     _3d("centre_of_mass", "motion", _CAVITY, "m", "centre of mass of the particles in the cavity"),
     _3d("momentum", "motion", _CAVITY, "kg m/s", "momentum of the particles"),

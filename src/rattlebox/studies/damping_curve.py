@@ -18,6 +18,7 @@ from rattlebox.analysis.damping_curve import band_edges, damping_over_amplitude,
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
+from rattlebox.model.stops import refuse_stops
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 from rattlebox.prepare.time_step import exceeded_limits
@@ -216,6 +217,11 @@ def _prepared(
     """Return the amplitudes, the mode and the case with each random start."""
     if way not in WAYS:
         raise Hint(f"way = {way!r} is not a method of this function", nearest(str(way), WAYS))
+    refuse_stops(
+        case.stops,
+        "a damping curve starts or shakes the structure at each amplitude",
+        "a sweep over the initial velocity or the load, or the case without stops",
+    )
     count, about = whole_number(packings, "packings", 1), mode_of(case, mode, point)
     return read_amplitudes(amplitudes, about.omega), about, random_starts(case, count)
 

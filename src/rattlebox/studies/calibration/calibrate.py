@@ -19,6 +19,7 @@ from rattlebox._util.progress import announce
 from rattlebox._util.quantities import amount
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, at, several
+from rattlebox.model.stops import refuse_stops
 from rattlebox.model.units import parse, whole_number
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.studies.calibration.fit import Fit, Space
@@ -469,6 +470,7 @@ def calibrate(
             "rb.calibrate(data, case, parameters)",
             ["case"],
         )
+    refuse_stops(case.stops, "losses are those of a damper on a shaker", "the case without stops")
     calibration = Calibration(
         case=case,
         space=Space.of(case, parameters, log, known),

@@ -159,9 +159,9 @@ class Basins(Study):
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
-        if not self.case.dampers:
+        if not (self.case.dampers or self.case.stops):
             raise CaseError(
-                "the case has no damper; its motion is linear, with one attractor", "a case with an impact damper"
+                "the case has no damper and no stop; its motion is linear, with one attractor", "a case with an impact damper, or a stop"
             )
         self.engine.require_alike()
 

@@ -23,6 +23,7 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
+from rattlebox.model.stops import refuse_stops
 from rattlebox.model.units import Number, Whole
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.grid.grid import Grid
@@ -78,6 +79,11 @@ class PairEngine:
 
     def validate(self) -> None:
         """Raise if the arguments are not valid for the case."""
+        refuse_stops(
+            self.case.stops,
+            "exponents are those of balls in gaps",
+            "rattlebox.analysis.lyapunov_exponent with pairs of runs, or a bifurcation diagram",
+        )
         packed = self.sweep.packed
         if self.count < 2:
             raise CaseError("one evaluated cycle is one step; at least two steps are required", "steps = 100")

@@ -203,7 +203,10 @@ class _Step:
         """Return whether each chain has a closed soft contact, (chains,)."""
         closed = np.zeros(self._count, bool)
         if self._variants.settings.method is not _core.Method.newton:
-            for _, place, _, (left, right) in self._dampers(state):
+            for damper, place, _, (left, right) in self._dampers(state):
+                if not len(damper.mass):  # a stop, at half of the clearance
+                    closed |= left >= 0
+                    continue
                 row = np.concatenate([left[None], place, right[None]])
                 closed |= (np.diff(row, axis=0) < _CLOSED * (right - left)).any(axis=0)
         return closed

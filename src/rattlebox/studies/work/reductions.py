@@ -67,8 +67,8 @@ class Orbits(NamedTuple):
 def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: object) -> tuple[Vector, Vector]:
     """Return stroboscopic states with velocities as lengths, and the range of each component, in gaps.
 
-    Lengths are divided by the gap of the damper (of the first one for the structure), velocities by gap times angular
-    frequency. In motions without impacts, in which balls drift freely, positions and velocities of balls are zero.
+    Lengths are divided by the gap of the damper (of the first one for the structure; without balls by the amplitude),
+    velocities by gap times angular frequency. In motions without impacts, in which balls drift freely, positions and velocities of balls are zero.
 
     `maps`: strobes over a grid: `displacement`, `velocity` (..., sample), `relative_position`, `relative_velocity` (...,
     sample, ball), `impacts` and `largest_approach_speed`. `period`: length of a cycle [s], broadcastable to the grid.
@@ -77,7 +77,9 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: object)
     gaps = [np.broadcast_to(0.5 * np.asarray(d.clearance), shape) for d in packed.dampers for _ in d.mass]
     omega = np.broadcast_to(2 * np.pi / np.asarray(period), shape)
     hit = (maps.impacts.values > 0)[..., None]
-    parts = [maps.displacement.values / gaps[0][..., None], maps.velocity.values / (gaps[0] * omega)[..., None]]
+    size = gaps[0] if gaps else np.hypot(maps.displacement.values, maps.velocity.values / omega[..., None]).max(axis=-1)
+    size = np.where(size > 0, size, 1.0)
+    parts = [maps.displacement.values / size[..., None], maps.velocity.values / (size * omega)[..., None]]
     amplitude = np.hypot(*parts).max(axis=-1)
     ranges = [amplitude, amplitude]
     speed = maps.largest_approach_speed.values
