@@ -76,11 +76,11 @@ from rattlebox.model.shear_buildings import ShearBuilding as ShearBuilding
 from rattlebox.model.shocks import HalfSine as HalfSine
 from rattlebox.model.shocks import Sawtooth as Sawtooth
 from rattlebox.model.shocks import Trapezoid as Trapezoid
+from rattlebox.model.stops import Stop as Stop
 from rattlebox.model.structures import SDOF as SDOF
 from rattlebox.model.structures import Fixed as Fixed
 from rattlebox.model.structures import Modal as Modal
 from rattlebox.model.structures import Shaker as Shaker
-from rattlebox.model.stops import Stop as Stop
 from rattlebox.model.tuned_mass import TunedMass as TunedMass
 from rattlebox.plots.backbone import plot_backbone as plot_backbone
 from rattlebox.plots.basins import plot_basins as plot_basins

@@ -565,7 +565,8 @@ class Case(Part):
         return case
 
     def __repr__(self) -> str:
-        counts = Counter(type(part).__name__ for part in (*self.dampers, *self.tuned_masses, *self.stops, *self.loads, *self.base)
+        counts = Counter(
+            type(part).__name__ for part in (*self.dampers, *self.tuned_masses, *self.stops, *self.loads, *self.base)
         )
         parts = ", ".join([type(self.structure).__name__, *(f"{n} {kind}" for kind, n in counts.items())])
         return f"<Case{f' {self.name!r}' if self.name else ''}: {parts}; {self.duration:g} s, {self.method.kind}>"

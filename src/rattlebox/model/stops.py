@@ -22,6 +22,7 @@ from .units import Length, PositiveLength
 if TYPE_CHECKING:
     from .modes import ModalModel
 
+
 def refuse_stops(stops: tuple[Stop, ...], what: str, advice: str) -> None:
     """Raise if there are stops, for a computation that does not know them."""
     if stops:
@@ -74,7 +75,8 @@ class Stop(Part):
 
     .. math:: m^* = \frac{1}{\sum_k (\phi_k - \phi_{o,k})^2}
 
-    with the mass-normalised mode shapes :math:`\phi`; the restitution of a contact law is that of a free impact of this mass.
+    with the mass-normalised mode shapes :math:`\phi`. The restitution of a contact law is that of a free impact of this
+    mass.
 
     References
     ----------

@@ -40,7 +40,8 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
     """Draw approach speed, peak force and restitution of every impact over the time at which its contact begins.
 
     Filled circles are impacts on the trailing wall, open ones on the leading wall, crosses impacts between balls, and
-    diamonds impacts at stops; each damper and stop has its colour. Quantities without values (force of hard impacts, restitution of hysteretic laws) are omitted.
+    diamonds impacts at stops; each damper and stop has its colour. Quantities without values (force of hard impacts,
+    restitution of hysteretic laws) are omitted.
 
     Parameters
     ----------

@@ -155,7 +155,7 @@ def invalid_starts(packed: _core.Problem, shape: Sequence[int]) -> Iterator[Inde
         if not len(position):  # a stop: the point may start inside it
             inside = np.argwhere(np.asarray(cavity > half * (1 + 1e-12)))
             if len(inside):
-                yield _grid_index(np.atleast_1d(inside[0]), shape)
+                yield _grid_index(inside[0].tolist(), shape)
             continue
         overlap = np.argwhere(np.diff(position, axis=0) < 0)
         if len(overlap):

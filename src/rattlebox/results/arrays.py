@@ -167,8 +167,8 @@ class RunArrays(_Frozen):
     """All arrays of one run, in SI units, as attributes; `schema.VARIABLES` lists their names, dimensions and units.
 
     Dimensions: T times, P points, B balls (of all dampers, damper after damper), D dampers and behind them S stops, L loads,
-    M modes, three axes, two contact partners (another particle, the wall). Variables that are left out are zero. Arrays are read-only;
-    equality compares every value, NaN equals NaN.
+    M modes, three axes, two contact partners (another particle, the wall). Variables that are left out are zero. Arrays are
+    read-only; equality compares every value, NaN equals NaN.
 
     Parameters
     ----------

@@ -161,7 +161,8 @@ class Basins(Study):
         """Raise if the fields are not valid; see `Study.validate`."""
         if not (self.case.dampers or self.case.stops):
             raise CaseError(
-                "the case has no damper and no stop; its motion is linear, with one attractor", "a case with an impact damper, or a stop"
+                "the case has no damper and no stop; its motion is linear, with one attractor",
+                "a case with an impact damper, or a stop",
             )
         self.engine.require_alike()
 

@@ -152,7 +152,8 @@ class Bifurcation(Study):
         """Raise if the fields are not valid; see `Study.validate`."""
         if not (self.case.dampers or self.case.stops):
             raise CaseError(
-                "the case has no damper and no stop; its motion is linear and has no bifurcation", "a case with an impact damper, or a stop"
+                "the case has no damper and no stop; its motion is linear and has no bifurcation",
+                "a case with an impact damper, or a stop",
             )
         self._values.require_alike()
         _check_order(self.grid, self.direction)

@@ -68,7 +68,8 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: object)
     """Return stroboscopic states with velocities as lengths, and the range of each component, in gaps.
 
     Lengths are divided by the gap of the damper (of the first one for the structure; without balls by the amplitude),
-    velocities by gap times angular frequency. In motions without impacts, in which balls drift freely, positions and velocities of balls are zero.
+    velocities by gap times angular frequency. In motions without impacts, in which balls drift freely, positions and
+    velocities of balls are zero.
 
     `maps`: strobes over a grid: `displacement`, `velocity` (..., sample), `relative_position`, `relative_velocity` (...,
     sample, ball), `impacts` and `largest_approach_speed`. `period`: length of a cycle [s], broadcastable to the grid.
