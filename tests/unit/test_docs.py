@@ -52,6 +52,7 @@ PAGES = (
     "how-to/notebooks",
     "how-to/paraview",
     "how-to/real_time",
+    "how-to/particle_tuned_mass",
     "how-to/report",
     "how-to/results",
     "how-to/sensitivity",

@@ -16,7 +16,7 @@ from .errors import Hint, at
 from .modes import ModalModel
 from .space import Direction, unit_vector
 from .structures import Ratio
-from .units import Length, PositiveFrequency, PositiveMass, Quantity, Velocity
+from .units import Length, PositiveFrequency, PositiveMass, Quantity, Velocity, in_si
 
 if TYPE_CHECKING:
     from .structures import StructurePart
@@ -164,6 +164,47 @@ class TunedMass(Part):
         tuning = math.sqrt(1 - ratio / 2) / (1 + ratio)
         damping = math.sqrt(3 * ratio / (8 * (1 + ratio) * (1 - ratio / 2)))
         return cls(mass=mass, frequency=frequency * tuning, damping_ratio=damping, **options)
+
+    def with_content(self, mass: Any) -> TunedMass:
+        """Return the tuned mass as a lighter box on the same spring and dashpot, for balls or particles of a mass in it.
+
+        Together the box and its content, if this does not move in the box, are the tuned mass again. A damper with
+        `point="tuned mass"` is in the box: a particle tuned mass damper.
+
+        Parameters
+        ----------
+        mass
+            Mass of the content [kg], below that of the tuned mass; `damper.mass` of an impact damper or
+            `damper.contents.mass.sum()` of a particle damper.
+
+        Returns
+        -------
+        TunedMass
+            The empty box, whose frequency and damping ratio are those without content.
+
+        Raises
+        ------
+        CaseError
+            If the content is not lighter than the tuned mass.
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> full = rb.TunedMass(mass="10 kg", frequency="2 Hz", damping_ratio=0.05)
+        >>> box = full.with_content("7.5 kg")
+        >>> box.mass, box.frequency, box.damping_ratio
+        (2.5, 4.0, 0.1)
+        """
+        content = float(in_si(mass, "kg"))
+        if not 0 <= content < self.mass:
+            raise Hint(
+                f"the content has a mass of {content:g} kg, but box and content together have {self.mass:g} kg",
+                f"less than {self.mass:g} kg; often 0.5 to 0.9 of it",
+                ["mass"],
+            )
+        lighter = math.sqrt(self.mass / (self.mass - content))
+        update = {"frequency": self.frequency * lighter, "damping_ratio": self.damping_ratio * lighter}
+        return self.model_copy(update={"mass": self.mass - content, **update})
 
     @classmethod
     def _of_mode(
