@@ -152,7 +152,7 @@ def trial_seed(seed: int, number: int) -> int:
 class Trials:
     """Trials of a design search: those that are finished, and the next one."""
 
-    def __init__(self, optuna: object, study: object, search: DesignSearch, seed: int, wanted: int | None) -> None:
+    def __init__(self, optuna: Any, study: Any, search: DesignSearch, seed: int, wanted: int | None) -> None:
         self._optuna, self._study, self._search, self._seed = optuna, study, search, seed
         self._stored = finished_trials(optuna, study)
         combinations = search.combinations
