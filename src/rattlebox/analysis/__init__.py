@@ -4,6 +4,7 @@ from rattlebox._util.batch_means import Interval, mean_interval
 from rattlebox.results.extremes import largest_acceleration, largest_drift
 
 from .chaos import lyapunov_exponent
+from .chatter import minimum_real_part
 from .damping_curve import damping_over_amplitude, equivalent_damping
 from .decay import damping_ratio, decay_envelope
 from .drift import drift
@@ -40,6 +41,7 @@ __all__ = [
     "lyapunov_exponent",
     "mean_interval",
     "miles_rms",
+    "minimum_real_part",
     "peak_reduction",
     "phase_portrait",
     "poincare_section",

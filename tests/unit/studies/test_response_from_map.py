@@ -559,3 +559,33 @@ def test_direction_of_the_map() -> None:
     assert along_z.amplitude.values == pytest.approx(again.amplitude.values)
     with pytest.raises(rb.CaseError, match="moves in 3-D and needs a direction"):
         rb.response_from_map(structure, loss_map.drop_attrs(deep=False), **options)
+
+
+def test_measures_of_the_response_to_a_force() -> None:
+    """A constant mass has the smallest real part and the dynamic stiffness of its equation; unknown motions have none."""
+    mass, hertz = 0.05 - 0.3j, np.linspace(20, 60, 4001).tolist()
+    found = rb.response_from_map(OSCILLATOR, made_map(lambda *_: mass), level=["2 N", "4 N"], frequencies=hertz)
+    omega = 2 * np.pi * np.linspace(25, 40, 1_000_001)
+    response = 1 / (3 * ((64 * np.pi) ** 2 + 0.01j * 64 * np.pi * omega) - omega**2 * (3 + mass))
+    np.testing.assert_allclose(found.minimum_real_part.squeeze(), response.real.min(), rtol=1e-6)
+    np.testing.assert_allclose(found.dynamic_stiffness.squeeze(), 1 / np.abs(response).max(), rtol=1e-6)
+    part = made_map(lambda *_: mass, np.geomspace(1e-7, 1e-4, 5))
+    found = rb.response_from_map(OSCILLATOR, part, level="2 N", frequencies=hertz)
+    assert np.isnan(found.minimum_real_part).all() and np.isnan(found.dynamic_stiffness).all()
+
+
+def test_transmissibility_of_a_base_motion() -> None:
+    """The absolute acceleration over that of the base is that of the equation, at a point on a line and in 3-D."""
+    mass, omega = 0.3 - 0.1j, 2 * np.pi * np.array([30.0, 33.0])
+    found = rb.response_from_map(OSCILLATOR, made_map(lambda *_: mass), level="2 m/s^2", frequencies=[30.0, 33.0])
+    spring = 3 * ((64 * np.pi) ** 2 + 0.01j * 64 * np.pi * omega)
+    exact = np.abs(spring / (spring - omega**2 * (3 + mass)))
+    np.testing.assert_allclose(found.transmissibility.squeeze(), exact, rtol=1e-6)
+    shape = [[3**-0.5, 0.0, 0.0]]
+    space = rb.Modal(
+        frequencies=[32.0], damping_ratio=0.005, shapes={"mass": shape}, participation=[[3**0.5, 0.0, 0.0]]
+    )
+    options: dict[str, Any] = {"level": "2 m/s^2", "direction": "x", "frequencies": [30.0, 33.0]}
+    for point in (None, "mass x"):
+        found = rb.response_from_map(space, made_map(lambda *_: mass), point=point, **options)
+        np.testing.assert_allclose(found.transmissibility.squeeze(), exact, rtol=1e-6)

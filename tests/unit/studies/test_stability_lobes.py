@@ -214,3 +214,14 @@ def test_refused_arguments(change: dict[str, Any], words: str) -> None:
     """Arguments that are not valid are refused before anything is computed."""
     with pytest.raises(rb.RattleboxError, match=re.escape(words)):
         rb.stability_lobes(**({"case": TOOL, "cutting_coefficient": KS} | change))
+
+
+def test_measures_of_a_frequency_response() -> None:
+    """A stepped sine of a linear tool has the smallest real part and the dynamic stiffness of the formula."""
+    case = rb.Case(structure=TOOL, load=rb.Harmonic(amplitude="10 N", frequency="130 Hz"), duration="1 s")
+    found = rb.frequency_response(
+        case, rb.linspace("124 Hz", "138 Hz", 57), cycles=(400, 8), direction="up", progress=False
+    )
+    stiffness = 2.5 * (2 * np.pi * 130) ** 2
+    assert found.minimum_real_part.item() == pytest.approx(-1 / (4 * stiffness * 0.02 * 1.02), rel=1e-3)
+    assert found.dynamic_stiffness.item() == pytest.approx(2 * stiffness * 0.02, rel=2e-3)

@@ -20,6 +20,7 @@ from rattlebox.prepare.particles import resolve_softening
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.grid.grid import Grid
 from rattlebox.studies.kinds.sweep import result_notes
+from rattlebox.studies.maps.response_from_map import force_measures
 from rattlebox.studies.run.store import save_result
 from rattlebox.studies.run.study import (
     CONFIG,
@@ -90,7 +91,8 @@ class FrequencyResponse(Study):
         NaN, and `attrs["too_short"]` names them; `attrs["unsettled"]` counts motions of impact dampers that are not
         periodic. With particle dampers also `warnings`, the exceeded validity limits of each run (`flag_meanings`); see
         `rb.sweep` for frequencies that cannot run. Over level and frequency: `bare_amplitude` [m] of the structure without
-        dampers.
+        dampers. With a force, over `direction` and `level`: `minimum_real_part` [m/N] of the displacement over the force, on
+        which chatter depends, and `dynamic_stiffness` [N/m], the smallest force over displacement.
 
     Raises
     ------
@@ -195,6 +197,8 @@ class FrequencyResponse(Study):
             bare,
             {"units": units, "long_name": "amplitude without dampers"},
         )
+        if place.startswith("load") and units == "m":
+            found = found.assign(force_measures(found, found.amplitude))
         found.frequency.attrs["long_name"] = "frequency"
         load = "load" if place.startswith("load") else "base"
         found.level.attrs["long_name"] = f"amplitude of the {load}"

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.flags import flag_masks
+from rattlebox.analysis.chatter import minimum_real_part
 from rattlebox.analysis.describing_function import MassTable
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, at
@@ -96,7 +97,11 @@ def response_from_map(
         `peak_softening_error` is the relative change of the peak without the estimated effect of the softening of the map;
         NaN where that is unknown. The attribute `softening` has the values of the softening. Over `at` and `number`:
         `mass_ratio` of the particles to the effective mass of the structure for an impact at their point, 1 / sum of
-        squared mode shapes. What the map does not cover is NaN. The attribute `warnings` counts it.
+        squared mode shapes. What the map does not cover is NaN. The attribute `warnings` counts it. With a force, over
+        `at`, `number` and `level`: `minimum_real_part` [m/N] of the displacement over the force, on which chatter depends
+        (`rb.stability_lobes`), and `dynamic_stiffness` [N/m], the smallest force over displacement, both of the largest
+        motion; NaN like `peak`. With a motion of the base, over `solution`, too:
+        `transmissibility`, the absolute acceleration of the observed point over that of the base.
 
     Raises
     ------
@@ -165,7 +170,9 @@ def response_from_map(
     }
     result = _dataset(parts, transfer, table, axes, about)
     _check_coverage(result, table)
-    return result
+    if unit == "N":
+        return result.assign(force_measures(result, result.amplitude.isel(solution=0, drop=True)))
+    return result.assign(transmissibility=_transmissibility(result, load.along(model, name, dampers.direction, point)))
 
 
 # ---- arguments
@@ -268,6 +275,15 @@ class _Load(NamedTuple):
     force: FloatArray
     base: FloatArray
     name: str
+    axis: FloatArray | None = None  # direction of the motion of the base of a structure in 3-D
+
+    def along(self, model: ModalModel, observed: str, axis: FloatArray | None, given: str | None) -> float:
+        """Return the part of the motion of the base along that of the observed point."""
+        if self.axis is None or (observed in model.shapes and observed not in model.spatial):
+            return 1.0
+        if given is None and axis is not None:
+            return float(axis @ self.axis)
+        return float(self.axis["xyz".index(observed[-1])])
 
     @classmethod
     def of(cls, model: ModalModel, unit: str, point: Any, direction: Any, dampers: DamperPoints) -> _Load:
@@ -288,7 +304,7 @@ class _Load(NamedTuple):
         if axis is None:
             raise Hint("the base of this structure moves in 3-D", 'load_direction = "z"', ["load_direction"])
         base = [1.0 if own is None else float(own @ axis) for own in dampers.axes]
-        return cls(-(model.participation @ axis), np.array(base), "acceleration of the base")
+        return cls(-(model.participation @ axis), np.array(base), "acceleration of the base", np.asarray(axis))
 
 
 def _observed(model: ModalModel, name: str, axis: FloatArray | None, given: str | None) -> tuple[str, FloatArray]:
@@ -449,6 +465,43 @@ def _softening_warnings(error: FloatArray, about: dict[str, str]) -> list[str]:
     if largest < _SOFTENED:
         return []
     return [f"softening {softening} in the map may change a peak by {100 * largest:.2g} %, see peak_softening_error"]
+
+
+def force_measures(result: xarray.Dataset, amplitude: xarray.DataArray) -> dict[str, xarray.DataArray]:
+    """Return the smallest real part of the response to a force, and the smallest force over displacement.
+
+    Parameters
+    ----------
+    result
+        Dataset over level and frequency with `phase` and `bare_amplitude`.
+    amplitude
+        Amplitude of the displacement [m]; NaN where it is unknown.
+    """
+    phase = result.phase.isel(solution=0) if "solution" in result.phase.dims else result.phase
+    response = amplitude / result.level * np.exp(1j * phase)
+    real = response.reduce(
+        lambda values, axis: np.apply_along_axis(
+            lambda one: minimum_real_part(result.frequency.values, one), axis, values
+        ),
+        "frequency",
+    )
+    compliance = abs(response).max("frequency")
+    # The response without dampers stands for the largest possible one where it is unknown, as for `peak`.
+    possible = (result.bare_amplitude / result.level).where(np.isnan(response)).max("frequency").fillna(0.0)
+    known = {
+        "minimum_real_part": (real.where(possible <= -real), "m/N", "smallest real part of displacement over force"),
+        "dynamic_stiffness": (1 / compliance.where(possible <= compliance), "N/m", "smallest force over displacement"),
+    }
+    return {name: values.assign_attrs(_described(unit, text)) for name, (values, unit, text) in known.items()}
+
+
+def _transmissibility(result: xarray.Dataset, along: float) -> xarray.DataArray:
+    """Return the absolute acceleration of the observed point over that of the base."""
+    relative = result.amplitude * np.exp(1j * result.phase) / result.level
+    absolute: xarray.DataArray = abs(along - (2 * np.pi * result.frequency) ** 2 * relative)
+    return absolute.transpose(*result.amplitude.dims).assign_attrs(
+        _described("1", "absolute acceleration of the point over that of the base")
+    )
 
 
 def _check_coverage(result: xarray.Dataset, table: LossTable) -> None:
