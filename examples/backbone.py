@@ -1,5 +1,5 @@
 """Damping and frequency over amplitude, by phase resonance
-=======================================================
+========================================================
 
 For test engineers: frequency and damping ratio of a plate with a box of balls over amplitude, as in a test with a
 phase-locked loop.

@@ -76,7 +76,7 @@ def record_set(
     Parameters
     ----------
     files
-        A folder, of which all files are read except hidden ones; a pattern such as "quakes/*.at2"; a list of files; or a
+        A folder, of which all files are read except hidden ones; a pattern such as `quakes/*.at2`; a list of files; or a
         mapping of names to files or records. Folders and patterns are read in the order of the names of their files.
     names
         Names of the records, one for each file; default the names of the files without their ending, or with it if several
