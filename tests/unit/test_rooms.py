@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -52,3 +53,11 @@ def test_frozen_objects_are_completed_in_one_place() -> None:
     files = [path for path in PACKAGE.rglob("*.py") if path.name != "frozen.py"]
     assert not [str(path) for path in files if re.search(r"\w\.__setattr__\b", path.read_text(encoding="utf-8"))]
     assert "exclude_type_checking_imports" not in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+
+
+def test_nothing_outside_the_model_asks_for_the_kind_of_a_thing() -> None:
+    """Behaviour of kinds is on their classes: no `isinstance` over kinds outside of the model, which a new kind would miss."""
+    size = runpy.run_path(str(ROOT / "tools" / "size.py"))
+    sources = [size["read"](path) for path in sorted(PACKAGE.rglob("*.py"))]
+    assert len(size["kinds"](sources)) > 30
+    assert list(size["ladders"](sources)) == []
