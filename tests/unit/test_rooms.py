@@ -56,7 +56,7 @@ def test_frozen_objects_are_completed_in_one_place() -> None:
 
 
 def test_nothing_outside_the_model_asks_for_the_kind_of_a_thing() -> None:
-    """Behaviour of kinds is on their classes: no `isinstance` over kinds outside of the model, which a new kind would miss."""
+    """Behaviour of kinds is on their classes: no `isinstance` over kinds outside of it, which a new kind would miss."""
     size = runpy.run_path(str(ROOT / "tools" / "size.py"))
     sources = [size["read"](path) for path in sorted(PACKAGE.rglob("*.py"))]
     assert len(size["kinds"](sources)) > 30
