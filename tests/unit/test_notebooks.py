@@ -96,7 +96,7 @@ def test_run_and_summary(run):
     shown = parsed(run).text
     for words in ("finished", "Modal", "1 Record", "event_driven", "peak displacement", "µm"):
         assert words in shown
-    assert "run too short for an interval" in parsed(run.summary()).text
+    assert "the run is too short for one" in parsed(run.summary()).text
     assert parsed(run.summary()).text in shown
     warned = parsed(type(run)(run.arrays, run.source, notes=("mind the <gap>",), status="interrupted", message="stop"))
     assert "mind the <gap>" in warned.text and "interrupted" in warned.text and "stop" in warned.text

@@ -36,6 +36,8 @@ def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
     Masses are written in grams, kilograms and tonnes: kkg and Mg are not used.
     """
     base = 1.0
+    if unit == "m/s^2":
+        return base, unit
     if unit == "kg":
         heavy = math.isfinite(value) and value != 0.0 and _exponent(value, 4) >= 3
         base, unit = (1e3, "t") if heavy else (1e-3, "g")

@@ -12,7 +12,7 @@ from rattlebox._util.exceptions import CaseError
 from ..results import RunArrays
 from ..results.summary import largest_points
 from .style import FAINT, SERIES_COLOURS, SERIES_STYLES, StyledFigure, legend_above, pen
-from .types import Size, Vector
+from .types import Size, Style, Vector
 
 MAX_SERIES = len(SERIES_COLOURS)
 
@@ -51,6 +51,10 @@ def draw_line(axes: Axes, x: Vector, y: Vector, series: int, name: str | None, *
 def draw_largest(axes: Axes, x: Vector, y: Vector, names: Sequence[str]) -> None:
     """Draw lines about zero, y (n, lines) over x (n,): of many those with the largest values, with a legend of several."""
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-    for k, line in enumerate(largest_points(np.abs(y).max(axis=0), MAX_SERIES)):
+    peaks = np.abs(y).max(axis=0)
+    moving = len(largest_points(peaks, len(names)))
+    for k, line in enumerate(largest_points(peaks, MAX_SERIES)):
         draw_line(axes, x, y[:, line], k, names[line] if len(names) > 1 else None)
-    legend_above(axes)
+    # The choice is stated: of ten storeys, the reader must not take six for all.
+    choice: Style = {"title": f"the largest {MAX_SERIES} of {moving}", "alignment": "left"}
+    legend_above(axes, **(choice if moving > MAX_SERIES else {}))

@@ -15,27 +15,27 @@ from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
 from .panels import draw_largest, time_panels, time_window
-from .style import Scale, figure_style, label, scaled, time_axis
+from .style import figure_style, label, scaled, time_axis
 from .types import Size, Vector
 
 QUANTITIES = {
     "displacement": ("Displacement", "m"),
     "velocity": ("Velocity", "m/s"),
-    "acceleration": ("Acceleration relative to base", "m/s²"),
-    "absolute_acceleration": ("Absolute acceleration", "m/s²"),
-    "modal_displacement": ("Modal displacement", "kg$^{0.5}$ m"),
-    "modal_velocity": ("Modal velocity", "kg$^{0.5}$ m/s"),
+    "acceleration": ("Acceleration relative to base", "m/s^2"),
+    "absolute_acceleration": ("Absolute acceleration", "m/s^2"),
+    "modal_displacement": ("Modal displacement", "kg^0.5 m"),
+    "modal_velocity": ("Modal velocity", "kg^0.5 m/s"),
     "cavity_force": ("Force of damper", "N"),
     "interface_force": ("Force on base", "N"),
     "base_displacement": ("Displacement of base", "m"),
     "base_velocity": ("Velocity of base", "m/s"),
-    "base_acceleration": ("Acceleration of base", "m/s²"),
+    "base_acceleration": ("Acceleration of base", "m/s^2"),
     "load": ("Load", "N"),
 }
 """Labels and units of the variables that can be drawn."""
 
 
-class _Panel(NamedTuple):
+class Panel(NamedTuple):
     """Lines of one panel: values (T, N) [SI] and their names, label and unit of the axis."""
 
     values: Vector
@@ -82,7 +82,7 @@ def plot_responses(
     chosen = _default(arrays) if of is None else [of] if isinstance(of, str) else list(of)
     drifts = [name for name in chosen if " - " in name]
     variables = [name for name in chosen if name not in drifts]
-    panels = [_variable(arrays, name) for name in variables]
+    panels = [response(arrays, name) for name in variables]
     if drifts:
         panels.insert(min(1, len(panels)), _drifts(arrays, drifts))
     if not panels:
@@ -92,7 +92,7 @@ def plot_responses(
         time = scaled(arrays.time[window], "s")
         for axis, panel in zip(axes, panels, strict=True):
             values = panel.values[window]
-            scale = scaled(values, panel.unit) if panel.unit in ("m", "m/s", "N") else Scale(1.0, panel.unit)
+            scale = scaled(values, panel.unit)
             draw_largest(axis, arrays.time[window] / time.divisor, values / scale.divisor, panel.names)
             label(axis, "y", panel.text, scale.unit)
         time_axis(axes[-1], arrays.time[window], time)
@@ -112,7 +112,18 @@ def _default(arrays: RunArrays) -> list[str]:
     return chosen or ["base_acceleration"]
 
 
-def _variable(arrays: RunArrays, name: str) -> _Panel:
+def response(arrays: RunArrays, name: str, point: str | None = None) -> Panel:
+    """Return the lines of a variable or a drift; of the variables of points that of one point, if it is given."""
+    panel = _drifts(arrays, [name]) if " - " in name else _variable(arrays, name)
+    if len(panel.names) == 1 and " - " in name:
+        return panel._replace(text=f"Drift of {name}")
+    if point not in panel.names or point is None:
+        return panel
+    where = panel.names.index(point)
+    return panel._replace(values=panel.values[:, where : where + 1], names=[point], text=f"{panel.text} of {point}")
+
+
+def _variable(arrays: RunArrays, name: str) -> Panel:
     """Return the lines of a variable: one for each point, mode, load or damper, with axis in a 3-D run."""
     if name not in QUANTITIES:
         raise CaseError(f"of = {name!r} is not a response", f"{', '.join(QUANTITIES)}, or 'upper point - lower point'")
@@ -134,10 +145,10 @@ def _variable(arrays: RunArrays, name: str) -> _Panel:
         names = [f"{one} {axis}" if several else f"along {axis}" for one in first for axis in AXES]
     else:
         names = first
-    return _Panel(values.reshape(arrays.time.size, -1), names, *QUANTITIES[name])
+    return Panel(values.reshape(arrays.time.size, -1), names, *QUANTITIES[name])
 
 
-def _drifts(arrays: RunArrays, names: list[str]) -> _Panel:
+def _drifts(arrays: RunArrays, names: list[str]) -> Panel:
     """Return the displacements of points relative to others or to the base."""
     motion = dict(zip(arrays.points, arrays.displacement.T, strict=True)) | {"base": np.zeros(arrays.time.size)}
     columns = []
@@ -149,4 +160,4 @@ def _drifts(arrays: RunArrays, names: list[str]) -> _Panel:
                 f"two of {', '.join(motion)}, as in '{next(iter(motion))} - base'",
             )
         columns.append(motion[pair[0]] - motion[pair[1]])
-    return _Panel(np.stack(columns, axis=1), names, "Drift", "m")
+    return Panel(np.stack(columns, axis=1), names, "Drift", "m")

@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import wrap
 from typing import IO, Any, Literal, NamedTuple, cast
 
 import matplotlib as mpl
@@ -80,6 +81,7 @@ def _settings(size: Size) -> Style:
         "xtick.labelsize": 0.9 * font,
         "ytick.labelsize": 0.9 * font,
         "legend.fontsize": 0.9 * font,
+        "legend.title_fontsize": 0.9 * font,
         "axes.linewidth": 0.6 * line,
         "xtick.major.width": 0.6 * line,
         "ytick.major.width": 0.6 * line,
@@ -252,10 +254,13 @@ def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
     unit
         Unit with its prefix; "" for a pure number.
     """
+    unit = unit.replace("^2", "²").replace("^0.5", "$^{0.5}$")
     if which == "x":
         axes.set_xlabel(f"{text} ({unit})" if unit else text)
-    else:
-        axes.set_ylabel(f"{text}\n({unit})" if unit else "\n".join(text.rsplit(" ", 1)))
+        return
+    # Lines that are shorter than the panel is high, so that labels do not run into each other.
+    lines = wrap(text, letters(axes, "y")) if unit or len(text) > letters(axes, "y") else text.rsplit(" ", 1)
+    axes.set_ylabel("\n".join([*lines, f"({unit})"] if unit else lines))
 
 
 def pen(width: float = 0.6) -> float:
@@ -310,11 +315,14 @@ def shorten(text: str, room: int) -> str:
     return f"{text[: room - 1 - tail]}…{text[len(text) - tail :]}"
 
 
-def letters(axes: Axes) -> int:
-    """Estimate the number of legend letters that fit above an axes."""
+def letters(axes: Axes, along: Literal["x", "y"] = "x") -> int:
+    """Estimate the number of letters that fit in a legend above an axes, or in a line of the label to its left."""
     figure, grid = present(axes.get_figure(root=True)), axes.get_gridspec()
-    width = 72.0 * figure.get_figwidth() / (grid.ncols if grid is not None else 1)
-    return int(0.8 * width / (0.58 * 0.9 * float(mpl.rcParams["font.size"])))
+    if along == "y":
+        length, share = figure.get_figheight() / (grid.nrows if grid is not None else 1), 0.85
+    else:
+        length, share = figure.get_figwidth() / (grid.ncols if grid is not None else 1), 0.8
+    return max(int(share * 72.0 * length / (0.58 * 0.9 * float(mpl.rcParams["font.size"]))), 1)
 
 
 _HANDLE_LETTERS = 6  # width of a legend handle in letters

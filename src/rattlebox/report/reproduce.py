@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pprint
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,10 +38,10 @@ def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
     names = {name: _file_name(number, len(cases)) for number, name in enumerate(cases)}
     files = [File(names[name], case.to_toml(), case.short_toml()) for name, case in cases.items()]
     # A comparison is no single call: its cases run one by one, and a script compares them.
-    if call is None:
+    if call is None or call.function == "compare":
         if len(cases) < 2:
             return Recipe((), tuple(files), ("The call of the study is not part of its result.",) if files else ())
-        script = _comparison_script(names)
+        script = _comparison_script(names, call.arguments if call else {})
         commands = tuple(f"rattlebox run {file} -o {file.removesuffix('.toml')}" for file in names.values())
         return Recipe((*commands, "python script.py"), (*files, File("script.py", script, script)))
     # Several cases of one call are the best designs, each of which can begin the search.
@@ -80,10 +80,11 @@ def _literal(value: object) -> str:
     return pprint.pformat(value, width=_WIDTH, compact=True, sort_dicts=False).replace("\n", "\n    ")
 
 
-def _comparison_script(names: Mapping[str, str]) -> str:
+def _comparison_script(names: Mapping[str, str], options: Mapping[str, Any]) -> str:
+    given = "".join(f"    {name}={value!r},\n" for name, value in options.items())
     cases = "".join(f"\n        {name!r}: rb.Case.from_file({file!r})," for name, file in names.items())
     return (
-        f"import rattlebox as rb\n\nresult = rb.compare(\n    {{{cases}\n    }}\n)\n"
+        f"import rattlebox as rb\n\nresult = rb.compare(\n    {{{cases}\n    }}{',' * bool(given)}\n{given})\n"
         'rb.write_report(result, "report.html")\n'
     )
 

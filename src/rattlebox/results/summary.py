@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TextIO
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TextIO
 import numpy as np
 
 from rattlebox._util.batch_means import half_widths, shortest_window
-from rattlebox._util.exceptions import RattleboxError
+from rattlebox._util.exceptions import CaseError, RattleboxError
 from rattlebox._util.html import bullets, paragraph, table
 from rattlebox._util.quantities import MISSING, digits, quantity
 from rattlebox.core import _core
@@ -36,6 +36,8 @@ _MAX_PEAKS = 20
 """Points of a structure with a line of their peak."""
 SETTLED = 0.05
 """Displacement of a motion that has settled, over the peak of the first run of a comparison."""
+_NAMED = {"share_in": "dampers", "peak_load": "loads", "peak_damper_force": "dampers"}
+"""Values that are listed by name, and what has these names."""
 _ROUNDING = 1e-9
 """Motion over the largest motion of any point, below which a point counts as at rest."""
 _CHANNEL_LABELS = {
@@ -75,20 +77,18 @@ class _Row:
         if self.at:
             return f"{quantity(value, self.unit)} at {quantity(float(values[self.at]), 'm')}"
         if self.key.startswith("steady_"):
-            return self._with_error(value, float(values[_error_of(self.key)]))
+            return self._with_error(value, float(values[error_of(self.key)]))
         if self.key.startswith("settling_time") and math.isnan(value):
             return "not reached"
         if self.unit == "order":
             return f"{value:.1e}" if value else "0"
-        if self.unit == "kg^0.5 m":  # has no prefixes
-            return f"{digits(value, 4)} {self.unit}"
         if self.unit == "million":
             return MISSING if math.isnan(value) else f"{digits(1e-6 * value, 3)} million"
         return MISSING if self.unit == "1" and math.isinf(value) else quantity(value, self.unit)
 
     def _with_error(self, value: float, error: float) -> str:
         if math.isnan(error):
-            return f"{quantity(value, self.unit)}, run too short for an interval"
+            return quantity(value, self.unit)  # a note says it once for all lines
         share = 100 * error / value if value else 0.0
         return f"{quantity(value, self.unit)} +- {digits(share, 2)} %"
 
@@ -202,9 +202,22 @@ def _particle_results(run: Record) -> dict[str, Value]:
 
 
 def _notes(run: Record) -> tuple[str, ...]:
-    """Return the lines below the table."""
+    """Return what a run states about itself."""
     message = (run.message,) if run.message and not run.ok else ()
     return message + run.notes
+
+
+def _notes_about(all_values: Sequence[Mapping[str, Value]]) -> Iterator[str]:
+    """Yield what the lines of a table leave out."""
+    errors = [
+        value for values in all_values for key, value in values.items() if key.partition("[")[0].endswith("_error")
+    ]
+    if any(isinstance(error, float) and math.isnan(error) for error in errors):
+        yield "note: values of the second half without +- have no 95 % interval, because the run is too short for one"
+    for what, name in _NAMED.items():
+        count = len(_keys(what, all_values))
+        if count > _MAX_POINTS:
+            yield f"note: the table has the {_MAX_POINTS} of {count} {name} with the largest values; `values` has all"
 
 
 def _largest(x: FloatArray) -> float:
@@ -360,24 +373,24 @@ def _fewest_samples(run: Record, times: FloatArray) -> float:
 
 def _with_interval(key: str, series: FloatArray, least: float) -> dict[str, Value]:
     """Return the mean of a steady series, and half the width of its 95 % interval."""
-    return {key: float(np.mean(series)), _error_of(key): float(half_widths(series[None], least)[0][0])}
+    return {key: float(np.mean(series)), error_of(key): float(half_widths(series[None], least)[0][0])}
 
 
 def _root_with_interval(key: str, squares: FloatArray, least: float) -> dict[str, Value]:
     """Return the root of the mean of steady squares, and half the width of its 95 % interval."""
     mean, half = float(np.mean(squares)), float(half_widths(squares[None], least)[0][0])
     lower, middle, upper = (math.sqrt(max(square, 0.0)) for square in (mean - half, mean, mean + half))
-    return {key: middle, _error_of(key): 0.5 * (upper - lower)}
+    return {key: middle, error_of(key): 0.5 * (upper - lower)}
 
 
-def _error_of(key: str) -> str:
+def error_of(key: str) -> str:
     """Return the key of half the width of the interval of a value: rms_x[point] -> rms_x_error[point]."""
     name, bracket, point = key.partition("[")
     return f"{name}_error{bracket}{point}"
 
 
-def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
-    """Return the lines for which any of the runs has a value."""
+def _rows(all_values: Sequence[Mapping[str, Value]], detailed: Collection[str]) -> list[_Row]:
+    """Return the lines for which any of the runs has a value, and all of them for the points in `detailed`."""
 
     def named(what: str, label: str, unit: str) -> Iterator[_Row]:
         for key, name in _largest_of(what, all_values):
@@ -390,17 +403,16 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
             rows.append(_Row(key, label, "%"))
     rows += [_Row(f"share_at_{partner}", label, "%") for partner, label in _PARTNER_LABELS.items()]
     rows += [*named("share_in", "lost in ", "%"), *_CONTACTS]
-    several = len({key for values in all_values for key in values if key.startswith("peak_displacement[")}) > 1
-    detailed = dict(_largest_of("peak_displacement", all_values))
+    several = len(_keys("peak_displacement", all_values)) > 1
     for key, point in _largest_of("peak_displacement", all_values, _MAX_PEAKS):
         where = f", {point}" if several else ""
         rows.append(_Row(key, f"peak displacement{where}", "m"))
-        if key in detailed:
+        if point in detailed:
             rows += [replace(row, key=f"{row.key}[{point}]", label=row.label + where) for row in _OF_POINT]
-    rows += named("peak_drift", "peak drift, ", "m")
+    if len(_keys("peak_drift", all_values)) <= _MAX_POINTS:
+        rows += named("peak_drift", "peak drift, ", "m")
     rows.append(_Row("largest_drift", "largest drift of all storeys", "m"))
     rows.append(_Row("largest_acceleration", "largest acceleration of all points", "m/s^2"))
-    rows += named("peak_modal_displacement", "peak modal displacement, ", "kg^0.5 m")
     rows += [_DECAY, *named("peak_load", "peak load, ", "N")]
     rows.append(_Row("peak_base_acceleration", "peak acceleration of the base", "m/s^2"))
     rows += named("peak_damper_force", "peak force of ", "N")
@@ -408,12 +420,24 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
     return [row for row in rows if any(row.key in values for values in all_values)]
 
 
-def _largest_of(what: str, all_values: tuple[dict[str, Value], ...], count: int = _MAX_POINTS) -> list[tuple[str, str]]:
+def _keys(what: str, all_values: Sequence[Mapping[str, Value]]) -> list[str]:
+    """Return the keys "what[name]" of all runs."""
+    return list(dict.fromkeys(key for values in all_values for key in values if key.startswith(f"{what}[")))
+
+
+def _largest_of(
+    what: str, all_values: Sequence[Mapping[str, Value]], count: int = _MAX_POINTS
+) -> list[tuple[str, str]]:
     """Return key and name of the largest values with keys "what[name]"."""
     # A comparison lists the same points for all its runs: those with the largest value in any of them.
-    keys = list(dict.fromkeys(key for values in all_values for key in values if key.startswith(f"{what}[")))
+    keys = _keys(what, all_values)
     highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in keys]
-    return [(keys[k], keys[k].partition("[")[2][:-1]) for k in largest_points(highest, count)]
+    return [(keys[k], _name_in(keys[k])) for k in largest_points(highest, count)]
+
+
+def _name_in(key: str) -> str:
+    """Return the name of a key "what[name]"."""
+    return key.partition("[")[2][:-1]
 
 
 def largest_points(peaks: ArrayLike, count: int) -> list[int]:
@@ -522,15 +546,18 @@ class Summary(_Report):
     """
 
     def __init__(self, run: Record) -> None:
-        super().__init__("", ("",), _notes(run))
         self.values = _main_results(run)
+        super().__init__("", ("",), (*_notes_about((self.values,)), *_notes(run)))
 
     def _cells(self) -> list[tuple[str, ...]]:
-        return [(row.label, row.text(self.values)) for row in _rows((self.values,))]
+        detailed = dict(_largest_of("peak_displacement", (self.values,))).values()
+        return [(row.label, row.text(self.values)) for row in _rows((self.values,), detailed)]
 
 
 class Comparison(_Report):
     """Summaries of several runs in one table, one column per run.
+
+    Of structures with more than four points the table has all lines for one point, and the peak displacement of the others.
 
     Attributes
     ----------
@@ -539,13 +566,17 @@ class Comparison(_Report):
         `rms_reduction[point]`, one minus the ratio to the first. If no load or base motion acts at the end of any run,
         `settling_time[point]`, after which the displacement is at most 5 % of the peak of the first run; NaN if that is not
         reached.
+    point : str
+        Point that is compared, "" if the runs have no point in common.
+    of : str
+        Quantity that is compared: "displacement", "acceleration", "drift" or "force".
     """
 
-    def __init__(self, runs: Mapping[str, Record], title: str = "") -> None:
+    def __init__(
+        self, runs: Mapping[str, Record], title: str = "", *, point: str | None = None, of: str = "displacement"
+    ) -> None:
         if not runs:
             raise ValueError("there is no run to compare")
-        notes = tuple(f"{name}: {note}" for name, run in runs.items() for note in _notes(run))
-        super().__init__(title, tuple(runs), notes)
         self.runs = dict(runs)
         self.values = {name: _main_results(run) for name, run in runs.items()}
         reference, *others = self.values.values()
@@ -554,10 +585,98 @@ class Comparison(_Report):
         if not any(is_driven(run.arrays) for run in runs.values()):
             for name, run in runs.items():
                 self.values[name] |= _settling_times(reference, run.arrays)
+        self.points = common_points(self.runs)
+        self.point = checked_point(point, self.points)
+        self.of = _checked_quantity(of, self.values)
+        every = tuple(self.values.values())
+        one_of_many = bool(self.point) and len(_keys("peak_displacement", every)) > _MAX_POINTS
+        choice = (f"note: lines of one point are those of {self.point}; point= of rb.compare chooses another",)
+        super().__init__(title, tuple(runs), (*(choice if one_of_many else ()), *_notes_about(every), *self.notes()))
+
+    def notes(self) -> list[str]:
+        """Return the notes of the runs, each once, after the names of its runs."""
+        names: dict[str, list[str]] = {}
+        for name, run in self.runs.items():
+            for note in _notes(run):
+                names.setdefault(note, []).append(name)
+        every = len(self.runs)
+        return [
+            f"{', '.join(some) if len(some) < every or every < 3 else 'all'}: {note}" for note, some in names.items()
+        ]
+
+    def measures(self) -> list[tuple[str, str, str]]:
+        """Return key, label and unit of the values that are compared: one quantity, at one point."""
+        rows = [(key.format(point=self.point), label, unit) for key, label, unit in COMPARED[self.of]]
+        every = tuple(self.values.values())
+        # Over the second half, if this has an interval in all runs.
+        for k, (key, label, unit) in enumerate(rows):
+            late = f"steady_{key}"
+            if all(math.isfinite(float(values.get(error_of(late), math.nan))) for values in every):
+                rows[k] = late, f"{label} in the second half of the run", unit
+        return [row for row in rows if all(row[0] in values for values in every)]
+
+    def drawn(self) -> str | None:
+        """Return the variable, or the largest drift of the first run, that a figure of the comparison shows."""
+        if self.of != "drift":
+            return {"acceleration": "absolute_acceleration", "force": "interface_force"}.get(self.of)
+        ((_, storey),) = _largest_of("peak_drift", (next(iter(self.values.values())),), 1)
+        number = int(storey.removeprefix("storey "))
+        return f"{storey} - {f'storey {number - 1}' if number > 1 else 'base'}"
 
     def _cells(self) -> list[tuple[str, ...]]:
         every = tuple(self.values.values())
-        return [(row.label, *(row.text(values) for values in every)) for row in _rows(every)]
+        several = len(_keys("peak_displacement", every)) > _MAX_POINTS
+        detailed = [self.point] if several else [_name_in(key) for key in _keys("peak_displacement", every)]
+        return [(row.label, *(row.text(values) for values in every)) for row in _rows(every, detailed)]
+
+
+COMPARED = {
+    "displacement": (
+        ("peak_displacement[{point}]", "peak displacement", "m"),
+        ("rms_displacement[{point}]", "RMS displacement", "m"),
+    ),
+    "acceleration": (
+        ("peak_acceleration[{point}]", "peak acceleration", "m/s^2"),
+        ("rms_acceleration[{point}]", "RMS acceleration", "m/s^2"),
+    ),
+    "drift": (("largest_drift", "largest drift of all storeys", "m"),),
+    "force": (
+        ("peak_interface_force", "peak force on the base", "N"),
+        ("rms_interface_force", "RMS force on the base", "N"),
+    ),
+}
+"""Quantities that sentences of a comparison can be about: key, label and unit of their values."""
+
+
+def common_points(runs: Mapping[str, Record]) -> list[str]:
+    """Return the points that all runs have, without tuned masses, that with the largest peak in the first run first."""
+    first, *others = runs.values()
+    own = list(first.arrays.points)
+    with suppress(RattleboxError):  # of the case of a run from a file, which may name files that are gone
+        own = own_points(first.case) if first.source else own
+    peaks = dict(zip(first.arrays.points, np.abs(first.arrays.displacement).max(axis=0, initial=0.0), strict=True))
+    common = [point for point in own if all(point in run.arrays.points for run in others)]
+    return sorted(common, key=lambda point: -peaks[point])
+
+
+def checked_point(point: str | None, points: list[str]) -> str:
+    """Return the point to compare: by default the first one, "" if there is none."""
+    if point is not None and point not in points:
+        raise CaseError(
+            f"point = {point!r} is not a point of all runs", ", ".join(points) or "runs with a common point"
+        )
+    return point or next(iter(points), "")
+
+
+def _checked_quantity(of: str, values: Mapping[str, Mapping[str, Value]]) -> str:
+    """Return the quantity to compare, which all runs must have unless it is the default."""
+    if of not in COMPARED:
+        raise CaseError(f"of = {of!r} is not a quantity of comparisons", ", ".join(COMPARED))
+    key = COMPARED[of][0][0].partition("[")[0]
+    missing = [name for name, some in values.items() if not any(each.partition("[")[0] == key for each in some)]
+    if missing and of != "displacement":
+        raise CaseError(f"of = {of!r}: {', '.join(missing)} has no {COMPARED[of][0][1]}", "displacement")
+    return of
 
 
 def compare(runs: Mapping[str, Record], title: str = "") -> Comparison:

@@ -187,6 +187,40 @@ def test_comparison_has_common_axes(run: Run, make_run, tmp_path: Path) -> None:
     assert is_within_page(figure)
 
 
+def test_comparison_of_a_building_draws_one_point() -> None:
+    """All columns have the top floor only, and the balls a label; other comparisons here have one point and two runs."""
+    tower = rb.ShearBuilding(masses=["60 t"] * 8, stiffnesses=["70 MN/m"] * 8, damping_ratio="2 %")
+    common = {
+        "structure": tower,
+        "base": rb.HalfSine(amplitude="0.2 g", duration="0.4 s"),
+        "duration": "2 s",
+        "output": rb.Output(rate="100 Hz"),
+    }
+    ball = rb.ImpactDamper(
+        ball=rb.Sphere(radius="40 cm", material="steel"),
+        gap="40 mm",
+        contact=rb.Tsuji(restitution=0.5),
+        point="storey 8",
+    )
+    damped = rb.simulate(rb.Case(**common, damper=(ball, ball)))
+    runs = {"bare": rb.simulate(rb.Case(**common)), "with a long name": damped, "again": damped, "more": damped}
+    figure = plot_comparison(runs)
+    assert is_within_page(figure)
+    panels = np.array(figure.axes).reshape(3, 4)
+    assert all(len(panel.lines) == 2 for panel in panels[0])
+    labels = [panel.get_ylabel().replace("\n", " ") for panel in panels[:, 0]]
+    assert labels == ["Displacement of storey 8 (mm)", "Position in cavity (mm)", "Energy ledger (kJ)"]
+    drift = plot_comparison(runs, of="storey 3 - storey 2").axes
+    np.testing.assert_allclose(
+        drift[0].lines[1].get_ydata(),
+        1e3 * rb.analysis.drift(runs["bare"], "storey 3", "storey 2"),
+        rtol=1e-12,
+        atol=1e-12,
+    )
+    with pytest.raises(rb.CaseError, match=r"storey 9.*is not a point of all runs"):
+        plot_comparison(runs, point="storey 9")
+
+
 def test_comparison_of_different_structures(run: Run, make_run) -> None:
     """Runs without a ball or without a moving structure can be compared; an empty comparison raises an error."""
     figure = plot_comparison({"a": run, "b": make_run(rows=()), "c": make_run(fixed=True, ball_speed=0.1)})

@@ -7,6 +7,8 @@ import pytest
 
 import rattlebox as rb
 
+from .conftest import is_within_page
+
 TOWER = rb.ShearBuilding(masses=["50 t"] * 3, stiffnesses=["60 MN/m"] * 3, damping_ratio="2 %")
 CASE = rb.Case(
     structure=TOWER,
@@ -46,6 +48,19 @@ def test_particles_have_lines_along_three_axes(tmp_path: Path) -> None:
     assert [line.get_label() for line in force.lines[1:]] == ["along x", "along y", "along z"]
     assert len(modal.lines) == 4 and modal.get_ylabel().startswith("Modal displacement")
     figure.savefig(tmp_path / "responses.png")
+
+
+@pytest.mark.parametrize("size", ["column", "page", "slide"])
+def test_many_storeys_are_chosen_and_the_choice_is_stated(size: str) -> None:
+    """Of nine storeys the legend states that six are drawn; the figures of other tests have three storeys."""
+    tower = rb.ShearBuilding(masses=["80 t"] * 9, stiffnesses=["90 MN/m"] * 9, damping_ratio="2 %")
+    run = rb.simulate(CASE.replaced({"structure": tower}))
+    figure = run.plot.responses(size=size)
+    assert is_within_page(figure)
+    titles = [legend.get_title().get_text() for axes in figure.axes if (legend := axes.get_legend())]
+    assert titles == ["the largest 6 of 9"] * 2
+    accelerations = ["acceleration", "absolute_acceleration", "base_acceleration"]
+    assert is_within_page(run.plot.responses(of=accelerations, size=size))
 
 
 @pytest.mark.parametrize(

@@ -301,6 +301,40 @@ def test_numbers_of_the_answer_are_those_of_the_result() -> None:
     assert f"The peak displacement of mass is {1e3 * peak:.3f} mm" in page_of("run").text
 
 
+@pytest.mark.parametrize(
+    ("options", "words", "keys"),
+    [
+        ({}, "the peak displacement of c is", ("peak_displacement[c]", "rms_displacement[c]")),
+        ({"point": "a"}, "the peak displacement of a is", ("peak_displacement[a]", "rms_displacement[a]")),
+        ({"of": "acceleration", "point": "b"}, "the peak acceleration of b is", ("peak_acceleration[b]",)),
+        ({"of": "force"}, "the peak force on the base is", ("peak_interface_force", "rms_interface_force")),
+    ],
+)
+def test_all_sentences_of_a_comparison_are_about_one_point(
+    options: dict[str, Any], words: str, keys: tuple[str, ...], tmp_path: Path
+) -> None:
+    """In the second run another point moves most; with one point, as in the other comparisons, no sentence can mix them."""
+    shapes = {"a": [1.0, 0.4], "b": [0.6, -0.8], "c": [1.2, 0.5]}
+    structure = rb.Modal(frequencies=[20, 27], damping_ratio=0.01, shapes=shapes, participation=[1.0, 0.6])
+    shaken = case(structure=structure, load=(), base=rb.Harmonic(amplitude="1 g", frequency="20 Hz"), damper=())
+    faster = shaken.replaced({"base.frequency": "27 Hz"})
+    result = rb.compare({"bare": shaken, "faster": faster}, progress=False, **options)
+    page = Page(rb.write_report(result, tmp_path / "report.html"))
+    peaks = [{point: result.values[name][f"peak_displacement[{point}]"] for point in shapes} for name in result.runs]
+    assert len({max(some, key=some.__getitem__) for some in peaks}) == 2
+    for name in ("bare", "faster"):
+        assert f"{name}: {words}" in page.text
+    others = {"a", "b", "c"} - {str(result.point)}
+    sentences = re.findall(r"(?:bare|faster): the .*", page.text.partition("Case:")[0])
+    assert len(sentences) == 2
+    assert not any(re.search(rf"\bof {other}\b", sentence) for sentence in sentences for other in others)
+    bare, changed = (result.values[name][keys[0]] for name in ("bare", "faster"))
+    assert (
+        f"{amount(abs(1 - changed / bare), '%', 3)} {'less' if changed < bare else 'more'} than with bare" in page.text
+    )
+    assert repr(options.get("of", "")) in page.downloads["script.py"] or "of" not in options
+
+
 def test_files_of_a_front_are_those_that_its_script_reads(tmp_path: Path) -> None:
     """The report of a design with several best cases names one of its case files in the script and in the study file."""
     parameters = {"damper.gap": ["0.5 mm", "1 mm"], "damper.ball.radius": ["8 mm", "14 mm"]}

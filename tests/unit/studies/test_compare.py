@@ -36,6 +36,42 @@ def test_compare_simulates_cases_and_takes_runs() -> None:
     assert rb.plot_comparison(result.runs).axes
 
 
+def tower(**options: Any) -> rb.Case:
+    """Return a building of nine storeys that is shaken for three seconds."""
+    return rb.Case(
+        structure=rb.ShearBuilding(masses=["90 t"] * 9, stiffnesses=["120 MN/m"] * 9, damping_ratio=0.03),
+        base=rb.Harmonic(amplitude="0.08 g", frequency="1.1 Hz"),
+        duration="3 s",
+        output=rb.Output(rate="100 Hz"),
+        **options,
+    )
+
+
+def test_table_of_a_building_fits_a_page() -> None:
+    """Nine storeys and five runs give 50 lines of 150 letters with the largest drift; the other tests have one point."""
+    tuned = [tower(tuned_mass=rb.TunedMass(mass=f"{k} t", frequency="0.9 Hz", point="storey 9")) for k in range(1, 7)]
+    result = rb.compare({"bare": tower()} | {f"{k + 1} t": each for k, each in enumerate(tuned)})
+    lines = str(result).splitlines()
+    assert len(lines) <= 50 and max(map(len, lines)) <= 150
+    assert sum("too short" in line for line in lines) == 1
+    assert any("lines of one point are those of storey 9" in line for line in lines)
+    drifts = [abs(result.runs["2 t"].motion.displacement.sel(point="storey 1"))] + [
+        abs(rb.analysis.drift(result.runs["2 t"], f"storey {k + 1}", f"storey {k}")) for k in range(1, 9)
+    ]
+    assert result.values["2 t"]["largest_drift"] == max(float(drift.max()) for drift in drifts)
+    assert any(line.startswith("largest drift of all storeys") for line in lines)
+    assert not any(line.startswith("peak drift") for line in lines)
+
+
+def test_notes_are_stated_once() -> None:
+    """A note that several runs share is one line with their names."""
+    ball = rb.Sphere(radius="60 cm", material="steel")
+    wide = tower(damper=rb.ImpactDamper(ball=ball, gap="1 cm", contact=rb.Tsuji(restitution=0.5), point="storey 2"))
+    result = rb.compare({"a": wide, "b": wide.replaced({"damper.gap": "2 cm"}), "c": tower()})
+    (line,) = [line for line in str(result).splitlines() if "m wide" in line]
+    assert line.startswith("a, b: ")
+
+
 def test_settling_times_are_those_to_the_peak_of_the_first_run() -> None:
     """Struck structures are compared by one band, so that a heavier one does not settle sooner by its smaller peak."""
     pulse = rb.HalfSine(amplitude="4 kN", duration="1.5 ms")

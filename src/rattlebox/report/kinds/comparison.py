@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, cast
@@ -11,8 +12,10 @@ from rattlebox._util.quantities import amount
 from rattlebox.plots.compare import plot_comparison
 from rattlebox.report.kinds.run import attached_points, result_sentences
 from rattlebox.report.limits import readable_case, run_limits
-from rattlebox.report.parts import Kind, Limit, Picture, Table
+from rattlebox.report.numbers import with_interval
+from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 from rattlebox.results.case_words import loads_words
+from rattlebox.results.summary import error_of
 
 if TYPE_CHECKING:
     from rattlebox.results.run import Run
@@ -20,7 +23,6 @@ if TYPE_CHECKING:
 
 _MAX_COLUMNS = 4
 """Most runs in a figure of a comparison."""
-_DISPLACEMENTS = {"rms": "RMS displacement", "peak": "peak displacement"}
 
 
 def _runs(comparison: Comparison) -> dict[str, Run]:
@@ -38,32 +40,35 @@ def _question(comparison: Comparison) -> str:
 
 
 def _answer(comparison: Comparison) -> Iterator[str]:
-    reference, *others = comparison.runs
+    reference = next(iter(comparison.runs))
     for name, run in _runs(comparison).items():
         if not run.ok:
             yield f"{name} has the status {run.status}: {run.message}"
-    for name in others:
-        changes = [_change(comparison, name, kind, text) for kind, text in _DISPLACEMENTS.items()]
-        if any(changes):
-            yield f"With {name}, {joined(list(filter(None, changes)))} against {reference}."
+    measures = comparison.measures()
+    at = comparison.point if measures and f"[{comparison.point}]" in measures[0][0] else ""
+    if at and len(comparison.points) > 1:
+        chosen = f", the one with the largest displacement with {reference}" if at == comparison.points[0] else ""
+        yield f"All numbers are those of {at}, one of {len(comparison.points)} points{chosen}."
     for name, run in _runs(comparison).items():
-        yield f"{name}: {' '.join(result_sentences(comparison.values[name], attached_points(run)))}"
+        values = comparison.values[name]
+        if measures:
+            words = [_compared(comparison, name, *measure) for measure in measures]
+            words[0] = words[0].replace(" is ", f" of {at} is " if at else " is ", 1)
+            yield f"{name}: {', and '.join(words)}."
+        else:  # for instance cavities on shakers, which have no point
+            yield f"{name}: {' '.join(result_sentences(values, attached_points(run)))}"
 
 
-def _change(comparison: Comparison, name: str, kind: str, text: str) -> str:
-    """Return a phrase about the point whose displacement is largest in the reference run; "" if there is none."""
-    changes = {key: float(v) for key, v in comparison.values[name].items() if key.startswith(f"{kind}_reduction[")}
-    if not changes:
-        return ""
-    key = max(changes, key=lambda key: _before(comparison, key))
-    verb = "reduced" if changes[key] >= 0 else "increased"
-    return f"the {text} of {key.partition('[')[2][:-1]} is {verb} by {amount(abs(changes[key]), '%', 3)}"
-
-
-def _before(comparison: Comparison, key: str) -> float:
-    """Return the value of the reference run to which a reduction belongs."""
-    reference = next(iter(comparison.values.values()))
-    return float(reference.get(key.replace("reduction", "displacement", 1), 0.0))
+def _compared(comparison: Comparison, name: str, key: str, label: str, unit: str) -> str:
+    """Return a value of a run with its 95 % interval, and its change against the first run."""
+    reference, values = next(iter(comparison.runs)), comparison.values
+    value, before = float(values[name][key]), float(values[reference][key])
+    half = float(values[name].get(error_of(key), math.nan))
+    phrase = f"the {label} is {with_interval(value, half, unit)}"
+    if name == reference or not before > 0:
+        return phrase
+    change = 1 - value / before
+    return f"{phrase} ({amount(abs(change), '%', 3)} {'less' if change >= 0 else 'more'} than with {reference})"
 
 
 def _pictures(comparison: Comparison) -> Iterator[Picture]:
@@ -71,7 +76,13 @@ def _pictures(comparison: Comparison) -> Iterator[Picture]:
     for first in range(0, len(runs), _MAX_COLUMNS):
         some = dict(runs[first : first + _MAX_COLUMNS])
         caption = f"Motion and energy of {joined(list(some))}, one column for each."
-        yield Picture(caption, partial(plot_comparison, some, size="page"))
+        options = {"point": comparison.point or None, "of": comparison.drawn()}
+        yield Picture(caption, partial(plot_comparison, some, **options, size="page"))
+
+
+def _call(comparison: Comparison) -> Call:
+    given = {"point": comparison.point} if comparison.point not in comparison.points[:1] and comparison.point else {}
+    return Call("compare", given | ({"of": comparison.of} if comparison.of != "displacement" else {}))
 
 
 def _about(name: str, run: Run) -> str:
@@ -89,10 +100,10 @@ KIND: Kind[Comparison] = Kind(
     cases=lambda comparison: {name: run.case for name, run in _runs(comparison).items()},
     question=_question,
     answer=_answer,
-    call=lambda comparison: None,
+    call=_call,
     pictures=_pictures,
     tables=lambda comparison: [Table("Summary", ("", *comparison.runs), comparison.lines(), numbers=True)],
-    warnings=lambda comparison: [f"{name}: {note}" for name, run in _runs(comparison).items() for note in run.notes],
+    warnings=lambda comparison: comparison.notes(),
     limits=_limits,
     about=lambda comparison: [_about(name, run) for name, run in _runs(comparison).items()],
 )

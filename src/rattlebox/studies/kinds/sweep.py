@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -160,6 +160,8 @@ def result_notes(work: Work, result: xarray.Dataset) -> dict[str, str]:
 def compare(
     cases: Mapping[str, Case | Run],
     *,
+    point: str | None = None,
+    of: Literal["displacement", "acceleration", "drift", "force"] = "displacement",
     threads: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> Comparison:
@@ -170,6 +172,12 @@ def compare(
     cases
         Cases, or runs of them, by the name of their column, such as "bare", "tuned mass" and "particles". The first one is
         the reference.
+    point
+        Point that is compared in the sentences and figures of the report, with all its lines in the table; by default the
+        point of the structure with the largest displacement in the first case.
+    of
+        Quantity that the sentences of the report compare: the displacement or absolute acceleration of the point, the
+        largest drift of all storeys, or the force on the base.
     threads
         Number of threads; default all cores.
     progress
@@ -184,7 +192,7 @@ def compare(
     Raises
     ------
     CaseError
-        If `cases` is not a mapping of names to cases and runs, or is empty.
+        If `cases` is not a mapping of names to cases and runs, or is empty, or a case lacks the point or the quantity.
 
     Examples
     --------
@@ -210,7 +218,7 @@ def compare(
     runs: dict[str, Any] = {
         str(name): next(simulated) if isinstance(each, Case) else each for name, each in cases.items()
     }
-    return Comparison(runs)
+    return Comparison(runs, point=point, of=of)
 
 
 # ---- variants over random packings
