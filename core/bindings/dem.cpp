@@ -14,8 +14,6 @@ namespace rattlebox::bindings {
 namespace {
 
 using namespace dem;
-using Bytes = nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using State = nb::ndarray<nb::numpy, const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Progress = std::optional<nb::typed<nb::callable, nb::object(long)>>;
 
 class Dem {
@@ -83,7 +81,7 @@ public:
     DemState state() const {
         DemState s;
         s.step = std::max(simulation_->step() - 1, 0L);
-        s.time = static_cast<real>(s.step) * simulation_->problem().dt;
+        s.time = simulation_->problem().time_at(s.step);
         std::vector<real> q, p;
         for (const ModeState& m : simulation_->modes()) q.push_back(m.q), p.push_back(m.p);
         s.q = owned<Doubles<1>>(std::move(q)), s.p = owned<Doubles<1>>(std::move(p));
@@ -148,7 +146,7 @@ public:
                 simulation_->stopped_cavity(),
                 s.particle,
                 s.wall,
-                static_cast<real>(simulation_->step() - 1) * simulation_->problem().dt,
+                simulation_->problem().time_at(simulation_->step() - 1),
                 s.value};
     }
 
@@ -161,12 +159,17 @@ public:
         return owned<Bytes>(std::move(writer.bytes));
     }
 
-    void restore(const State& bytes) {
+    void restore(const SavedState& bytes) {
         Reader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
         simulation_->restore(reader);
     }
 
-    void continue_from(const State& bytes, double dt) {
+    void restart(const SavedState& bytes) {
+        Reader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
+        simulation_->restart(reader);
+    }
+
+    void continue_from(const SavedState& bytes, double dt) {
         Reader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
         simulation_->continue_from(reader, dt);
     }
@@ -198,6 +201,8 @@ void add_dem(nb::module_& module) {
         .def("stopped", &Dem::stopped, "Return where the run stopped.")
         .def("save", &Dem::save, "Return all that a bitwise restart needs.")
         .def("restore", &Dem::restore, nb::arg("bytes"), "Continue from a saved state.")
+        .def("restart", &Dem::restart, nb::arg("bytes"),
+             "Continue a run of the same case from its end; counts and extremes begin anew.")
         .def("continue_from", &Dem::continue_from, nb::arg("bytes"), nb::arg("dt"),
              "Start from the last sample of a run with the same particles and structure; dt is the step of "
              "that run.")

@@ -36,8 +36,8 @@ struct PairLaws : Node {
 };
 
 struct DemNumbers : Node {
-    double dt = 0, enduring = 0;
-    long steps = 0, every = 0;
+    double dt = 0, enduring = 0, origin = 0;
+    long steps = 0, every = 0, first_step = 0;
     Input<1> gravity;
     Vector mode_decay, mode_stiffness, mode_coupling, mode_displacement, mode_velocity;
     std::vector<LoadNumbers> loads;
@@ -110,6 +110,7 @@ inline dem::Problem dem_problem(const DemNumbers& given) {
     Filler fill;
     dem::Problem p;
     p.dt = given.dt, p.enduring = given.enduring, p.steps = given.steps, p.sample_interval = given.every;
+    p.origin = given.origin, p.first_step = given.first_step;
     p.gravity = one_row(given.gravity);
     const std::size_t modes = fill_structure(fill, p, given);
     p.load_direction = rows(given.load_directions, given.loads.size(), "each load needs a direction");
@@ -234,15 +235,18 @@ inline void add_dem_problem(nb::module_& module) {
         field("tangential", &L::tangential), field("rolling", &L::rolling), field("radius", &L::radius),
         field("mass", &L::mass));
     using P = DemNumbers;
-    define<P>(module, "DemProblem",
-              "A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring.",
-              field("dt", &P::dt), field("steps", &P::steps), field("every", &P::every),
-              field("enduring", &P::enduring, infinity), field("gravity", &P::gravity),
-              field("mode_decay", &P::mode_decay), field("mode_stiffness", &P::mode_stiffness),
-              field("mode_coupling", &P::mode_coupling), field("mode_displacement", &P::mode_displacement),
-              field("mode_velocity", &P::mode_velocity), field("loads", &P::loads),
-              field("load_directions", &P::load_directions), field("cavities", &P::cavities),
-              field("pairs", &P::pairs));
+    define<P>(
+        module, "DemProblem",
+        "A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring. Step 0 is at the "
+        "time `origin` [s], and samples are taken `every` steps from `first_step` on.",
+        field("dt", &P::dt), field("steps", &P::steps), field("every", &P::every),
+        field("enduring", &P::enduring, infinity), field("origin", &P::origin, 0.0),
+        field("first_step", &P::first_step, 0L), field("gravity", &P::gravity),
+        field("mode_decay", &P::mode_decay), field("mode_stiffness", &P::mode_stiffness),
+        field("mode_coupling", &P::mode_coupling), field("mode_displacement", &P::mode_displacement),
+        field("mode_velocity", &P::mode_velocity), field("loads", &P::loads),
+        field("load_directions", &P::load_directions), field("cavities", &P::cavities),
+        field("pairs", &P::pairs));
     using R = RecordArrays;
     define<R>(
         module, "Records",

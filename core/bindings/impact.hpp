@@ -9,7 +9,7 @@ struct SettingsNumbers : Node {
     Method method{};
     Number duration, tolerance, stick, dt_flight, dt_contact;
     long max_events = 0, contact_samples = 0;
-    bool adaptive_inner = false, collocation = false;
+    bool adaptive_inner = false, collocation = false, keep_end = false;
 };
 
 template <Signal::Kind kind> struct WaveNumbers : Node {
@@ -49,6 +49,8 @@ struct ProblemNumbers : Node {
     std::vector<DamperNumbers> dampers;
     std::vector<ContactNumbers> contacts;
     Table sample_times;
+    std::optional<SavedState> start_state;
+    bool changed = false;
 };
 
 inline void fill_signal(Filler& fill, Signal& target, const AnySignal& given) {
@@ -103,6 +105,7 @@ inline void fill_settings(Filler& fill, Settings& target, const SettingsNumbers&
     target.contact_samples = given.contact_samples;
     target.adaptive_inner = given.adaptive_inner;
     target.collocation = given.collocation;
+    target.keep_end = given.keep_end;
     fill.number(target.duration, given.duration);
     fill.number(target.tolerance, given.tolerance);
     fill.number(target.stick, given.stick);
@@ -166,6 +169,10 @@ inline void fill_problem(rattlebox::Problem& target, const ProblemNumbers& given
     if (given.sample_times.is_valid())
         target.sample_times.assign(given.sample_times.data(),
                                    given.sample_times.data() + given.sample_times.shape(0));
+    if (given.start_state)
+        target.start_state.assign(given.start_state->data(),
+                                  given.start_state->data() + given.start_state->shape(0));
+    target.changed = given.changed;
     fill_settings(fill, target.settings, given.settings);
 }
 
@@ -203,7 +210,8 @@ inline void add_problem(nb::module_& module) {
               field("dt_contact", &S::dt_contact, usual.dt_contact),
               field("adaptive_inner", &S::adaptive_inner, usual.adaptive_inner),
               field("collocation", &S::collocation, usual.collocation),
-              field("contact_samples", &S::contact_samples, usual.contact_samples));
+              field("contact_samples", &S::contact_samples, usual.contact_samples),
+              field("keep_end", &S::keep_end, usual.keep_end));
     using D = DamperNumbers;
     define<D>(
         module, "Damper",
@@ -223,7 +231,9 @@ inline void add_problem(nb::module_& module) {
         field("mode_stiffness", &P::mode_stiffness), field("mode_coupling", &P::mode_coupling),
         field("mode_displacement", &P::mode_displacement), field("mode_velocity", &P::mode_velocity),
         field("loads", &P::loads), field("dampers", &P::dampers), field("contacts", &P::contacts),
-        field("sample_times", &P::sample_times));
+        field("sample_times", &P::sample_times),
+        field("start_state", &P::start_state, std::optional<SavedState>()),
+        field("changed", &P::changed, false));
 }
 
 } // namespace rattlebox::bindings

@@ -34,6 +34,10 @@ using Vector = nb::ndarray<nb::numpy, const double, nb::c_contig, nb::device::cp
 // An array that is the same for all variants, such as the knots of a curve.
 using Table = nb::ndarray<nb::numpy, const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
+// A saved state.
+using Bytes = nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using SavedState = nb::ndarray<nb::numpy, const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
 // A number, or an array that broadcasts to the grid of a batch.
 struct Number {
     real value = 0;

@@ -6,6 +6,7 @@
 
 namespace rattlebox::bindings {
 
+using Phases = nb::ndarray<nb::numpy, std::int8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<nb::numpy, bool, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 // The impact log, one row for each impact.
@@ -46,6 +47,19 @@ private:
 
 struct RunCounts : Node, Counts {};
 
+// States from which another run continues; empty arrays unless the settings ask for them.
+struct EndArrays : Node {
+    Bytes end, whole;
+    Doubles<1> motion;
+    Phases phases;
+
+    EndArrays() = default;
+    explicit EndArrays(EndStates&& states)
+        : end(owned<Bytes>(std::move(states.end))), whole(owned<Bytes>(std::move(states.whole))),
+          motion(owned<Doubles<1>>(std::move(states.motion))),
+          phases(owned<Phases>(std::move(states.phases))) {}
+};
+
 struct RunResult : Node {
     Doubles<1> time;
     Doubles<2> state;
@@ -53,6 +67,7 @@ struct RunResult : Node {
     Doubles<1> load_work, base_work, viscous_loss;
     Doubles<2> normal_loss, plastic_loss, contact_energy, cavity_force;
     ImpactColumns impacts;
+    EndArrays states;
     RunCounts counts;
     Status status{};
     double energy_residual_limit = 0, permitted_error = 0, energy_rounding = 0, stopped_at = 0,
@@ -62,7 +77,7 @@ struct RunResult : Node {
 
     RunResult() = default;
     RunResult(const Problem& problem, Result&& r, double elapsed)
-        : impacts(problem, r.impacts), counts{{}, r.counts}, status(r.status),
+        : impacts(problem, r.impacts), states(std::move(r.states)), counts{{}, r.counts}, status(r.status),
           energy_residual_limit(problem.settings.energy_residual_limit()), permitted_error(r.permitted_error),
           energy_rounding(r.rounding(problem.settings)), stopped_at(r.stopped_at),
           stopped_value(r.stopped_value), stopped_contact(r.stopped_contact), seconds(elapsed) {
@@ -107,6 +122,12 @@ inline void add_results(nb::module_& module) {
                       field("rejected_steps", &Counts::rejected_steps),
                       field("collocated", &Counts::collocated), field("extrapolated", &Counts::extrapolated),
                       field("sticks", &Counts::sticks), field("simultaneous_impacts", &Counts::simultaneous));
+    using E = EndArrays;
+    define<E>(
+        module, "EndStates",
+        "States from which another run continues: at the end, and the last one that a longer run has, too.",
+        field("end", &E::end), field("whole", &E::whole), field("motion", &E::motion),
+        field("phases", &E::phases));
     using R = RunResult;
     define<R>(
         module, "Result",
@@ -116,8 +137,9 @@ inline void add_results(nb::module_& module) {
         field("load_work", &R::load_work), field("base_work", &R::base_work),
         field("viscous_loss", &R::viscous_loss), field("normal_loss", &R::normal_loss),
         field("plastic_loss", &R::plastic_loss), field("contact_energy", &R::contact_energy),
-        field("cavity_force", &R::cavity_force), field("impacts", &R::impacts), field("counts", &R::counts),
-        field("status", &R::status), field("energy_residual_limit", &R::energy_residual_limit),
+        field("cavity_force", &R::cavity_force), field("impacts", &R::impacts), field("states", &R::states),
+        field("counts", &R::counts), field("status", &R::status),
+        field("energy_residual_limit", &R::energy_residual_limit),
         field("permitted_error", &R::permitted_error), field("energy_rounding", &R::energy_rounding),
         field("stopped_at", &R::stopped_at), field("stopped_value", &R::stopped_value),
         field("stopped_contact", &R::stopped_contact), field("seconds", &R::seconds));

@@ -31,6 +31,8 @@ struct Cavity {
 struct Problem {
     real dt = 0;
     long steps = 0, sample_interval = 1; // last step, and steps between two samples
+    long first_step = 0;                 // that of the first sample, of a run that continues another
+    real origin = 0;                     // time of step 0 [s]
     real enduring = infinity;            // age beyond which a contact counts as enduring
     Row gravity{};
     std::vector<Mode> modes;
@@ -40,6 +42,8 @@ struct Problem {
     std::vector<Row> load_direction;
     std::vector<Cavity> cavities;
     std::vector<PairLaw> pair_laws;
+
+    real time_at(long step) const { return origin + static_cast<real>(step) * dt; }
 };
 
 inline void set_step(ContactLaws& laws, const Problem& problem) {

@@ -75,8 +75,10 @@ class Simulation {
     Partition partition_;
     Records records_;
 
-    real now() const { return static_cast<real>(step_) * problem_.dt; }
-    bool sampled(long step) const { return step % problem_.sample_interval == 0 || step == problem_.steps; }
+    real now() const { return problem_.time_at(step_); }
+    bool sampled(long step) const {
+        return (step - problem_.first_step) % problem_.sample_interval == 0 || step == problem_.steps;
+    }
 
     // Moves the particles from the cavity into the bed.
     void fill_bed(Bed& bed, Cavity& cavity, bool rolls) {
@@ -575,6 +577,16 @@ public:
         require(step_ <= problem_.steps + 1);
     }
 
+    // Reads the state at the end of a run of the same case, which this run continues: counts and extremes
+    // begin anew, work and losses continue.
+    template <class Reader> void restart(Reader& reader) {
+        restore(reader);
+        require(step_ > 0 && status_ == Status::finished);
+        rebuilds_ = 0;
+        for (Bed& bed : beds_)
+            for (Chunk& c : bed.chunks) c.diagnostics.reset_extremes();
+    }
+
     // Reads a state that this object has saved, also after a restore() that threw.
     template <class Reader> void go_back(Reader& reader) {
         serialize(reader);
@@ -585,10 +597,14 @@ public:
     // step or other signals, and makes that sample the start of this run: time, work and extremes count from
     // there. Losses continue.
     template <class Reader> void continue_from(Reader& reader, real dt_before) {
-        read(reader, restart_check());
+        const std::vector<RestartCheck> fixed = restart_check();
+        serialize(reader);
+        for (auto* sums : {&load_work_, &base_work_}) sums->assign(signals_.size(), 0); // of other loads
+        viscous_.assign(viscous_.size(), 0);
+        check_state(reader, fixed);
+        for (Bed& bed : beds_) update_cavity_motion(bed);
         require(step_ > 0 && status_ == Status::finished && dt_before > 0 && dt_before < infinity);
         step_ = 1, forces_known_at_ = -1, rebuilds_ = 0;
-        for (auto* sums : {&load_work_, &base_work_, &viscous_}) sums->assign(sums->size(), 0);
         for (Bed& bed : beds_)
             for (Chunk& c : bed.chunks) c.diagnostics.reset_extremes();
         predict_again(dt_before);

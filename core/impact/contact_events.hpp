@@ -70,9 +70,10 @@ class EventLocator {
     void find_stop(real remaining) {
         const std::size_t clock = motion_.clock();
         at_stop_ = after()[clock] >= remaining;
-        if (at_stop_)
-            shorten(motion_.locate(length_, remaining, remaining - after()[clock],
-                                   [&](const real* y) { return remaining - y[clock]; }));
+        if (!at_stop_) return;
+        run_.meet_stop();
+        shorten(motion_.locate(length_, remaining, remaining - after()[clock],
+                               [&](const real* y) { return remaining - y[clock]; }));
     }
 
     template <class F> void stop_at_zero(real rounding, F&& margin) {

@@ -131,6 +131,7 @@ class ContactSolver {
         if (advanced) motion_.set_scales();
         if (motion_.y[motion_.clock()] >= remaining) return true;
         if (advanced) h = first_step(remaining);
+        if (h == remaining) run_.meet_stop();
         return false;
     }
 
@@ -230,6 +231,7 @@ public:
         motion_.set_scales();
         const real remaining = run_.next_stop() - run_.state.t;
         real h = first_step(remaining);
+        if (h == remaining) run_.meet_stop();
         // Without soft contacts the error estimate can vanish; this limit ensures that no change of sign of a
         // force is missed.
         const real longest = run_.system.active.empty() ? longest_free_step * h : infinity;

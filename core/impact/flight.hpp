@@ -135,6 +135,8 @@ public:
     }
 
     real horizon() const { return horizon_; }
+    // Whether bounds of the motion depend on the length that the flight was given.
+    bool is_bounded_by(real length) const { return series_ && horizon_ == length; }
     real curvature(std::size_t contact) const { return curvature_[contact]; }
 
     // Computes the state after time s.

@@ -122,9 +122,11 @@ public:
         const HertzTsuji* law = run_.contact(c).normal.get_if<HertzTsuji>();
         if (!law) return false;
         const real zeta = law->damping(e);
-        if (!contact_.prepare(run_.contact(c), *law, run_.loads, run_.state, speed, zeta,
-                              run_.next_stop() - run_.state.t))
+        const real available = run_.next_stop() - run_.state.t;
+        if (!contact_.prepare(run_.contact(c), *law, run_.loads, run_.state, speed, zeta, available)) {
+            if (!(contact_.longest_time() <= available)) run_.meet_stop();
             return false;
+        }
         if (!is_isolated(c, speed, contact_.longest_time()) || !contact_.solve()) return false;
         // Contacts that a bound of the motion could not exclude are excluded by the motion itself.
         for (const int other : uncertain_)

@@ -209,13 +209,16 @@ public:
         for (real h = 1.5 * shortest;;) {
             if (run_.is_stopped()) return advanced;
             if (is_at_rest(frequency)) {
+                run_.meet_stop();
                 while (output_.is_due(run_.state.t + remaining)) sample_at_rest(output_.next_time());
                 rest_until(remaining);
                 return true;
             }
             const real now = run_.state.t + motion_.y[clock], left = remaining - motion_.y[clock];
-            if (h < shortest || shortest > longest || (!advanced && left < shortest)) return advanced;
-            const bool last = h >= left;
+            if (h < shortest || shortest > longest) return advanced;
+            const bool last = h >= left, is_short = !advanced && left < shortest;
+            if (last || is_short) run_.meet_stop();
+            if (is_short) return advanced;
             // Rounded to a representable time, or the time would drift from the motion with each step.
             const real step = last ? left : now + h - now;
             const bool solved = step_.solve_step(run_.system, run_.loads, motion_.y.data(), now, step);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "contact/laws.hpp"
@@ -56,7 +57,8 @@ struct Settings {
     // in the middle of flights; 0 for none.
     long contact_samples = 0;
 
-    bool peaks = true; // whether the peaks of force and overlap of each impact are computed
+    bool peaks = true;     // whether the peaks of force and overlap of each impact are computed
+    bool keep_end = false; // whether the result has the states from which another run continues
 
     // Largest energy residual over the energy supplied for which a run with this method counts as finished,
     // apart from the permitted errors of its steps (Result::permitted_error).
@@ -75,6 +77,11 @@ struct Problem {
     int stop_count = 0;             // the last dampers
     std::vector<real> sample_times; // increasing, within [0, duration]
     Settings settings;
+
+    // State of another run from which this one continues (EndStates), or empty. If the problem has `changed`
+    // since, the modes have the displacements and velocities of `start`.
+    std::vector<std::uint8_t> start_state;
+    bool changed = false;
 
     int mode_count() const { return static_cast<int>(modes.size()); }
     int ball_count() const { return static_cast<int>(ball_mass.size()); }

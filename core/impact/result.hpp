@@ -51,8 +51,18 @@ struct Samples {
     }
 };
 
+// States from which another run continues.
+struct EndStates {
+    std::vector<std::uint8_t> end; // where the run ended
+    std::vector<std::uint8_t>
+        whole;                // the last one that a longer run has, too: its bits are those of the longer run
+    std::vector<real> motion; // state vector y where the run ended
+    std::vector<std::int8_t> phases; // of the contacts there; 0 is open
+};
+
 struct Result {
     Samples samples;
+    EndStates states; // empty unless the settings ask for them
     std::vector<Impact> impacts;
     Counts counts;
     Status status = Status::finished;

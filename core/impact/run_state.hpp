@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <stdexcept>
 
 #include "impact/result.hpp"
 #include "impact/system.hpp"
@@ -22,6 +23,7 @@ struct RunState {
     std::vector<Released> released;
     std::vector<int> stuck;     // hard contacts that have come to rest
     real until;                 // time at which the run pauses or ends
+    bool met_end = false;       // whether the motion of a longer run may differ in its last bits from now on
     bool contact_ended = false; // at the current time
     real last_jump = 0; // time of the last jump of a force or its rate, except by contacts that began at rest
     real largest_overlap = 0; // so far, expected from the approach speeds
@@ -42,6 +44,8 @@ struct RunState {
     // The tolerance, at least the rounding error of a step.
     real resolution() const { return std::fmax(problem.settings.tolerance, step_rounding); }
     real next_stop() const { return std::min(loads.next_knot(), until); }
+    // Called where the next stop has shortened a step or a search.
+    void meet_stop() { met_end = met_end || until < loads.next_knot(); }
 
     void fail(Status status, int c = -1, real value = 0) {
         result.status = status;
@@ -103,6 +107,51 @@ struct RunState {
             const real rounding = contact(c).above == ground ? contact_gap_rounding * gap_terms(c) : 0;
             if (g.value <= rounding && g.rate == 0) phase(c) = Phase::touching;
         }
+    }
+
+    // Throws unless every index and size of a state that was read can be one of this problem.
+    void check() const {
+        const auto require = [](bool holds) {
+            if (!holds) throw std::invalid_argument("the state is damaged");
+        };
+        const std::size_t contacts = problem.contacts.size(), dampers = problem.dampers.size();
+        const auto check_impact = [&](int impact) {
+            require(impact >= -1 && impact < static_cast<int>(result.impacts.size()));
+        };
+        // A contact is in one of the lists at most.
+        std::vector<char> is_listed(contacts, false);
+        const auto check_contact = [&](int contact) {
+            require(contact >= 0 && contact < static_cast<int>(contacts));
+            char& listed = is_listed[static_cast<std::size_t>(contact)];
+            require(!listed);
+            listed = true;
+        };
+        require(state.t >= 0 && state.t < infinity);
+        require(std::all_of(state.y.begin(), state.y.end(),
+                            [](real value) { return std::fabs(value) < infinity; }));
+        require(state.y.size() == 2 * (problem.modes.size() + problem.ball_mass.size()));
+        require(ledger.normal.size() == dampers && ledger.plastic.size() == dampers);
+        require(phases.size() == contacts);
+        for (const Phase each : phases) require(each >= Phase::open && each <= Phase::released);
+        for (const auto& one : system.active) check_contact(one.contact), check_impact(one.impact);
+        for (const auto& one : released) check_contact(one.contact), check_impact(one.impact);
+        for (const int one : stuck) check_contact(one);
+        for (const Impact& impact : result.impacts)
+            require(impact.contact >= 0 && impact.contact < static_cast<int>(contacts));
+        require(result.status == Status::finished);
+    }
+
+    // Returns the impacts in the log that are not over, and numbers closed and released contacts by them.
+    std::vector<Impact> take_open_impacts() {
+        std::vector<Impact> kept;
+        const auto keep = [&](int& index) {
+            if (index < 0) return;
+            kept.push_back(result.impacts[static_cast<std::size_t>(index)]);
+            index = static_cast<int>(kept.size()) - 1;
+        };
+        for (Active& a : system.active) keep(a.impact);
+        for (Released& r : released) keep(r.impact);
+        return kept;
     }
 
     // Writes or reads all that the next event needs, in a fixed order.

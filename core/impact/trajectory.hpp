@@ -6,7 +6,10 @@
 // force would become attractive.
 #pragma once
 
+#include <utility>
+
 #include "impact/contact_solver.hpp"
+#include "util/archive.hpp"
 
 namespace rattlebox {
 
@@ -101,6 +104,7 @@ class Trajectory {
         const bool any_touching =
             std::find(run_.phases.begin(), run_.phases.end(), Phase::touching) != run_.phases.end();
         flight_.start(run_.state, run_.loads, stop - take_off, any_touching, run_.stuck);
+        if (flight_.is_bounded_by(stop - take_off)) run_.meet_stop();
 
         // Contacts that touch: hard ones stick if a force presses them, soft ones close from rest.
         const bool pressing = sort_touching();
@@ -119,6 +123,7 @@ class Trajectory {
             flight_.at(length, flight_end_);
         }
         const bool to_stop = touch.contact < 0 && length == stop - take_off;
+        if (to_stop) run_.meet_stop();
         const bool touches = touch.contact >= 0 && length == touch.time;
         land(length, to_stop ? stop : take_off + length, touches || pressing);
 
@@ -140,7 +145,9 @@ class Trajectory {
     // flight.
     bool released_contacts_only_open() {
         if (run_.released.empty()) return true;
-        flight_.start(run_.state, run_.loads, run_.next_stop() - run_.state.t, false);
+        const real length = run_.next_stop() - run_.state.t;
+        flight_.start(run_.state, run_.loads, length, false);
+        if (flight_.is_bounded_by(length)) run_.meet_stop();
         for (const Released& r : run_.released) {
             const Gap g = gap(problem_, run_.contact(r.contact), run_.state.y.data());
             const real bound = std::fabs(flight_.curvature(static_cast<std::size_t>(r.contact)));
@@ -159,6 +166,56 @@ class Trajectory {
         return run_.running();
     }
 
+    // Writes the state with those impacts of the log that are not over.
+    void save(std::vector<std::uint8_t>& bytes) {
+        const std::vector<Active> active = run_.system.active;
+        const std::vector<Released> released = run_.released;
+        const Status status = std::exchange(run_.result.status, Status::finished);
+        std::vector<Impact> log = run_.take_open_impacts();
+        run_.result.impacts.swap(log);
+        Writer writer(std::move(bytes));
+        serialize(writer);
+        bytes = std::move(writer.bytes);
+        run_.result.impacts.swap(log);
+        run_.result.status = status;
+        run_.system.active = active;
+        run_.released = released;
+    }
+
+    void keep_end() {
+        EndStates& states = run_.result.states;
+        save(states.end);
+        if (states.whole.empty()) states.whole = states.end;
+        states.motion = run_.state.y;
+        for (const Phase phase : run_.phases) states.phases.push_back(static_cast<std::int8_t>(phase));
+    }
+
+    // Starts from the state of another run.
+    void restore() {
+        Reader reader(reinterpret_cast<const char*>(problem_.start_state.data()),
+                      problem_.start_state.size());
+        serialize(reader);
+        run_.check();
+        if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
+        run_.loads.advance(run_.state.t);
+        if (!problem_.changed) return;
+        // Closed contacts have the coefficients of their laws; those with a history keep them.
+        const auto renew = [&](int c, int impact, ContactState& state) {
+            const real speed = run_.result.impacts.at(static_cast<std::size_t>(impact)).approach_speed;
+            run_.contact(c).normal.visit([&]<class Law>(const Law& law) {
+                if constexpr (!Law::hysteretic)
+                    state = initial_state(law, rebound(run_.contact(c).restitution, speed).e, speed);
+            });
+        };
+        for (Active& a : run_.system.active) renew(a.contact, a.impact, a.state);
+        for (Released& r : run_.released) renew(r.contact, r.impact, r.state);
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
+            run_.state.y[2 * k] = problem_.start[k].q;
+            run_.state.y[2 * k + 1] = problem_.start[k].p;
+        }
+        run_.last_jump = run_.state.t;
+    }
+
 public:
     explicit Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
         : run_(problem, stop), problem_(problem), output_(run_), flight_(problem), hard_(run_),
@@ -175,6 +232,7 @@ public:
     // Continues until the time `until`, or until the run stops early.
     void advance() {
         while (run_.running() && run_.state.t < run_.until) {
+            if (problem_.settings.keep_end && !run_.met_end) save(run_.result.states.whole);
             if (run_.state.t >= run_.loads.next_knot()) run_.loads.advance(run_.state.t);
             run_.result.counts.events += !goes_on_;
             if (!may_go_on()) break;
@@ -187,12 +245,18 @@ public:
     }
 
     Result run() {
-        run_.find_touching();
-        if (output_.is_due(0)) {
-            output_.next_time();
-            output_.record_now();
+        if (problem_.start_state.empty()) {
+            run_.find_touching();
+            if (output_.is_due(0)) {
+                output_.next_time();
+                output_.record_now();
+            }
+        } else {
+            restore();
         }
         advance();
+        if (problem_.settings.keep_end && (run_.running() || run_.result.status == Status::interrupted))
+            keep_end();
         return std::move(run_.result);
     }
 

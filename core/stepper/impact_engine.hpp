@@ -14,39 +14,12 @@ class ImpactEngine : PackedCase<Problem>, public StepEngine {
 
     // Throws unless every index and size in a restored state can be one of this case.
     void check_state() const {
-        const auto require = [](bool holds) {
-            if (!holds) throw std::invalid_argument("the state is damaged");
-        };
-        const std::size_t contacts = problem.contacts.size(), dampers = problem.dampers.size();
-        const auto is_finite = [](const auto& values) {
-            return std::all_of(values.begin(), values.end(),
-                               [](real value) { return std::fabs(value) < infinity; });
-        };
-        const auto check_impact = [&](int impact) {
-            require(impact >= -1 && impact < static_cast<int>(run_.result.impacts.size()));
-        };
-        // A contact is in one of the lists at most.
-        std::vector<char> is_listed(contacts, false);
-        const auto check_contact = [&](int contact) {
-            require(contact >= 0 && contact < static_cast<int>(contacts));
-            char& listed = is_listed[static_cast<std::size_t>(contact)];
-            require(!listed);
-            listed = true;
-        };
-        require(run_.state.t >= 0 && run_.state.t < infinity && is_finite(run_.state.y));
-        require(run_.state.y.size() == 2 * (problem.modes.size() + problem.ball_mass.size()));
-        require(run_.ledger.normal.size() == dampers && run_.ledger.plastic.size() == dampers);
-        require(run_.phases.size() == contacts);
-        for (const RunState::Phase phase : run_.phases)
-            require(phase >= RunState::Phase::open && phase <= RunState::Phase::released);
-        for (const auto& one : run_.system.active) check_contact(one.contact), check_impact(one.impact);
-        for (const auto& one : run_.released) check_contact(one.contact), check_impact(one.impact);
-        for (const int contact : run_.stuck) check_contact(contact);
-        for (const Impact& impact : run_.result.impacts)
-            require(impact.contact >= 0 && impact.contact < static_cast<int>(contacts));
-        require(run_.result.status == Status::finished);
-        require(extremes_.overlap.size() == contacts && extremes_.speed.size() == contacts);
-        for (const Damper& damper : problem.dampers) require(std::fabs(damper.gravity) < infinity);
+        const std::size_t contacts = problem.contacts.size();
+        run_.check();
+        const bool holds = extremes_.overlap.size() == contacts && extremes_.speed.size() == contacts &&
+                           std::all_of(problem.dampers.begin(), problem.dampers.end(),
+                                       [](const Damper& d) { return std::fabs(d.gravity) < infinity; });
+        if (!holds) throw std::invalid_argument("the state is damaged");
     }
 
     // Keeps the impacts in the log that are not complete.
@@ -56,15 +29,7 @@ class ImpactEngine : PackedCase<Problem>, public StepEngine {
             extremes_.overlap[c] = std::fmax(extremes_.overlap[c], impact.peak_overlap);
             extremes_.speed[c] = std::fmax(extremes_.speed[c], impact.approach_speed);
         }
-        std::vector<Impact> kept;
-        const auto keep = [&](int& index) {
-            if (index < 0) return;
-            kept.push_back(run_.result.impacts[static_cast<std::size_t>(index)]);
-            index = static_cast<int>(kept.size()) - 1;
-        };
-        for (Active& a : run_.system.active) keep(a.impact);
-        for (Released& r : run_.released) keep(r.impact);
-        run_.result.impacts = std::move(kept);
+        run_.result.impacts = run_.take_open_impacts();
     }
 
     void sample(real until) {

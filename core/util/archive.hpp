@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace rattlebox {
@@ -41,6 +42,8 @@ public:
     std::vector<std::uint8_t> bytes;
 
     explicit Writer(std::size_t size) { bytes.reserve(size); }
+    // Writes into a buffer that has been used before.
+    explicit Writer(std::vector<std::uint8_t>&& buffer) : bytes(std::move(buffer)) { bytes.clear(); }
 
     template <class... T> void operator()(const T&... values) { (item(values), ...); }
 };

@@ -44,6 +44,7 @@ PAGES = (
     "how-to/bifurcation",
     "how-to/calibration",
     "how-to/chatter",
+    "how-to/continue",
     "how-to/fills",
     "how-to/fmu",
     "how-to/loads",

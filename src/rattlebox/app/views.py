@@ -139,7 +139,7 @@ def _charts(arrays: Arrays, points: Sequence[str], run: rb.Run, unit: str) -> li
         position_label = "Position from the centre of the cavity (mm)"
         charts.append(chart("Phase portrait in the cavity", position_label, "Velocity (m/s)", lines, portrait=True))
         hits = [series(0, "impacts", "impact speed", "impact time", dots=True)]
-        limits = [0.0, float(run.arrays.time[-1])]
+        limits = [float(run.arrays.time[0]), float(run.arrays.time[-1])]
         charts.append(chart("Impacts", "Time (s)", "Approach speed (m/s)", hits, range=limits))
     return charts
 

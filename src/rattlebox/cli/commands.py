@@ -129,6 +129,10 @@ def run(
         Path | None,
         typer.Option(help="Checkpoint file, for particle dampers only; default run.checkpoint in the results folder."),
     ] = None,
+    start: Annotated[
+        Path | None,
+        typer.Option(help="Result of a run, run.nc, from whose end this one continues; time continues, too."),
+    ] = None,
     replace: Annotated[
         bool,
         typer.Option("--replace", help="Replace the results of another case in the folder when this run is finished."),
@@ -138,7 +142,7 @@ def run(
     _check_single(ctx, case)
     from rattlebox.cli.run import run_case
 
-    run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, replace=replace)
+    run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, start=start, replace=replace)
 
 
 @_command(example="inspect quake.csv")

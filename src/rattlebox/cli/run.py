@@ -55,10 +55,10 @@ class _ProgressLog:
         self._last = now, done
 
 
-def _simulate(case: Case, folder: RunFolder) -> Run:
+def _simulate(case: Case, folder: RunFolder, start: Path | None) -> Run:
     """Simulate a case; a run with particles shows its progress and resumes from its checkpoint."""
-    if not case.particle_dampers:
-        return simulate(case)
+    if start is not None or not case.particle_dampers:
+        return simulate(case, start=start)
     console = terminal(stderr=True)
     checkpoint, snapshots = folder.checkpoint, folder.snapshots if case.output.snapshots else None
     with progress_bar(True, "steps") as bar:
@@ -83,7 +83,15 @@ def _simulate(case: Case, folder: RunFolder) -> Run:
 
 
 def run_case(
-    path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, checkpoint: Path | None = None, replace: bool = False
+    path: Path,
+    out: Path,
+    *,
+    csv: bool,
+    mat: bool,
+    figures: bool,
+    checkpoint: Path | None = None,
+    start: Path | None = None,
+    replace: bool = False,
 ) -> None:
     """Simulate a case file, write its results and print its summary."""
     case = Case.from_file(path)
@@ -92,6 +100,10 @@ def run_case(
             f"--checkpoint {checkpoint}: {path} has no particle damper, and only runs with particles write checkpoints",
             "leave out --checkpoint",
         )
+    if checkpoint is not None and start is not None:
+        raise CaseError("--start: a run that continues another one writes no checkpoints", "leave out --checkpoint")
+    if start is not None and start.resolve().parent == out.resolve():
+        raise DataError(f"--start {start}: a result could overwrite this file", "another -o folder")
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
         raise DataError(
             f"--checkpoint {checkpoint}: a result could overwrite a file with this suffix in the results folder",
@@ -100,10 +112,12 @@ def run_case(
     with reserve_folder(out, case, checkpoint=checkpoint, replace=replace) as folder:
         for note in folder.notes:
             typer.echo(note, err=True)
-        _run_in_folder(path, case, folder, csv=csv, mat=mat, figures=figures)
+        _run_in_folder(path, case, folder, start, csv=csv, mat=mat, figures=figures)
 
 
-def _run_in_folder(path: Path, case: Case, folder: RunFolder, *, csv: bool, mat: bool, figures: bool) -> None:
+def _run_in_folder(
+    path: Path, case: Case, folder: RunFolder, start: Path | None, *, csv: bool, mat: bool, figures: bool
+) -> None:
     """Simulate a case and write its results to a reserved folder."""
     out, checkpoint = folder.out, folder.checkpoint
     # Files of an earlier run of the same case are written again, so that all files belong to one run.
@@ -117,7 +131,7 @@ def _run_in_folder(path: Path, case: Case, folder: RunFolder, *, csv: bool, mat:
     try:
         # The names are checked now, and each again when its file is complete: hours may lie between.
         with claim(out / name for name in names), watch(watched):
-            run = _simulate(case, folder)
+            run = _simulate(case, folder, start)
             if run.status == "interrupted" and case.particle_dampers:
                 typer.echo(printable(run.message), err=True)
                 sys.exit(STOPPED)

@@ -506,7 +506,7 @@ class Method(enum.Enum):
 class Settings(Node):
     """Settings of a run of the 1-D engine."""
 
-    def __init__(self, *, method: Method, duration: float | numpy.typing.NDArray[numpy.float64], tolerance: float | numpy.typing.NDArray[numpy.float64] = 1e-12, max_events: int = 10000000, stick: float | numpy.typing.NDArray[numpy.float64] = 1e-06, dt_flight: float | numpy.typing.NDArray[numpy.float64] = 5e-06, dt_contact: float | numpy.typing.NDArray[numpy.float64] = 3e-08, adaptive_inner: bool = False, collocation: bool = True, contact_samples: int = 0) -> None: ...
+    def __init__(self, *, method: Method, duration: float | numpy.typing.NDArray[numpy.float64], tolerance: float | numpy.typing.NDArray[numpy.float64] = 1e-12, max_events: int = 10000000, stick: float | numpy.typing.NDArray[numpy.float64] = 1e-06, dt_flight: float | numpy.typing.NDArray[numpy.float64] = 5e-06, dt_contact: float | numpy.typing.NDArray[numpy.float64] = 3e-08, adaptive_inner: bool = False, collocation: bool = True, contact_samples: int = 0, keep_end: bool = False) -> None: ...
 
     @property
     def method(self) -> Method: ...
@@ -537,6 +537,9 @@ class Settings(Node):
 
     @property
     def contact_samples(self) -> int: ...
+
+    @property
+    def keep_end(self) -> bool: ...
 
     @staticmethod
     def fields() -> dict[str, Varies]: ...
@@ -594,7 +597,7 @@ class Problem(Node):
     A problem of the 1-D engine. Arrays that broadcast over a grid in place of numbers make it a batch.
     """
 
-    def __init__(self, *, settings: Settings, mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], dampers: Sequence[Damper], contacts: Sequence[Contact], sample_times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, *, settings: Settings, mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], dampers: Sequence[Damper], contacts: Sequence[Contact], sample_times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], start_state: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)] | None = None, changed: bool = False) -> None: ...
 
     @property
     def settings(self) -> Settings: ...
@@ -625,6 +628,12 @@ class Problem(Node):
 
     @property
     def sample_times(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def start_state(self) -> Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)] | None: ...
+
+    @property
+    def changed(self) -> bool: ...
 
     @staticmethod
     def fields() -> dict[str, Varies]: ...
@@ -727,12 +736,34 @@ class Counts(Node):
     @staticmethod
     def fields() -> dict[str, Varies]: ...
 
+class EndStates(Node):
+    """
+    States from which another run continues: at the end, and the last one that a longer run has, too.
+    """
+
+    def __init__(self, *, end: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')], whole: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')], motion: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], phases: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')]) -> None: ...
+
+    @property
+    def end(self) -> Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def whole(self) -> Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def motion(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def phases(self) -> Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
 class Result(Node):
     """
     A run of the 1-D engine. `state` holds displacement and velocity of each mode, then positions and velocities of all balls; `chosen` is true for samples at times of the problem.
     """
 
-    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], chosen: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], contact_energy: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], cavity_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], impacts: Impacts, counts: Counts, status: Status, energy_residual_limit: float, permitted_error: float, energy_rounding: float, stopped_at: float, stopped_value: float, stopped_contact: int, seconds: float) -> None: ...
+    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], chosen: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], contact_energy: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], cavity_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], impacts: Impacts, states: EndStates, counts: Counts, status: Status, energy_residual_limit: float, permitted_error: float, energy_rounding: float, stopped_at: float, stopped_value: float, stopped_contact: int, seconds: float) -> None: ...
 
     @property
     def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
@@ -766,6 +797,9 @@ class Result(Node):
 
     @property
     def impacts(self) -> Impacts: ...
+
+    @property
+    def states(self) -> EndStates: ...
 
     @property
     def counts(self) -> Counts: ...
@@ -1113,10 +1147,10 @@ class PairLaws(Node):
 
 class DemProblem(Node):
     """
-    A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring.
+    A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring. Step 0 is at the time `origin` [s], and samples are taken `every` steps from `first_step` on.
     """
 
-    def __init__(self, *, dt: float, steps: int, every: int, enduring: float = float('inf'), gravity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], load_directions: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cavities: Sequence[Cavity], pairs: Sequence[PairLaws]) -> None: ...
+    def __init__(self, *, dt: float, steps: int, every: int, enduring: float = float('inf'), origin: float = 0.0, first_step: int = 0, gravity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], load_directions: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cavities: Sequence[Cavity], pairs: Sequence[PairLaws]) -> None: ...
 
     @property
     def dt(self) -> float: ...
@@ -1129,6 +1163,12 @@ class DemProblem(Node):
 
     @property
     def enduring(self) -> float: ...
+
+    @property
+    def origin(self) -> float: ...
+
+    @property
+    def first_step(self) -> int: ...
 
     @property
     def gravity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
@@ -1496,6 +1536,11 @@ class Dem:
 
     def restore(self, bytes: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
         """Continue from a saved state."""
+
+    def restart(self, bytes: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """
+        Continue a run of the same case from its end; counts and extremes begin anew.
+        """
 
     def continue_from(self, bytes: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], dt: float) -> None:
         """

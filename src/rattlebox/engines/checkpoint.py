@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import json
 import os
@@ -32,6 +31,7 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import register_format
 from rattlebox.core import _core
 from rattlebox.core.choose import instructions
+from rattlebox.engines.fingerprint import fingerprint
 from rattlebox.model.differences import differences
 from rattlebox.model.foreign_code import foreign_code
 from rattlebox.results.provenance import Provenance, with_version
@@ -247,30 +247,3 @@ def comparable_toml(case: Case) -> str:
     parts = {name: getattr(case, name) for name in _FREE_FIELDS}
     free = {name: dict.fromkeys(_FREE_FIELDS[name] & type(part).model_fields.keys()) for name, part in parts.items()}
     return case.model_copy(update={name: part.model_copy(update=free[name]) for name, part in parts.items()}).to_toml()
-
-
-def fingerprint(packed: _core.Node | Mapping[str, Any]) -> str:
-    """Return a digest of every number in the input of the core."""
-    digest = hashlib.sha256()
-
-    def add(value: object) -> None:
-        if isinstance(value, _core.Node):
-            for name in sorted(value.fields()):
-                digest.update(name.encode())
-                add(getattr(value, name))
-        elif isinstance(value, Mapping):
-            for name in sorted(value):
-                digest.update(name.encode())
-                add(value[name])
-        elif isinstance(value, (list, tuple)):
-            digest.update(b"%d" % len(value))
-            for item in value:
-                add(item)
-        elif isinstance(value, np.ndarray):
-            digest.update(f"{value.dtype}{value.shape}".encode())
-            digest.update(np.ascontiguousarray(value).tobytes())
-        else:
-            digest.update(repr(value).encode())
-
-    add(packed)
-    return digest.hexdigest()

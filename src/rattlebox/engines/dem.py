@@ -15,9 +15,10 @@ from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.core._core import Partner, Status
 from rattlebox.engines.checkpoint import Checkpoint
+from rattlebox.engines.dem_continued import end_of, pack_continued
 from rattlebox.engines.dem_run import DemRun
 from rattlebox.engines.dem_snapshots import plan_snapshots
-from rattlebox.engines.end_state import LOSSES, EndState, losses_from_zero
+from rattlebox.engines.end_state import LOSSES, EndState, sums_from_zero
 from rattlebox.engines.responses import structure_arrays
 from rattlebox.engines.run_notes import extrapolation_notes, particle_notes, table_notes
 from rattlebox.engines.status import describe, final_status
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
+    from rattlebox.results.run_end import RunEnd
 
     Array = NDArray[np.float64]
 
@@ -53,16 +55,42 @@ def simulate_dem(
     progress: Progress | None = None,
     checkpoint: Path | None = None,
     snapshots: Path | None = None,
+    keeps_end: bool = False,
 ) -> Run:
     """Run a case with particle dampers."""
     _check_files(checkpoint, snapshots)
     if case.output.snapshots == ():
         snapshots = None
     if checkpoint is None:
-        return _simulate(case, threads, progress, None, snapshots)
+        return _simulate(case, threads, progress, None, snapshots, keeps_end=keeps_end)
     file = Checkpoint(checkpoint, case)
     with file.lock():
-        return _simulate(case, threads, progress, file, snapshots)
+        return _simulate(case, threads, progress, file, snapshots, keeps_end=keeps_end)
+
+
+def simulate_from(case: Case, before: Case, end: RunEnd, origin: str, progress: Progress | None = None) -> Run:
+    """Run a case from the end of a run of the case `before`; `origin` names that run."""
+    method = instance(case.method, Dem)
+    prepared, packed, state, is_same = pack_continued(case, before, end)
+    dem = _core.Dem(packed)
+    dem.threads = method.threads or default_threads(packed)
+    active = DemRun(dem, packed, None, method)
+    active.continue_from(state, end.time, is_same=is_same)
+    status = active.run(progress)
+    return _result(case, prepared, packed, dem, status, active, origin=origin, keeps_end=True)
+
+
+def repeat_until(case: Case, time: float, progress: Progress | None = None) -> Run:
+    """Run a case up to the step that is next to a time [s], with the time step of the whole run."""
+    method = instance(case.method, Dem)
+    prepared = prepare(case)
+    packed = pack_particles(prepared)
+    packed = packed.replace(steps=max(1, round(time / packed.dt)))
+    dem = _core.Dem(packed)
+    dem.threads = method.threads or default_threads(packed)
+    active = DemRun(dem, packed, None, method)
+    status = active.run(progress)
+    return _result(case, prepared, packed, dem, status, active, keeps_end=True)
 
 
 def continue_dem(
@@ -80,9 +108,9 @@ def continue_dem(
     dem.threads = threads or method.threads or default_threads(packed)
     active = DemRun(dem, packed, None, method)
     if before is not None:
-        active.continue_from(before)
+        active.continue_from(before, 0.0)
     status = active.run(progress)
-    run = _result(case, prepared, packed, dem, status, active, continued=before is not None)
+    run = _result(case, prepared, packed, dem, status, active)
     return run, EndState.of(dem, packed, active.records())
 
 
@@ -101,7 +129,13 @@ def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
 
 
 def _simulate(
-    case: Case, threads: int | None, progress: Progress | None, file: Checkpoint | None, snapshots: Path | None
+    case: Case,
+    threads: int | None,
+    progress: Progress | None,
+    file: Checkpoint | None,
+    snapshots: Path | None,
+    *,
+    keeps_end: bool,
 ) -> Run:
     method = instance(case.method, Dem)
     data = None if file is None else file.read()
@@ -116,7 +150,7 @@ def _simulate(
     if snapshots is not None:
         active.add_snapshots(*plan_snapshots(case, packed, snapshots))
     status = active.run(progress)
-    return _result(case, prepared, packed, dem, status, active)
+    return _result(case, prepared, packed, dem, status, active, keeps_end=keeps_end)
 
 
 def default_threads(packed: _core.DemProblem) -> int:
@@ -133,12 +167,12 @@ def _result(
     status: Status,
     active: DemRun,
     *,
-    continued: bool = False,
+    origin: str = "",
+    keeps_end: bool = False,
 ) -> Run:
     resolved_case, step = prepared.case, prepared.step
-    raw, totals = active.records(), dem.counts()
-    if continued:
-        raw = losses_from_zero(raw)
+    records, totals = active.records(), dem.counts()
+    raw = sums_from_zero(records) if active.is_continued else records
     arrays = _arrays(resolved_case, packed, raw, dem)
     # What is known only now, at the end: how deep and fast contacts were, and how much softening changed the loss.
     overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
@@ -154,18 +188,19 @@ def _result(
     if status == Status.finished:
         notes += particle_notes(resolved_case, touches, arrays.contacts, arrays.centre_of_mass, overlaps)
     notes += [*table_notes(resolved_case, speeds), *extrapolation_notes(totals.extrapolated)]
-    counts = {count: getattr(totals, count) for count in ("steps", "rebuilds", "refreshes")}
+    counts = {"steps": totals.steps - packed.first_step, "rebuilds": totals.rebuilds, "refreshes": totals.refreshes}
     counts |= {f"first_touches_{partner}": int(touches[:, Partner[partner]].sum()) for partner in PARTNERS}
     return Run(
         arrays,
         case,
-        Provenance.now(method=case.method.kind, seed=case.seed),
+        Provenance.now(method=case.method.kind, seed=case.seed, continues=origin),
         status=name,
         message=message,
         notes=tuple(notes),
         counts=counts | {"extrapolated": totals.extrapolated, "memory_bytes": totals.memory_bytes},
         diagnostics={**diagnostics, **prepared.fills},
         wall_time=active.seconds,
+        end=end_of(resolved_case, packed, dem, records) if keeps_end and not dem.status else None,
     )
 
 

@@ -33,6 +33,7 @@ class DemRun:
         self._earlier_seconds = 0.0
         self._snapshots: SnapshotFile | None = None
         self._snapshot_steps: list[int] = []
+        self.is_continued = False
 
     def resume(self, data: CheckpointData) -> None:
         """Restore the state of a checkpoint."""
@@ -47,10 +48,20 @@ class DemRun:
         self._pieces = [data.records]
         self._earlier_seconds = data.seconds
 
-    def continue_from(self, end: EndState) -> None:
-        """Start from the end of another run, whose last sample is the first one of this run."""
-        self._dem.continue_from(end.state, end.dt)
-        self._pieces = [end.sample()]
+    def continue_from(self, end: EndState, time: float, *, is_same: bool = False) -> None:
+        """Start from the end of another run, whose last sample is the first one of this run, at a time [s].
+
+        Parameters
+        ----------
+        is_same
+            Whether case and time step are those of that run.
+        """
+        self.is_continued = True
+        if is_same:
+            self._dem.restart(end.state)
+        else:
+            self._dem.continue_from(end.state, end.dt)
+        self._pieces = [end.sample(time, len(self._packed.loads), keeps_sums=is_same)]
 
     def add_snapshots(self, snapshots: SnapshotFile, steps: Sequence[int]) -> None:
         """Take snapshots at the given steps. Those before a resumed checkpoint must already be in the file."""

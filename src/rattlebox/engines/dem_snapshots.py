@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox.core import _core
-from rattlebox.engines.checkpoint import fingerprint
+from rattlebox.engines.fingerprint import fingerprint
 from rattlebox.model.errors import Hint
 from rattlebox.results.snapshots import SnapshotFile
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from rattlebox.core import _core
 
-_FROM_ZERO = ("time", "load_work", "base_work", "viscous_loss")
-"""Samples that the core counts from the beginning of a continued run."""
+_FROM_ZERO = ("load_work", "base_work", "viscous_loss")
+"""Samples that the core counts from the beginning of a continued run, unless the case is the same."""
 
 LOSSES = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
-"""Samples that the core continues to count."""
+"""Samples that the core continues to count in any continued run."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,12 @@ class EndState:
         positions = tuple(np.asarray(cavity.position) for cavity in packed.cavities)
         return cls(np.array(dem.save()), packed.dt, positions, samples)
 
-    def sample(self) -> _core.Records:
-        """Return the last sample as the first one of a run that continues."""
-        values = {name: np.zeros_like(v) if name in _FROM_ZERO else v for name, v in self.samples.items()}
+    def sample(self, time: float, loads: int, *, keeps_sums: bool) -> _core.Records:
+        """Return the last sample as the first one, at a time [s], of a run that continues with some number of loads."""
+        values = {**self.samples, "time": np.array([time])}
+        if not keeps_sums:
+            widths = {"load_work": loads, "base_work": loads, "viscous_loss": values["viscous_loss"].shape[1]}
+            values |= {name: np.zeros((1, widths[name])) for name in _FROM_ZERO}
         return _core.Records(**values)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -61,6 +64,7 @@ class EndState:
         )
 
 
-def losses_from_zero(records: _core.Records) -> _core.Records:
-    """Return the samples of a continued run with losses that count from its first sample."""
-    return records.replace(**{name: getattr(records, name) - getattr(records, name)[:1] for name in LOSSES})
+def sums_from_zero(records: _core.Records) -> _core.Records:
+    """Return the samples of a continued run with work and losses that count from its first sample."""
+    names = (*LOSSES, *_FROM_ZERO)
+    return records.replace(**{name: getattr(records, name) - getattr(records, name)[:1] for name in names})

@@ -14,11 +14,13 @@ from rattlebox._util.interrupts import raise_if_pressed
 from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
+from rattlebox.engines.continued import Start, checked_end, continues, end_of, from_start, pack_continued, read_start
 from rattlebox.engines.responses import structure_arrays
 from rattlebox.engines.run_notes import extrapolation_notes, impact_notes, simultaneous_notes, vibration_notes
 from rattlebox.engines.status import contact_name, describe, final_status
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
+from rattlebox.model.methods import Output
 from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.pack import MAX_EVENTS, pack
@@ -37,6 +39,7 @@ _ENERGIES = ("contact_energy", "load_work", "base_work", "viscous_loss", "normal
 def simulate(
     case: Case,
     *,
+    start: Start | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     snapshots: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] = True,
@@ -47,6 +50,12 @@ def simulate(
     ----------
     case
         Case to run, including the method.
+    start
+        Run to continue from its end, or the file of a saved one; or a pair of a run and a time of it, up to which the run is
+        repeated first. Bodies, contacts and their history continue, and so does time: `duration` of the case is the time at
+        which it ends, and its loads act at the times from the end of the earlier run on. Work, losses and measures count
+        from there. Without other changes the results are bitwise those of one longer run. Parts of the case that differ
+        from those of the run act from its end on.
     checkpoint
         Checkpoint file, written every ten minutes (`Dem(checkpoint=...)`, or `checkpoint_every=...` in simulated time),
         on Ctrl-C and at the end. If it exists, the run resumes from it with bitwise the same results. Particle runs
@@ -66,7 +75,9 @@ def simulate(
     Raises
     ------
     CaseError
-        If a checkpoint or snapshots are given for a 1-D run, or the case requests snapshots without a file.
+        If a checkpoint or snapshots are given for a 1-D run, or the case requests snapshots without a file; if the case
+        cannot continue `start`, because it has other bodies, another law for a closed contact, or a smaller gap than the
+        balls need.
     DataError
         If the checkpoint belongs to another case, version or core (the message lists the differences), is damaged, or
         is in use by another process; if a file is a folder, both files are the same, or a file cannot be written.
@@ -81,18 +92,57 @@ def simulate(
     'finished'
     """
     _require_case(case)
+    if start is not None:
+        return _continue(case, start, checkpoint, snapshots, progress)
     if case.particle_dampers:
         from rattlebox.engines.dem import simulate_dem
 
         if snapshots is None and case.output.snapshots:
             raise Hint("output.snapshots requests snapshots, but no file is given", 'snapshots="run.vtkhdf"')
         with progress_bar(progress, "steps") as report:
-            return simulate_dem(case, progress=report, checkpoint=_path(checkpoint), snapshots=_path(snapshots))
+            paths = {"checkpoint": _path(checkpoint), "snapshots": _path(snapshots)}
+            return simulate_dem(case, progress=report, **paths, keeps_end=True)
     if checkpoint is not None or snapshots is not None:
         raise Hint(
             "the case has no particles; checkpoints and snapshots are for particle dampers only", "leave them out"
         )
     return simulate_many([case], progress=progress)[0]
+
+
+def _continue(
+    case: Case,
+    start: Start,
+    checkpoint: str | os.PathLike[str] | None,
+    snapshots: str | os.PathLike[str] | None,
+    progress: bool | Callable[[int, int], object],
+) -> Run:
+    """Run a case from the end of another run, or from a time of it."""
+    if checkpoint is not None or snapshots is not None or case.output.snapshots:
+        raise Hint("a run that continues another one writes no checkpoints and no snapshots", "leave them out")
+    run, time = read_start(start)
+    if time is not None:
+        run = _repeated(run.case, time, progress)
+    end = checked_end(case, run)
+    origin = continues(run, end)
+    if case.particle_dampers:
+        from rattlebox.engines.dem import simulate_from
+
+        with progress_bar(progress, "steps") as report:
+            return simulate_from(case, run.case, end, origin, report)
+    packed = pack_continued(case, run, end)
+    with progress_bar(progress, "runs") as report:
+        (raw,) = _core.simulate([packed], 1, lambda done: report(done, 1))
+    return run_from_core(case, from_start(raw, end.time), packed, origin)
+
+
+def _repeated(case: Case, time: float, progress: bool | Callable[[int, int], object]) -> Run:
+    """Run a case up to a time of it [s]."""
+    if case.particle_dampers:
+        from rattlebox.engines.dem import repeat_until
+
+        with progress_bar(progress, "steps") as report:
+            return repeat_until(case, time, report)
+    return simulate(case.replaced({"duration": time, "output": Output(times=(time,))}), progress=progress)
 
 
 def _path(path: str | os.PathLike[str] | None) -> Path | None:
@@ -146,7 +196,7 @@ def simulate_many(
                     # Ctrl-C ends all runs.
                     stopped = any(run.status == "interrupted" for run in runs)
                     proceed = _stop if stopped else partial(_report_done, report, done, len(cases))
-                    runs.append(simulate_dem(case, threads=threads, progress=proceed))
+                    runs.append(simulate_dem(case, threads=threads, progress=proceed, keeps_end=True))
                     done += 1
                 else:
                     runs.append(next(finished))
@@ -158,7 +208,7 @@ def simulate_many(
         results = _core.simulate(packed, count, lambda done: report(done, len(packed))) if packed else []
         report(len(packed), len(packed))
     raise_if_pressed()  # of a study, of which these runs are a part
-    return [run_from_core(case, result) for case, result in zip(cases, results, strict=True)]
+    return [run_from_core(*each) for each in zip(cases, results, packed, strict=True)]
 
 
 def _report_done(report: Report, done: int, total: int, *_steps: int) -> object:
@@ -185,8 +235,8 @@ def _limit_samples(raw: _core.Result) -> _core.Result:
     return raw.replace(**{name: getattr(raw, name)[chosen] for name in sampled})
 
 
-def run_from_core(case: Case, raw: _core.Result) -> Run:
-    """Return the run of a case from the result of the core."""
+def run_from_core(case: Case, raw: _core.Result, packed: _core.Problem | None = None, origin: str = "") -> Run:
+    """Return the run of a case from the result of the core; with its packed case, the run can be continued."""
     raw = _limit_samples(raw)
     with np.errstate(over="ignore", invalid="ignore"):  # a solution that became non-finite has a status
         arrays = _arrays(case, raw)
@@ -200,12 +250,13 @@ def run_from_core(case: Case, raw: _core.Result) -> Run:
     return Run(
         arrays,
         case,
-        Provenance.now(method=case.method.kind, seed=case.seed),
+        Provenance.now(method=case.method.kind, seed=case.seed, continues=origin),
         status=status,
         message=message,
         notes=notes,
         counts={name: getattr(raw.counts, name) for name in raw.counts.fields()} | {"impacts": raw.impacts.time.size},
         wall_time=raw.seconds,
+        end=None if packed is None else end_of(packed, raw),
     )
 
 

@@ -459,22 +459,33 @@ class Case(Part):
             if isinstance(signal, Harmonic)
         }
 
-    def sample_times(self) -> Vector:
-        """Return the times of the output that are known before the run, (T,) [s]."""
+    def sample_times(self, start: float = 0.0) -> Vector:
+        """Return the times of the output that are known before the run, (T,) [s].
+
+        Parameters
+        ----------
+        start
+            First time, of a run that continues another one [s].
+
+        Returns
+        -------
+        (T,) float
+            Times from `start` to the end [s].
+        """
         if self.output.is_chosen:
-            return self.output.sample_times(self.duration)
+            return self.output.sample_times(self.duration, start=start)
         signals = (*self.loads, *self.base_acceleration())
-        even = self.output.sample_times(self.duration, self._fastest())
+        even = self.output.sample_times(self.duration, self._fastest(), start)
         pulses = [s.start + np.linspace(0, s.duration, 21) for s in signals if isinstance(s, Shock)]
         times = np.unique(np.concatenate([even, *pulses]))
-        return times[times <= self.duration]
+        return times[(times >= start) & (times <= self.duration)]
 
-    def even_samples(self) -> int:
-        """Return the number of equal intervals between samples, for a run in equal steps.
+    def even_samples(self, start: float = 0.0) -> int:
+        """Return the number of equal intervals between samples from `start` [s] on, for a run in equal steps.
 
         If the rate does not divide the duration, the next larger rate that does is used.
         """
-        return self.output.sample_times(self.duration, self._fastest()).size - 1
+        return self.output.sample_times(self.duration, self._fastest(), start).size - 1
 
     def _fastest(self) -> float:
         """Return the highest frequency of modes, harmonics and sweeps [Hz]."""

@@ -337,7 +337,7 @@ class Output(Part):
         """Whether a rate or times are set."""
         return self.rate is not None or self.times is not None
 
-    def sample_times(self, duration: float, fastest: float = 0.0) -> Vector:
+    def sample_times(self, duration: float, fastest: float = 0.0, start: float = 0.0) -> Vector:
         """Return the sample times of a run that are known in advance; by default the evenly spaced ones.
 
         Parameters
@@ -346,6 +346,8 @@ class Output(Part):
             Duration of the run [s].
         fastest
             Highest frequency of the case [Hz], for the default times.
+        start
+            First time, of a run that continues another one [s].
 
         Returns
         -------
@@ -353,13 +355,16 @@ class Output(Part):
             Times [s].
         """
         if self.times is not None:
-            inside = [t for t in self.times if 0 < t < duration * (1 - 1e-12)]  # 8 x 0.1 may be slightly less than 0.8
-            return np.array([0.0, *inside, duration])
+            inside = [
+                t for t in self.times if start < t < duration * (1 - 1e-12)
+            ]  # 8 x 0.1 may be slightly less than 0.8
+            return np.array([start, *inside, duration])
         if self.rate is None:
-            return np.linspace(0.0, duration, 1 + int(np.clip(20 * duration * fastest, 2000, 100_000)))
+            return np.linspace(start, duration, 1 + int(np.clip(20 * (duration - start) * fastest, 2000, 100_000)))
         # The tolerance is for rounding: 10 000 steps of 0.1 ms may be slightly less than 1 s.
         before = max(1, int(np.ceil(duration * self.rate - 1e-6)))
-        return np.append(np.arange(before) / self.rate, duration)
+        after = int(start * self.rate + 1e-6) + 1
+        return np.concatenate([[start], np.arange(after, before) / self.rate, [duration]])
 
     def snapshot_times(self, duration: float) -> Vector:
         """Return the times of the snapshots of a run, (n,) [s].

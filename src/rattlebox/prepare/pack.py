@@ -55,11 +55,11 @@ MAX_EVENTS = 200_000
 """Largest number of events of a run whose contacts are sampled by default."""
 
 
-def pack(case: Case) -> _core.Problem:
-    """Pack a case for the core."""
+def pack(case: Case, start: float = 0.0) -> _core.Problem:
+    """Pack a case for the core, with samples from a time on [s]."""
     problem = _problem(case)
-    settings = problem.settings.replace(contact_samples=contact_samples(case))
-    return problem.replace(settings=settings, sample_times=_array(case.sample_times()))
+    settings = problem.settings.replace(contact_samples=contact_samples(case), keep_end=True)
+    return problem.replace(settings=settings, sample_times=_array(case.sample_times(start)))
 
 
 def contact_samples(case: Case) -> int:

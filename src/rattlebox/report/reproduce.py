@@ -49,7 +49,8 @@ def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
     script = _script(call, first)
     files.append(File("script.py", script, script))
     if call.function == "simulate":
-        return Recipe((f"rattlebox run {first} -o out", "python script.py"), tuple(files))
+        start = f" --start {call.arguments['start']}" if "start" in call.arguments else ""
+        return Recipe((f"rattlebox run {first}{start} -o out", "python script.py"), tuple(files), call.remarks)
     more: list[str] = []
     if call.kind and not call.remarks:
         study = _study_file(call, first)

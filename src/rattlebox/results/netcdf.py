@@ -1,8 +1,9 @@
 """Runs in netCDF-4 files, restricted to features that every netCDF reader supports.
 
 Numbers are double, 32-bit integer or byte; texts are arrays of characters (UTF-8), not variable-length
-strings; attributes are plain characters. The file has a group for each dataset of the run, and the groups `counts` and
-`diagnostics`. The root group holds the engine, the case, the status, the message, the notes and the provenance.
+strings; attributes are plain characters. The file has a group for each dataset of the run, and the groups `counts`,
+`diagnostics` and `end`, the state from which another run continues. The root group holds the engine, the case, the
+status, the message, the notes and the provenance.
 Dimensions of length zero are omitted together with their variables, except `impact`, which is unlimited.
 
 The groups are not written by xarray, which takes as long (0.27 s instead of 0.28 s for 10 s of the reference case), but
@@ -36,6 +37,7 @@ from rattlebox._util.own_files import register_format
 from .arrays import RunArrays
 from .datasets import Labels, parts
 from .provenance import Provenance
+from .run_end import RunEnd, arrays_from
 from .schema import COUNTS, DIAGNOSTICS, Engine, Kind, groups, variables
 from .snapshots import ROOT as SNAPSHOTS
 
@@ -142,6 +144,20 @@ def _write_group(file: Node, run: Record, name: str) -> None:
         _describe(variable, units=v.units, long_name=v.long_name)
 
 
+def _write_end(file: Node, end: RunEnd) -> None:
+    """Write the state from which another run can continue."""
+    group = file.create_group("end")
+    texts = {name: getattr(end, name) for name in ("numbers", "version", "core", "obstacle")}
+    _describe(group, title="State at the end, from which another run continues", **texts)
+    group.attrs["time"] = np.float64(end.time)
+    if end.arrays is None:
+        return
+    content = end.to_bytes().view(np.int8)
+    group.dimensions["byte"] = content.size
+    variable = group.create_variable("state", ("byte",), "i1", data=content, **_filters(content))
+    _describe(variable, long_name="state of the engine", units="1")
+
+
 def _write(run: Record, target: IO[bytes]) -> None:
     import h5netcdf  # type: ignore[import-untyped]
 
@@ -160,6 +176,8 @@ def _write(run: Record, target: IO[bytes]) -> None:
         _write_numbers(file, "diagnostics", run.diagnostics, DIAGNOSTICS)
         for group in run.groups:
             _write_group(file, run, group)
+        if run.end is not None:
+            _write_end(file, run.end)
 
 
 def save(run: Record, path: Path, *, replace: bool = True) -> Path:
@@ -263,7 +281,14 @@ def _read_run(file: Node) -> dict[str, Any]:
         "counts": {name: int(number) for name, number in _read_numbers(file, "counts").items()},
         "diagnostics": _read_numbers(file, "diagnostics"),
         "wall_time": float(file.attrs["wall_time"]),
+        "end": _read_end(file.groups["end"]) if "end" in file.groups else None,
     }
+
+
+def _read_end(group: Node) -> RunEnd:
+    texts = {name: _text_attribute(group.attrs[name]) for name in ("numbers", "version", "core", "obstacle")}
+    arrays = arrays_from(group.variables["state"][...].view(np.uint8)) if "state" in group.variables else None
+    return RunEnd(float(group.attrs["time"]), arrays=arrays, **texts)
 
 
 def _read_text(file: Node, name: str) -> str:

@@ -8,16 +8,17 @@ from functools import cache
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Origin of a run."""
+    """Origin of a run; `continues` names the run that it continues, or is empty."""
 
     version: str = ""
     method: str = ""
     seed: int = 0
     created: str = ""
     platform: str = ""
+    continues: str = ""
 
     @classmethod
-    def now(cls, method: str = "", seed: int = 0) -> Provenance:
+    def now(cls, method: str = "", seed: int = 0, continues: str = "") -> Provenance:
         """Return the provenance of a run on this machine at the current time."""
         import platform
         from datetime import UTC, datetime
@@ -28,6 +29,7 @@ class Provenance:
             seed=int(seed),
             created=datetime.now(UTC).isoformat(timespec="seconds"),
             platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+            continues=continues,
         )
 
 

@@ -13,6 +13,7 @@ from rattlebox._util.frozen import complete
 from .arrays import RunArrays, same
 from .ledger import Ledger
 from .provenance import Provenance
+from .run_end import RunEnd
 from .schema import groups
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ class Record:
         Time step, largest overlap and so on, by name (`schema.DIAGNOSTICS`); empty for 1-D runs.
     wall_time : float
         Computing time [s].
+    end : RunEnd or None
+        State from which another run can continue; see `rattlebox.simulate`.
 
     Raises
     ------
@@ -62,6 +65,7 @@ class Record:
     counts: Mapping[str, int] = field(default_factory=dict)
     diagnostics: Mapping[str, float] = field(default_factory=dict)
     wall_time: float = 0.0
+    end: RunEnd | None = None
 
     def __post_init__(self) -> None:
         for name in self.counts:

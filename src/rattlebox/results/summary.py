@@ -78,6 +78,8 @@ class _Row:
             return f"{quantity(value, self.unit)} at {quantity(float(values[self.at]), 'm')}"
         if self.key.startswith("steady_"):
             return self._with_error(value, float(values[error_of(self.key)]))
+        if self.key == "end_time" and (start := float(values["start_time"])):  # of a run that continues another one
+            return f"{quantity(start, self.unit)} to {quantity(value, self.unit)}"
         if self.key.startswith("settling_time") and math.isnan(value):
             return "not reached"
         if self.unit == "order":
@@ -139,7 +141,11 @@ _LAST = (
 def _main_results(run: Record) -> dict[str, Value]:
     """Return the values of the summary, in SI units."""
     arrays = run.arrays
-    values: dict[str, Value] = {"status": run.status, "end_time": float(arrays.time[-1])}
+    values: dict[str, Value] = {
+        "status": run.status,
+        "start_time": float(arrays.time[0]),
+        "end_time": float(arrays.time[-1]),
+    }
     if "impacts" in run.groups:
         values |= _impact_results(run)
     if "particles" in run.groups:
@@ -316,7 +322,7 @@ def _settling_times(reference: Mapping[str, Value], arrays: RunArrays) -> dict[s
         peak = reference.get(f"peak_displacement[{point}]")
         if isinstance(peak, float) and peak > 0 and math.isfinite(peak):
             times[f"settling_time[{point}]"] = _core.settled_after(
-                arrays.time, arrays.displacement[:, k], SETTLED * peak
+                arrays.time - arrays.time[0], arrays.displacement[:, k], SETTLED * peak
             )
     return times
 
@@ -329,7 +335,7 @@ def _steady_results(run: Record, accelerations: FloatArray | None) -> dict[str, 
     arrays = run.arrays
     time = arrays.time
     # Batch means need equal steps, and the output times of a run with contacts are not equal.
-    count = min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
+    count = min(max(int(np.count_nonzero(2 * time >= time[0] + time[-1])), 2), 20_000)
     even = np.linspace(0.5 * (time[0] + time[-1]), time[-1], count)
 
     def late(cumulative: FloatArray) -> FloatArray:
@@ -526,7 +532,8 @@ class Summary(_Report):
     Attributes
     ----------
     values : dict
-        Numbers in SI units: `status`, `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
+        Numbers in SI units: `status`, `start_time` (zero, or that of a run which continues another one; all other values
+        are of the time from there on), `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
         `share_normal`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `energy_residual`,
         `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`, `rms_displacement[point]`,
         `peak_acceleration[point]` and `rms_acceleration[point]` (absolute; contacts and pulses act with their mean over each
@@ -564,8 +571,8 @@ class Comparison(_Report):
     values : dict
         For each name the `values` of that run's summary; for all but the first also `peak_reduction[point]` and
         `rms_reduction[point]`, one minus the ratio to the first. If no load or base motion acts at the end of any run,
-        `settling_time[point]`, after which the displacement is at most 5 % of the peak of the first run; NaN if that is not
-        reached.
+        `settling_time[point]`, the time from the start of the run after which the displacement is at most 5 % of the peak of
+        the first run; NaN if that is not reached.
     point : str
         Point that is compared, "" if the runs have no point in common.
     of : str

@@ -37,19 +37,24 @@ _NEGLIGIBLE = 5e-4
 
 
 def _question(run: Run) -> str:
-    case = readable_case(run)
-    return case_question(case) if case else f"How does the structure move within {amount(run.arrays.time[-1], 's')}?"
+    case, (start, end) = readable_case(run), run.arrays.time[[0, -1]]
+    return case_question(case, start) if case else f"How does the structure move {_span(start, end)}?"
 
 
-def case_question(case: Case) -> str:
+def _span(start: float, end: float) -> str:
+    return f"from {amount(start, 's')} to {amount(end, 's')}" if start else f"within {amount(end, 's')}"
+
+
+def case_question(case: Case, start: float = 0.0) -> str:
     """Return the question that a run of a case answers."""
+    span = _span(start, case.duration)
     dampers, loads = dampers_words(case), loads_words(case)
     what = case.structure.words()
     if case.structure.kind in ("shaker", "fixed"):
-        return f"How does {dampers or 'the cavity'} move in {what} within {amount(case.duration, 's')}?"
+        return f"How does {dampers or 'the cavity'} move in {what} {span}?"
     what += f" with {dampers}" if dampers else " without dampers"
     how = f"respond to {loads}" if loads else "vibrate freely"
-    return f"How does {what} {how} within {amount(case.duration, 's')}?"
+    return f"How does {what} {how} {span}?"
 
 
 def _answer(run: Run) -> Iterator[str]:
@@ -117,6 +122,15 @@ def _about(run: Run) -> Iterator[str]:
     yield f"Computed by Rattlebox {origin.version}{date}, {origin.platform}, in {amount(run.wall_time, 's', 3)}."
     if origin.method:
         yield f"Method: {origin.method}."
+    if origin.continues:
+        yield f"The run continues {origin.continues}. All numbers are of the time from {amount(run.arrays.time[0], 's')} on."
+
+
+def _call(run: Run) -> Call:
+    if not run.provenance.continues:
+        return Call("simulate")
+    remark = f"first.nc is the saved run that this one continues: {run.provenance.continues}."
+    return Call("simulate", {"start": "first.nc"}, remarks=(remark,))
 
 
 KIND: Kind[Run] = Kind(
@@ -124,7 +138,7 @@ KIND: Kind[Run] = Kind(
     cases=lambda run: {"": run.case},
     question=_question,
     answer=_answer,
-    call=lambda run: Call("simulate"),
+    call=_call,
     pictures=_pictures,
     tables=lambda run: [Table("Summary", (), run.summary().lines(), numbers=True)],
     warnings=lambda run: run.notes,
