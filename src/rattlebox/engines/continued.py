@@ -149,8 +149,11 @@ def _check_changes(
     for index, (before, after) in enumerate(zip(old.dampers, new.dampers, strict=True)):
         if before.mass.size != after.mass.size:
             have, had = (several(each.mass.size, "ball") for each in (after, before))
-            place = ["dampers", index, "balls"]
-            raise Hint(f"the damper has {have}, in the run {had}; both must be the same", "the same balls", place)
+            raise Hint(
+                f"the damper has {have}, in the run {had}; both must be the same",
+                "the same balls",
+                ["dampers", index, "balls"],
+            )
     m = old.mode_decay.size
     motion, phases = arrays["motion"], arrays["phases"]
     q, p = modal_start(run.case.modes, case.modes, motion[: 2 * m : 2], motion[1 : 2 * m : 2])
@@ -159,21 +162,21 @@ def _check_changes(
     names = [damper.label(index) for index, damper in enumerate(case.impact_dampers)]
     contact = first = 0
     for index, (before, damper) in enumerate(zip(old.dampers, new.dampers, strict=True)):
-        balls = counts[index]
+        balls, clearance, earlier = counts[index], float(damper.clearance), float(before.clearance)
         row = position[first : first + balls] - damper.shape @ q
-        edges = np.concatenate([[-damper.clearance / 2], row, [damper.clearance / 2]])
+        edges = np.concatenate([[-clearance / 2], row, [clearance / 2]])
         for gap in np.diff(edges):
             where, phase = contact_name(names, counts, contact), _PHASES.get(int(phases[contact]), "")
-            if phase and before.clearance != damper.clearance:
+            if phase and earlier != clearance:
                 raise Hint(
-                    f"{where} is {phase} at the end of the run, and a gap of {amount(damper.clearance / 2, 'm')} in place "
-                    f"of {amount(before.clearance / 2, 'm')} would change its overlap suddenly",
+                    f"{where} is {phase} at the end of the run, and a gap of {amount(clearance / 2, 'm')} in place "
+                    f"of {amount(earlier / 2, 'm')} would change its overlap suddenly",
                     "the same gap, or a time of the run at which no ball touches: start=(run, time)",
                     ["dampers", index, "gap"],
                 )
             if phase:
                 _check_law(old.contacts[contact], new.contacts[contact], where, phase, index)
-            elif gap < -1e-12 * damper.clearance:
+            elif gap < -1e-12 * clearance:
                 raise Hint(
                     f"{where} would overlap by {amount(-gap, 'm')} at the end of the run",
                     f"a gap that is larger by {amount(-gap, 'm')}, or a time at which the balls are elsewhere: "

@@ -100,8 +100,9 @@ def simulate(
         if snapshots is None and case.output.snapshots:
             raise Hint("output.snapshots requests snapshots, but no file is given", 'snapshots="run.vtkhdf"')
         with progress_bar(progress, "steps") as report:
-            paths = {"checkpoint": _path(checkpoint), "snapshots": _path(snapshots)}
-            return simulate_dem(case, progress=report, **paths, keeps_end=True)
+            return simulate_dem(
+                case, progress=report, checkpoint=_path(checkpoint), snapshots=_path(snapshots), keeps_end=True
+            )
     if checkpoint is not None or snapshots is not None:
         raise Hint(
             "the case has no particles; checkpoints and snapshots are for particle dampers only", "leave them out"

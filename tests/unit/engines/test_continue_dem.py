@@ -80,10 +80,13 @@ def test_diagnostics_count_from_the_begin() -> None:
 
 
 def test_a_state_of_other_particles_is_refused() -> None:
-    """A state of other particles or loads is refused."""
+    """A run continues without its load, or with two; a state of other particles is refused."""
     _, end = continue_dem(case(1), None, threads=1)
-    with pytest.raises(ValueError, match="state"):
-        continue_dem(case(1, load=()), end, threads=1)
+    for loads in ((), (rb.Harmonic(amplitude="5 N", frequency="30 Hz"), rb.HalfSine(amplitude="1 N", duration="1 ms"))):
+        run, _ = continue_dem(case(1, load=loads), end, threads=1)
+        assert run.ok
+        assert run.arrays.load.shape[1] == len(loads)
+        assert run.arrays.load_work.any() == bool(loads)
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="5 mm", count=19),
         cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
