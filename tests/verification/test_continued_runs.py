@@ -219,6 +219,34 @@ def test_another_structure_keeps_the_motion() -> None:
     assert not np.array_equal(run.arrays.modal_displacement[0], first.arrays.modal_displacement[-1])
 
 
+def test_modes_that_cannot_take_over_the_motion_are_refused() -> None:
+    """A building with all its modes may change its stiffness; with fewer modes of other shapes it is refused."""
+    masses, stiffnesses = ["300 kg"] * 3, ["200 kN/m", "150 kN/m", "100 kN/m"]
+    push = rb.HalfSine(amplitude="3 kN", duration="0.1 s", point="storey 3")
+
+    def building(duration: float, weaker: float = 1.0, modes: int | None = None) -> rb.Case:
+        values = [f"{weaker * 200} kN/m", *stiffnesses[1:]]
+        structure = rb.ShearBuilding(masses=masses, stiffnesses=values, damping_ratio=0.01)
+        if modes is not None:
+            all_modes = structure.modes()
+            structure = rb.Modal(
+                frequencies=structure.natural_frequencies[:modes],
+                damping_ratio=0.01,
+                shapes={name: list(shape[:modes]) for name, shape in all_modes.shapes.items()},
+            )
+        return rb.Case(structure=structure, load=push, duration=duration, output=rb.Output(rate="500 Hz"))
+
+    first = rb.simulate(building(0.5))
+    later = rb.simulate(building(1.0, weaker=0.5), start=first)
+    for name in ("displacement", "velocity"):
+        size = np.abs(getattr(first.arrays, name)[-1]).max()
+        assert getattr(later.arrays, name)[0] == pytest.approx(getattr(first.arrays, name)[-1], abs=1e-12 * size)
+    assert later.energy_residual < 1e-9
+    truncated = rb.simulate(building(0.5, modes=2))
+    assert "cannot take over the motion" in refusal(truncated, building(1.0, weaker=0.5, modes=2))
+    assert rb.simulate(building(1.0, modes=2), start=truncated).ok
+
+
 def test_a_changed_rate_of_decay_agrees_with_theory() -> None:
     """An oscillator whose damping changes at the seam decays with the new rate from there on, in closed form."""
     bare: dict[str, Any] = {"structure": oscillator(), "duration": "0.5 s", "output": rb.Output(rate="1 kHz")}

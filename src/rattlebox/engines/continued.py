@@ -66,8 +66,9 @@ def read_start(start: Start) -> tuple[Run, float | None]:
 
 def checked_end(case: Case, run: Run) -> RunEnd:
     """Return the state at the end of a run; raise if the case cannot continue from it."""
-    if isinstance(case.method, TwoStep):
-        raise Hint("the method TwoStep cannot continue a run", "EventDriven or Newton", ["method"])
+    before = run.case
+    if isinstance(case.method, TwoStep) or isinstance(before.method, TwoStep):
+        raise Hint("runs of the method TwoStep cannot be continued", "EventDriven or Newton from the start", ["method"])
     end = run.end
     if end is None:
         reason = (
@@ -83,7 +84,6 @@ def checked_end(case: Case, run: Run) -> RunEnd:
             f"{here[0]} with the core {here[1]}",
             _AGAIN,
         )
-    before = run.case
     if bool(case.particle_dampers) != bool(before.particle_dampers):
         raise Hint("the run and the case must both have particle dampers, or none", "the same kind of dampers")
     if case.method.kind != before.method.kind:
@@ -119,8 +119,6 @@ def numbers_of(packed: _core.Problem) -> str:
 
 def end_of(packed: _core.Problem, raw: _core.Result) -> RunEnd | None:
     """Return the state at the end of a 1-D run."""
-    if packed.settings.method == _core.Method.two_step:
-        return RunEnd(raw.stopped_at, obstacle="the method TwoStep keeps no state")
     states = raw.states
     if not states.end.size:
         return None
