@@ -129,7 +129,7 @@ struct RunState {
         require(state.t >= 0 && state.t < infinity);
         require(std::all_of(state.y.begin(), state.y.end(),
                             [](real value) { return std::fabs(value) < infinity; }));
-        require(state.y.size() == 2 * (problem.modes.size() + problem.ball_mass.size()));
+        require(state.y.size() == problem.state_size());
         require(ledger.normal.size() == dampers && ledger.plastic.size() == dampers);
         require(phases.size() == contacts);
         for (const Phase each : phases) require(each >= Phase::open && each <= Phase::released);

@@ -141,52 +141,67 @@ def _check_changes(
     case: Case, run: Run, old: _core.Problem, new: _core.Problem, arrays: Any
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the modal displacements and velocities in the modes of the new case; raise if it does not fit the run."""
-    if len(old.dampers) != len(new.dampers):
-        have, had = (several(len(each.dampers), "impact damper") for each in (new, old))
-        raise Hint(f"the case has {have}, the run {had}; both must be the same", "the same dampers", ["dampers"])
-    for index, (before, after) in enumerate(zip(old.dampers, new.dampers, strict=True)):
-        if before.mass.size != after.mass.size:
-            have, had = (several(each.mass.size, "ball") for each in (after, before))
-            raise Hint(
-                f"the damper has {have}, in the run {had}; both must be the same",
-                "the same balls",
-                ["dampers", index, "balls"],
-            )
-    m = old.mode_decay.size
-    motion, phases = arrays["motion"], arrays["phases"]
-    q, p = modal_start(run.case.modes, case.modes, motion[: 2 * m : 2], motion[1 : 2 * m : 2])
-    position = motion[2 * m :]
-    counts = [damper.mass.size for damper in new.dampers]
+    m, stops = old.mode_decay.size, len(case.each_stop)
+    places: list[tuple[str | int, ...]] = [("dampers", index) for index in range(len(case.impact_dampers))]
+    places += [("stops", index) for index in range(stops)]
     names = [damper.label(index) for index, damper in enumerate(case.impact_dampers)]
+    names += [stop.name for stop in case.each_stop]
+    counts, before_counts = ([damper.mass.size for damper in packed.dampers] for packed in (new, old))
+    if counts != before_counts:
+        have, had = (_row_words(each) for each in (counts, before_counts))
+        raise Hint(
+            f"the case has {have}, the run {had}; both must be the same", "the same dampers and stops", ["dampers"]
+        )
+    motion, phases = arrays["motion"], arrays["phases"]
+    before_q = motion[: 2 * m : 2]
+    q, p = modal_start(run.case.modes, case.modes, before_q, motion[1 : 2 * m : 2])
+    position = motion[2 * m :]
     contact = first = 0
-    for index, (before, damper) in enumerate(zip(old.dampers, new.dampers, strict=True)):
-        balls, clearance, earlier = counts[index], float(damper.clearance), float(before.clearance)
-        row = position[first : first + balls] - damper.shape @ q
-        edges = np.concatenate([[-clearance / 2], row, [clearance / 2]])
-        for gap in np.diff(edges):
+    for damper, earlier, place in zip(new.dampers, old.dampers, places, strict=True):
+        row = position[first : first + damper.mass.size]
+        gaps, before_gaps = _gaps(damper, row, q), _gaps(earlier, row, before_q)
+        size = float(damper.clearance) + float(np.abs(damper.shape * q).sum())
+        for gap, before_gap in zip(gaps, before_gaps, strict=True):
             where, phase = contact_name(names, counts, contact), _PHASES.get(int(phases[contact]), "")
-            if phase and earlier != clearance:
+            if phase and abs(gap - before_gap) > _SAME_MOTION * size:
                 raise Hint(
-                    f"{where} is {phase} at the end of the run, and a gap of {amount(clearance / 2, 'm')} in place "
-                    f"of {amount(earlier / 2, 'm')} would change its overlap suddenly",
-                    "the same gap, or a time of the run at which no ball touches: start=(run, time)",
-                    ["dampers", index, "gap"],
+                    f"{where} is {phase} at the end of the run, and with the gap of the case its overlap would change "
+                    f"suddenly by {amount(abs(gap - before_gap), 'm')}",
+                    "the same gap, or a time of the run at which nothing touches: start=(run, time)",
+                    [*place, "gap"],
                 )
             if phase:
-                _check_law(old.contacts[contact], new.contacts[contact], where, phase, index)
-            elif gap < -1e-12 * clearance:
+                _check_law(old.contacts[contact], new.contacts[contact], where, phase, place)
+            elif gap < -1e-12 * size:
                 raise Hint(
                     f"{where} would overlap by {amount(-gap, 'm')} at the end of the run",
-                    f"a gap that is larger by {amount(-gap, 'm')}, or a time at which the balls are elsewhere: "
-                    "start=(run, time)",
-                    ["dampers", index, "gap"],
+                    f"a gap that is larger by {amount(-gap, 'm')}, or another time of the run: start=(run, time)",
+                    [*place, "gap"],
                 )
             contact += 1
-        first += balls
+        first += row.size
     return q, p
 
 
-def _check_law(before: _core.Contact, after: _core.Contact, where: str, phase: str, damper: int) -> None:
+def _row_words(counts: list[int]) -> str:
+    """Return a phrase about the numbers of balls of dampers and stops; a stop has none."""
+    dampers, stops = [count for count in counts if count], counts.count(0)
+    words = [several(len(dampers), "impact damper")] if dampers else ["no impact damper"]
+    words += [f"with {several(sum(dampers), 'ball')}"] if dampers else []
+    return " ".join([*words, *([f"and {several(stops, 'stop')}"] if stops else [])])
+
+
+def _gaps(damper: _core.Damper, row: NDArray[np.float64], q: NDArray[np.float64]) -> list[float]:
+    """Return the gaps of a row of balls in its cavity, or of a stop, which has no balls [m]."""
+    half, moved = 0.5 * float(damper.clearance), float(damper.shape @ q)
+    if not row.size:
+        return [half - moved]
+    return [float(gap) for gap in np.diff([-half, *(row - moved), half])]
+
+
+def _check_law(
+    before: _core.Contact, after: _core.Contact, where: str, phase: str, place: tuple[str | int, ...]
+) -> None:
     """Raise if the law of a contact in progress has changed in a way that it cannot follow."""
     if fingerprint(before) == fingerprint(after):
         return
@@ -198,8 +213,8 @@ def _check_law(before: _core.Contact, after: _core.Contact, where: str, phase: s
         return
     raise Hint(
         f"{where} is {phase} at the end of the run, and the case has {what} for it",
-        "the same contact law, or a time of the run at which no ball touches: start=(run, time)",
-        ["dampers", damper, "contact"],
+        "the same contact law, or a time of the run at which nothing touches: start=(run, time)",
+        [*place, "contact"],
     )
 
 
@@ -233,13 +248,18 @@ def modal_start(
     return starts[0], starts[1]
 
 
-def from_start(raw: _core.Result, start: float) -> _core.Result:
-    """Return the result of a continued run from its start on: later samples and impacts, sums that begin with zero."""
+def from_start(raw: _core.Result, start: float, stops: int) -> _core.Result:
+    """Return the result of a continued run from its start on: later samples and impacts, sums that begin with zero.
+
+    The state ends with the impulses on the stops, which are sums, too.
+    """
     # The state from which it continues may be a little earlier.
     later = raw.time >= start
     names = ("time", "state", "chosen", "cavity_force", "contact_energy", *_SUMS)
     samples = {name: getattr(raw, name)[later] for name in names}
     samples |= {name: samples[name] - samples[name][:1] for name in _SUMS}
+    if stops:
+        samples["state"][:, -stops:] -= samples["state"][:1, -stops:].copy()
     log = raw.impacts
     over = log.complete & (log.time + log.duration <= start) & (log.time < start)
     impacts = log.replace(**{name: getattr(log, name)[~over] for name in log.fields()})

@@ -85,7 +85,7 @@ def pack_continued(case: Case, before: Case, end: RunEnd) -> Continuation:
     packed = pack_particles(own)
     old = prepare(_softened(before, softening), state.positions)
     _check_changes(case, before, packed, pack_particles(old))
-    return Continuation(own, packed.replace(origin=end.time), state, is_same=False)
+    return Continuation(own, packed.replace(origin=end.time), state.in_gravity(packed), is_same=False)
 
 
 def _softened(case: Case, softening: object) -> Case:

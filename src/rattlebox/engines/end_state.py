@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -42,6 +42,12 @@ class EndState:
             widths = {"load_work": loads, "base_work": loads, "viscous_loss": values["viscous_loss"].shape[1]}
             values |= {name: np.zeros((1, widths[name])) for name in _FROM_ZERO}
         return _core.Records(**values)
+
+    def in_gravity(self, packed: _core.DemProblem) -> Self:
+        """Return the state with the potential energies of the particles in the gravity of a problem."""
+        masses = np.array([cavity.mass.sum() for cavity in packed.cavities])
+        potential = -masses * (self.samples["centre"] @ np.asarray(packed.gravity))
+        return replace(self, samples={**self.samples, "potential": potential})
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the state as arrays with a first dimension of length one, by name."""

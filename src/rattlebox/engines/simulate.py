@@ -133,7 +133,7 @@ def _continue(
     packed = pack_continued(case, run, end)
     with progress_bar(progress, "runs") as report:
         (raw,) = _core.simulate([packed], 1, lambda done: report(done, 1))
-    return run_from_core(case, from_start(raw, end.time), packed, origin)
+    return run_from_core(case, from_start(raw, end.time, len(case.each_stop)), packed, origin)
 
 
 def _repeated(case: Case, time: float, progress: bool | Callable[[int, int], object]) -> Run:
