@@ -14,7 +14,6 @@ from rattlebox.core.choose import instructions
 from rattlebox.engines.fingerprint import fingerprint
 from rattlebox.engines.status import contact_name
 from rattlebox.model.errors import Hint, several
-from rattlebox.model.methods import TwoStep
 from rattlebox.model.units import in_si
 from rattlebox.prepare.pack import pack
 from rattlebox.results.provenance import Provenance
@@ -67,8 +66,10 @@ def read_start(start: Start) -> tuple[Run, float | None]:
 def checked_end(case: Case, run: Run) -> RunEnd:
     """Return the state at the end of a run; raise if the case cannot continue from it."""
     before = run.case
-    if isinstance(case.method, TwoStep) or isinstance(before.method, TwoStep):
-        raise Hint("runs of the method TwoStep cannot be continued", "EventDriven or Newton from the start", ["method"])
+    for method in (before.method, case.method):
+        if not method.has_stepper:
+            name = type(method).__name__
+            raise Hint(f"runs of the method {name} cannot be continued", "another method from the start", ["method"])
     end = run.end
     if end is None:
         reason = (
