@@ -11,6 +11,7 @@ from .drift import drift
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
 from .measured import read_frequency_response
 from .measures import peak_reduction, rms_reduction, settling_time
+from .over_records import over_records
 from .power_spectra import (
     band_levels,
     miles_rms,
@@ -42,6 +43,7 @@ __all__ = [
     "mean_interval",
     "miles_rms",
     "minimum_real_part",
+    "over_records",
     "peak_reduction",
     "phase_portrait",
     "poincare_section",

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import glob
+import math
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rattlebox._util.exceptions import DataError
+import numpy as np
 
-from .errors import Hint, several
+from rattlebox._util.exceptions import DataError
+from rattlebox._util.oscillator import MIN_SAMPLES_PER_PERIOD, peaks
+
+from .errors import Hint, at, several
 from .recorded import Record
+from .units import parse
 
 Source = str | os.PathLike[str]
 _GLOB = frozenset("*?[")  # characters of a pattern
+_EVEN = 0.02  # differences of equal steps over a step
 _LISTED = 12  # records in a message or a representation
 
 
@@ -64,11 +70,91 @@ class RecordSet(Mapping[str, Record]):
         """Longest run that each record covers [s]."""
         return tuple(float(record.polyline()[0][-1]) for record in self.values())
 
+    def spectral_accelerations(self, period: float | str, damping_ratio: float = 0.05) -> dict[str, float]:
+        r"""Compute the spectral acceleration of each record at a period.
+
+        Parameters
+        ----------
+        period
+            Period T of the oscillator [s]; 0 for the peak of the record.
+        damping_ratio
+            Damping ratio of the oscillator.
+
+        Returns
+        -------
+        dict of str to float
+            Pseudo-acceleration by the name of the record [m/s^2].
+
+        Raises
+        ------
+        CaseError
+            If a record is no acceleration in equal time steps, or its steps are longer than half of the period.
+
+        Notes
+        -----
+        .. math:: S_a(T) = \left(\frac{2 \pi}{T}\right)^2 \max |z(t)|
+
+        with the displacement :math:`z` relative to the base of an oscillator that starts at rest, during the record and
+        after it. This pseudo-acceleration is what codes mean by the spectral acceleration.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import rattlebox as rb
+        >>> time = np.arange(3001) * 0.01
+        >>> waves = rb.RecordSet({"wave": rb.Record(dt="0.01 s", values=np.sin(2 * np.pi * time), unit="m/s^2")})
+        >>> round(waves.spectral_accelerations("1 s")["wave"], 2)  # 1 / (2 x 0.05) at resonance
+        10.0
+        """
+        seconds = _seconds(period)
+        return {name: _spectral_acceleration(record, seconds, damping_ratio) for name, record in self.items()}
+
+    def scaled_to(self, acceleration: float | str, period: float | str, damping_ratio: float = 0.05) -> RecordSet:
+        """Scale each record to the same spectral acceleration at a period.
+
+        Parameters
+        ----------
+        acceleration
+            Spectral acceleration of the scaled records [m/s^2]. With "1 g", values of an axis "base.scale" are spectral
+            accelerations in g.
+        period, damping_ratio
+            As for `spectral_accelerations`; a period of 0 scales to the peak acceleration.
+
+        Returns
+        -------
+        RecordSet
+            Records with the same names and the numbers of the scaled signal, without files; their `scale` is 1.
+
+        Raises
+        ------
+        CaseError
+            If a record is zero throughout, or has no spectral acceleration (see `spectral_accelerations`).
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> pulses = rb.RecordSet({k: rb.Record(dt="0.1 s", values=[0, k, 0, 0], unit="g") for k in (1, 2)})
+        >>> stronger = pulses.scaled_to("0.5 g", period="0.4 s")
+        >>> {name: round(value / 9.80665, 6) for name, value in stronger.spectral_accelerations("0.4 s").items()}
+        {'1': 0.5, '2': 0.5}
+        """
+        with at("acceleration"):
+            wanted = parse(acceleration, ("m/s^2",))[0]
+            if not wanted > 0:
+                raise Hint("must be greater than zero", '"1 g"')
+        scaled = {}
+        for name, now in self.spectral_accelerations(period, damping_ratio).items():
+            if not now > 0:
+                raise Hint(f"the record {name!r} has no acceleration, so that it cannot be scaled", "a set without it")
+            scaled[name] = _multiplied(self[name], wanted / now)
+        return RecordSet(scaled)
+
 
 def record_set(
     files: Source | Sequence[Source] | Mapping[str, Source | Record],
     *,
     names: Sequence[str] | None = None,
+    intensity: tuple[float | str, float | str] | None = None,
     **fields: Any,
 ) -> RecordSet:
     r"""Read several records, each by the unit and the time step of its file.
@@ -81,6 +167,9 @@ def record_set(
     names
         Names of the records, one for each file; default the names of the files without their ending, or with it if several
         differ only in the ending.
+    intensity
+        Spectral acceleration and period to which each record is scaled, such as ("1 g", "0.8 s"), with a damping ratio of
+        5 %; a period of 0 means the peak. See `RecordSet.scaled_to`.
     **fields
         Fields of all records (see `rb.Record`), such as unit, dt, direction.
 
@@ -107,7 +196,7 @@ def record_set(
     >>> {name: round(quake.peak, 6) for name, quake in quakes.items()}
     {'north': 0.980665, 'south': 2.0}
     """
-    if isinstance(files, RecordSet) and not fields and names is None:
+    if isinstance(files, RecordSet) and not fields and names is None and intensity is None:
         return files
     if isinstance(files, Mapping):
         if names is not None:
@@ -124,7 +213,58 @@ def record_set(
             records[name] = each
         else:
             records[name] = Record(file=os.fspath(each), name=name, **fields)
-    return RecordSet(records)
+    found = RecordSet(records)
+    if intensity is None:
+        return found
+    with at("intensity"):
+        if isinstance(intensity, str) or np.shape(intensity) != (2,):
+            raise Hint(f"{intensity!r:.60} is not a spectral acceleration and a period", 'intensity = ["1 g", "0.8 s"]')
+        return found.scaled_to(*intensity)
+
+
+def _seconds(period: Any) -> float:
+    """Return a period [s]; raise if it is negative."""
+    with at("period"):
+        seconds = parse(period, ("s",))[0]
+        if not seconds >= 0:
+            raise Hint("must be at least 0", '"0.8 s", or 0 for the peak acceleration')
+    return seconds
+
+
+def _spectral_acceleration(record: Record, period: float, damping_ratio: float) -> float:
+    """Return the pseudo-acceleration of a record [m/s^2]."""
+    if record.unit not in ("m/s^2", None):
+        raise Hint(
+            f"the record {record.name!r} is in {record.unit}, not an acceleration", "records of the acceleration"
+        )
+    if not 0 <= damping_ratio < 1:
+        raise Hint(f"damping_ratio is {damping_ratio}, but it must be at least 0 and below 1", "0.05")
+    times, values = record.polyline()
+    if period == 0:
+        return float(np.abs(values).max())
+    steps = np.diff(times)
+    step = float(times[-1] - times[0]) / steps.size
+    # Times of text files are rounded, often to a few digits.
+    if np.ptp(steps) > _EVEN * step:
+        raise Hint(
+            f"the steps of the record {record.name!r} must be equal, but are {steps.min():.4g} to {steps.max():.4g} s",
+            "rb.Record(dt=step, values=numpy.interp(even_times, times, values))",
+        )
+    if step * MIN_SAMPLES_PER_PERIOD > period:
+        raise Hint(
+            f"a period of {period:.4g} s is too short for the record {record.name!r}, sampled every {step:.4g} s",
+            f"a period of at least {MIN_SAMPLES_PER_PERIOD * step:.4g} s",
+        )
+    omega = 2 * math.pi / period
+    return omega**2 * peaks(values, step, omega, damping_ratio)[2]
+
+
+def _multiplied(record: Record, factor: float) -> Record:
+    """Return a record with other values and without its file."""
+    times, values = record.polyline()
+    own = {*record.file_fields, "kind", "file", "columns", "dt", "scale", "time_zero", "unit"}
+    others = {name: value for name in type(record).model_fields if name not in own and (value := getattr(record, name))}
+    return Record(times=times, values=factor * values, unit="m/s^2", **others)
 
 
 def _paths(files: Source | Sequence[Source]) -> list[str]:

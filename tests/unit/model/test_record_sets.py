@@ -180,3 +180,86 @@ def test_assumed_units_of_an_axis(folder: Path, case: rb.Case) -> None:
         warnings.simplefilter("always")
         rb.sweep(case, {"base": rb.record_set(folder)}, ["peak"], progress=False)
     assert any("quartz.txt states no unit; m/s^2 is assumed" in str(each.message) for each in caught)
+
+
+def test_spectral_acceleration_of_a_harmonic() -> None:
+    """The steady response to a long harmonic record is that of the closed form, at and off resonance, for any damping."""
+    time = np.arange(12_001) * 0.01
+    values = 1.7 * np.sin(2 * np.pi * 1.3 * time)
+    records = rb.RecordSet({"wave": rb.Record(dt="0.01 s", values=values, unit="m/s^2")})
+    straight = np.sinc(1.3 * 0.01) ** 2  # of the lines between the samples
+    for period, damping in ((1 / 1.3, 0.05), (1 / 1.3, 0.2), (0.5, 0.05), (0.2, 0.1)):
+        own, driving = 2 * np.pi / period, 2 * np.pi * 1.3
+        steady = 1.7 * straight * own**2 / abs(own**2 - driving**2 + 2j * damping * own * driving)
+        found = records.spectral_accelerations(period, damping)["wave"]
+        # Where the start from rest beats with the steady motion, the peak is that of an independent integration.
+        if period != 1 / 1.3:
+            from scipy.signal import lsim
+
+            fine = np.linspace(0, 20, 200_001)
+            system = ([-1.0], [1, 2 * damping * own, own**2])
+            _, relative, _ = lsim(system, np.interp(fine, time, values), fine)
+            assert found == pytest.approx(own**2 * np.abs(relative).max(), rel=1e-4)
+            assert found >= steady * (1 - 1e-4)
+        else:
+            assert found == pytest.approx(steady, rel=2e-4)
+    assert records.spectral_accelerations(0)["wave"] == np.abs(values).max()
+
+
+def test_scaled_records_have_the_intensity(folder: Path, case: rb.Case) -> None:
+    """With intensity, an axis of scales is the spectral acceleration; records had to be scaled by hand before."""
+    g = 9.80665
+    scaled = rb.record_set(folder, intensity=("1 g", "0.6 s"), direction=None)
+    plain = rb.record_set(folder)
+    assert list(scaled) == list(plain) and scaled.durations == plain.durations
+    assert list(scaled.spectral_accelerations("0.6 s").values()) == pytest.approx([g] * 3, rel=1e-12)
+    assert all(record.file is None and record.scale == 1 for record in scaled.values())
+    # A scale of a record has no effect on the result.
+    stronger = rb.record_set(folder, scale=3).scaled_to("1 g", "0.6 s")
+    for name, record in stronger.items():
+        assert record.values == pytest.approx(scaled[name].values, rel=1e-12)
+    # The oscillator of the definition, as a case: the axis is its acceleration in g.
+    mass = rb.SDOF(mass="1 kg", frequency=1 / 0.6, damping_ratio=0.05)
+    still = case.model_copy(update={"structure": mass, "output": rb.Output(rate="1 kHz")})
+    study = rb.sweep(still, {"base": scaled, "base.scale": [0.2, 0.5]}, ["peak"], samples=4001, progress=False)
+    found = study.peak.values * (2 * np.pi / 0.6) ** 2 / g
+    assert found == pytest.approx(np.array([[0.2, 0.5]] * 3), rel=1e-3)
+    assert study["base"].values.tolist() == list(plain)
+    assert {round(r.peak, 9) for r in rb.record_set(folder, intensity=(2.0, 0)).values()} == {2.0}
+
+
+@pytest.mark.parametrize(
+    ("values", "options", "message"),
+    [
+        ([0, 0, 0, 0], {"period": "1 s"}, "has no acceleration"),
+        ([0, 1, 0, 0], {"period": "0.1 s"}, "too short for the record"),
+        ([0, 1, 0, 0], {"period": "-1 s"}, "must be at least 0"),
+        ([0, 1, 0, 0], {"period": "1 s", "acceleration": "0 g"}, "must be greater than zero"),
+        ([0, 1, 0, 0], {"period": "1 s", "damping_ratio": 1.0}, "below 1"),
+        ([0, 1, 0, 0], {"period": "1 s", "unit": "N"}, "not an acceleration"),
+        ([0, 1, 0, 0], {"period": "1 s", "times": [0, 0.1, 0.5, 0.6]}, "steps of the record 'a' must be equal"),
+    ],
+)
+def test_records_that_cannot_be_scaled(values: list[float], options: dict, message: str) -> None:
+    """Records without motion, of a force, in unequal steps, or too coarse for the period raise."""
+    own = {"acceleration": "1 g", **options}
+    times = {"times": own.pop("times")} if "times" in own else {"dt": "0.1 s"}
+    records = rb.RecordSet({"a": rb.Record(values=values, unit=own.pop("unit", "m/s^2"), **times)})
+    with pytest.raises(rb.CaseError, match=message):
+        records.scaled_to(**own)
+
+
+def test_intensity_in_a_study_file(folder: Path) -> None:
+    """A study file scales a set of records by the argument of the same name."""
+    text = (
+        'kind = "sweep"\nmeasure = "peak"\n[axes]\n"base.scale" = [0.5]\n'
+        'base = { records = "quakes/*.csv", intensity = ["1 g", "0.5 s"] }\n'
+        '[case]\nduration = "2 s"\n[case.structure]\nkind = "sdof"\nmass = "1 kg"\nfrequency = "2 Hz"\n'
+        "damping_ratio = 0.05\n"
+        '[case.base]\nkind = "record"\ntimes = [0, 9]\nvalues = [0, 0]\nunit = "m/s^2"\n'
+    )
+    study = study_from_toml(text, folder=folder.parent)
+    found = float(study.run().peak.values.ravel()[0]) * (2 * np.pi * 2) ** 2 / 9.80665
+    assert found == pytest.approx(0.5, rel=2e-3)
+    with pytest.raises(rb.CaseError, match="not a spectral acceleration and a period"):
+        study_from_toml(text.replace('["1 g", "0.5 s"]', '"1 g"'), folder=folder.parent)
