@@ -48,6 +48,7 @@ PAGES = (
     "how-to/fills",
     "how-to/fmu",
     "how-to/loads",
+    "how-to/record_sets",
     "how-to/map_on_structure",
     "how-to/matlab",
     "how-to/notebooks",

@@ -261,6 +261,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "building_variants",
         "calibration",
         "fills",
+        "ida",
         "lecture",
         "map_against_simulation",
         "panel_variants",
