@@ -32,6 +32,7 @@ from rattlebox.model.contacts import Thornton as Thornton
 from rattlebox.model.contacts import Tsuji as Tsuji
 from rattlebox.model.dampers import ImpactDamper as ImpactDamper
 from rattlebox.model.dampers import Sphere as Sphere
+from rattlebox.model.dampers import Striker as Striker
 from rattlebox.model.effective_masses import EffectiveMasses as EffectiveMasses
 from rattlebox.model.effective_masses import effective_masses as effective_masses
 from rattlebox.model.friction import LinearSpring as LinearSpring

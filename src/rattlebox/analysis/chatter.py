@@ -39,9 +39,17 @@ def minimum_real_part(frequency: FloatArray, response: ComplexArray) -> float:
 
     A tool with this response is stable at all spindle speeds up to the depth of cut b = -1 / (2 Ks min Re G).
 
-    `frequency`: rising frequencies [Hz], (F,). `response`: displacement over force [m/N], times the directional factor; NaN
-    where it is unknown, (F,). Returns minimum of a parabola through the smallest real part and its neighbours [m/N]; NaN if
-    nothing is known.
+    Parameters
+    ----------
+    frequency : (F,) float
+        Rising frequencies [Hz].
+    response : (F,) complex
+        Displacement over force [m/N], times the directional factor; NaN where it is unknown.
+
+    Returns
+    -------
+    float
+        Minimum of a parabola through the smallest real part and its neighbours [m/N]; NaN if nothing is known.
 
     Examples
     --------

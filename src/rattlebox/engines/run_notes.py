@@ -134,7 +134,8 @@ def validity_limits(case: Case, prepared: Prepared | None) -> Iterator[ContactLi
     for name, damper in _named(case.impact_dampers):
         radii, shares = _overlap_limits(damper)
         for k, law in enumerate(_contact_laws(damper)):
-            yield ContactLimit("overlap", first + k, radii[k] * shares[k], _deep(name, shares[k]))
+            if np.isfinite(radii[k]):
+                yield ContactLimit("overlap", first + k, radii[k] * shares[k], _deep(name, shares[k]))
             if law.measured_overlap is not None:
                 text = f"overlaps in {name} exceed the measured force curve, which is extrapolated: extend the curve"
                 yield ContactLimit("overlap", first + k, law.measured_overlap, text)
@@ -195,7 +196,10 @@ def worst_overlap(damper: ImpactDamper, contacts: NDArray[np.int_], overlaps: ND
     """Return the overlap [m] of some contacts of a damper that is largest against the limit of its contact law."""
     radii, limits = _overlap_limits(damper)
     ratios = overlaps / radii[contacts]
-    worst = int(np.nanargmax(ratios / limits[contacts]))
+    known = ratios / limits[contacts]
+    if np.isnan(known).all():
+        return Overlap(0.0, float(limits[contacts[0]]))
+    worst = int(np.nanargmax(known))
     return Overlap(float(ratios[worst]), float(limits[contacts[worst]]))
 
 
@@ -220,7 +224,7 @@ def _contact_laws(damper: ImpactDamper) -> list[Contact]:
 
 def _overlap_limits(damper: ImpactDamper) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the smaller radius [m] of each contact of a damper, and the largest allowed overlap over it."""
-    radii = [ball.half for ball in damper.balls]
+    radii = [ball.curvature for ball in damper.balls]  # not a number for strikers without one, which have no limit
     limits = [law.overlap_limit for law in _contact_laws(damper)]
     return np.array([radii[0], *np.minimum(radii[:-1], radii[1:]), radii[-1]]), np.array(limits)
 

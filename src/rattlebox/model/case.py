@@ -341,8 +341,16 @@ class Case(Part):
             between = 0 < number < len(damper.balls) and damper.ball_contact is not None
             law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
             with at("ball_contact" if between else "contact"), _raise_if_not_finite():
-                _, values = law.coefficients(pair)
-                _check_finite(values)
+                # A striker without a radius has one that is not a number, and so have laws that need it.
+                sized = not any(np.isnan(body.radius).any() for body in (pair.below, pair.above))
+                if sized or self.method.hard_restitution(law, pair) is None:
+                    _, values = law.coefficients(pair)
+                    if not sized and not all(np.isfinite(value).all() for value in values.values()):
+                        raise Hint(
+                            f"the contact law {law.kind!r} follows from the radius of the bodies, and the striker has none",
+                            'radius = "0.5 m" of the striker, or a law with a contact time or a stiffness',
+                        )
+                    _check_finite(values)
                 if law.impact_restitution is not None:
                     with at("restitution"):
                         _, values = law.impact_restitution.coefficients(pair)

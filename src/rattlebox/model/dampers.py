@@ -10,7 +10,9 @@ from operator import add
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, GetJsonSchemaHandler, Tag, WithJsonSchema, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from rattlebox._util.frozen import complete
 from rattlebox._util.narrow import present
@@ -77,10 +79,21 @@ class Sphere(Part):
             one_of('radius = "10 mm"', radius=values.get("radius"), diameter=values.get("diameter"))
         return radius_of_diameter(values)
 
+    noun: ClassVar[str] = "ball"
+
     @property
     def half(self) -> float:
-        """Radius [m]."""
+        """Half of the length along the line: the radius [m]."""
         return present(self.radius)
+
+    @property
+    def curvature(self) -> float:
+        """Radius of the surface in contact [m]."""
+        return present(self.radius)
+
+    def half_of(self, radius: Any) -> Any:
+        """Return the half length of the body with another radius [m]."""
+        return radius
 
     @property
     def weight(self) -> float:
@@ -89,6 +102,70 @@ class Sphere(Part):
             return self.mass
         volume: float = 4 / 3 * math.pi * power(self.half, 3)
         return volume * self.material.density
+
+
+class Striker(Sphere):
+    """Rigid body of an impact damper, given by its mass: a slug, a weight on rollers, a pounding mass.
+
+    Only its mass and its contacts count, not its length: it moves along the line by the gap on each side.
+
+    Parameters
+    ----------
+    mass
+        Mass [kg].
+    radius, diameter
+        Radius or diameter of curvature of its ends, for laws that take the stiffness of a contact from the shape and the
+        material of the bodies [m]. Laws with a contact time or a stiffness of their own, and hard impacts, need none.
+    material
+        Material of its ends, for the same laws.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> pads = rb.Linear(contact_time="10 ms", restitution=0.5)
+    >>> rb.ImpactDamper(ball=rb.Striker(mass="12 t"), gap="0.2 m", contact=pads).words()
+    'a striker of 12 t with 0.4 m of clearance'
+    """
+
+    kind: Literal["striker"] = "striker"
+    mass: PositiveMass = Field(examples=["12 t"])
+    material: AnyMaterial = Field(default="steel", validate_default=True, examples=["steel"])
+    noun: ClassVar[str] = "striker"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_size(cls, values: object) -> Any:
+        return radius_of_diameter(values)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        schema = super().__get_pydantic_json_schema__(core, handler)
+        content = handler.resolve_ref_schema(schema)
+        content["required"] = ["kind", *content.get("required", [])]  # a table without a kind is a sphere
+        return schema
+
+    @property
+    def half(self) -> float:
+        """Zero: the length of the body does not count [m]."""
+        return 0.0
+
+    @property
+    def curvature(self) -> float:
+        """Radius of its ends [m]; NaN if it has none."""
+        return math.nan if self.radius is None else self.radius
+
+    def half_of(self, radius: Any) -> Any:
+        """Return the half length of the body with another radius [m]: zero."""
+        return 0.0 * radius
+
+
+def _kind_of_ball(value: object) -> str:
+    """Return the kind of a ball; one without a kind is a sphere."""
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return "striker" if kind == "striker" else "sphere"
+
+
+AnyBall = Annotated[Annotated[Sphere, Tag("sphere")] | Annotated[Striker, Tag("striker")], Discriminator(_kind_of_ball)]
 
 
 def _each(values: Sequence[object], read: Callable[[Any], Any]) -> list[Any]:
@@ -133,7 +210,7 @@ class ImpactDamper(Damper):
     Parameters
     ----------
     ball, balls
-        One Sphere or several, from the trailing to the leading wall.
+        One Sphere or Striker, or several, from the trailing to the leading wall.
     gap, cavity_length
         Clearance on each side when the row is packed and centred, or inner length of the cavity [m]; one of them.
     wall
@@ -169,7 +246,7 @@ class ImpactDamper(Damper):
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("gap", "cavity_length"),)
     kind: Literal["impact"] = "impact"
     name: str = ""
-    balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoAccepts()] = Field(
+    balls: Annotated[tuple[AnyBall, ...], BeforeValidator(as_several), AlsoAccepts()] = Field(
         examples=[{"radius": "10 mm", "material": "steel"}]
     )
     gap: NotNegativeLength | None = None
@@ -305,9 +382,11 @@ class ImpactDamper(Damper):
     def words(self) -> str:
         """Return a phrase about the balls and their clearance."""
         mass, count = amount(self.mass, "kg"), len(self.balls)
-        materials = list(dict.fromkeys(ball.material.words for ball in self.balls))
-        one = f"{with_article(materials[0])} ball of {mass}"
-        several = f"a row of {count} {joined(materials)} balls of {mass} in all"
+        nouns = list(dict.fromkeys(ball.noun for ball in self.balls))
+        materials = list(dict.fromkeys(ball.material.words for ball in self.balls if not isinstance(ball, Striker)))
+        one = f"{with_article(' '.join([*materials, nouns[0]]))} of {mass}"
+        of = f"{joined(materials)} " if materials else ""
+        several = f"a row of {count} {of}{joined([f'{noun}s' for noun in nouns])} of {mass} in all"
         return f"{one if count == 1 else several} with {amount(self.clearance, 'm')} of clearance"
 
     def pairs(self, wall_mass: float) -> list[Pair]:
@@ -323,7 +402,7 @@ class ImpactDamper(Damper):
         list of Pair
             Trailing wall and ball 1, ball 1 and ball 2, ..., last ball and leading wall.
         """
-        balls = [Body(ball.material, ball.half, ball.weight) for ball in self.balls]
+        balls = [Body(ball.material, ball.curvature, ball.weight) for ball in self.balls]
         materials = (balls[0].material, balls[-1].material) if self.wall is None else (self.wall, self.wall)
         walls = [Body(None if isinstance(one, str) else one, mass=wall_mass) for one in materials]
         return [Pair(below, above) for below, above in pairwise([walls[0], *balls, walls[1]])]

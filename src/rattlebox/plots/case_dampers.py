@@ -45,12 +45,15 @@ def draw_damper(damper: Any, axes: Axes) -> None:
 @draw_damper.register
 def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
     """Draw the row of balls in its cavity to scale, with the clearance; a detail enlarges a small gap."""
-    length, radii = damper.row + damper.clearance, np.array([ball.half for ball in damper.balls])
+    halves = np.array([ball.half for ball in damper.balls])
+    # Strikers have no length and are drawn as large as the other bodies, or half as long as their clearance.
+    radii = np.where(halves > 0, halves, halves.max() or 0.25 * damper.clearance or 1.0)
+    length, to_scale = 2 * radii.sum() + damper.clearance, bool((halves > 0).all())
     high = 2 * float(radii.max())
     wall = 0.06 * max(length, high)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    centres = damper.centres
+    centres = np.cumsum(2 * radii) - radii - radii.sum()
     bottom = -0.5 * high
     for x in (-length / 2 - wall, length / 2):
         axes.add_patch(Rectangle((x, bottom), wall, high, **_solid()))
@@ -58,11 +61,18 @@ def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
     axes.plot([-length / 2, length / 2], [bottom + high, bottom + high], color=INK, lw=pen(0.5), ls=(0, (4, 3)))
     materials = [ball.material.name or "own material" for ball in damper.balls]
     names = list(dict.fromkeys(materials))
-    for centre, radius, material in zip(centres, radii, materials, strict=True):
-        colour = series_colour(names.index(material))
-        axes.add_patch(Circle((centre, 0.0), radius, facecolor=colour, alpha=0.35, edgecolor=INK, lw=pen(0.8)))
+    for centre, radius, material, half in zip(centres, radii, materials, halves, strict=True):
+        style: Style = {
+            "facecolor": series_colour(names.index(material)),
+            "alpha": 0.35,
+            "edgecolor": INK,
+            "lw": pen(0.8),
+        }
+        block = Rectangle((centre - radius, -0.8 * radius), 2 * radius, 1.6 * radius, **style)
+        axes.add_patch(Circle((centre, 0.0), radius, **style) if half > 0 else block)
     unit = 0.16 * max(high, 0.5 * length)
-    dimension(axes, (-length / 2, bottom), (length / 2, bottom), amount(length, "m"), -1.2 * unit)
+    if to_scale:
+        dimension(axes, (-length / 2, bottom), (length / 2, bottom), amount(length, "m"), -1.2 * unit)
     # A gap that would be thinner than its dimension line is drawn in a detail instead.
     gap = 0.5 * damper.clearance
     edge = float(centres[0] - radii[0])
@@ -70,11 +80,12 @@ def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
     if gap > 0 and not small:
         for a, b in ((-length / 2, edge), (-edge, length / 2)):
             dimension(axes, (a, bottom + high), (b, bottom + high), amount(gap, "m"), 0.8 * unit)
-    sizes = list(dict.fromkeys(radii.tolist()))
+    sizes = list(dict.fromkeys(halves[halves > 0].tolist()))
     diameters = " and ".join(amount(2 * radius, "m") for radius in sizes) if len(sizes) < 4 else "of several sizes"
+    noun = joined(list(dict.fromkeys(ball.noun for ball in damper.balls)))
     words = [
-        counted(len(damper.balls), f"{joined([name.replace('_', ' ') for name in names])} ball"),
-        f"diameter {diameters}, {amount(float(np.sum(damper.masses)), 'kg')}",
+        counted(len(damper.balls), f"{joined([name.replace('_', ' ') for name in names])} {noun}" if sizes else noun),
+        (f"diameter {diameters}, " if sizes else "") + amount(float(np.sum(damper.masses)), "kg"),
         f"gap 2 x {amount(gap, 'm')}" + (", enlarged on the right" if small and gap > 0 else ""),
     ]
     right = length / 2 + wall

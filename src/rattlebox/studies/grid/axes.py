@@ -330,7 +330,11 @@ class _Columns:
             for ball, sphere in enumerate(damper.balls):
                 radius, diameter = own.get(("balls", ball, "radius")), own.get(("balls", ball, "diameter"))
                 gap = gap - (
-                    diameter / 2 if diameter is not None else sphere.radius or 0.0 if radius is None else radius
+                    sphere.half_of(diameter / 2)
+                    if diameter is not None
+                    else sphere.half
+                    if radius is None
+                    else sphere.half_of(radius)
                 )
         if not np.all(gap > 0):
             raise start.wrong("a length needs a gap greater than zero", "fractions of the gap, -1 to 1")
