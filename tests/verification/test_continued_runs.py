@@ -317,6 +317,11 @@ def test_what_is_refused() -> None:
     other = replace(first, end=replace(first.end, core="v9"))
     assert "with the core v9" in refusal(other, case())
     assert "no state" in refusal(replace(first, end=None), case())
+    assert first.end is not None
+    assert first.end.arrays is not None
+    cut_short = replace(first.end, arrays={**first.end.arrays, "whole": first.end.arrays["whole"][:-3]})
+    assert "the state is cut short" in refusal(replace(first, end=cut_short), case())
+    assert "status energy_error" in refusal(replace(first, status="energy_error"), case())
     with pytest.raises(rb.CaseError, match="no checkpoints"):
         rb.simulate(case(), start=first, checkpoint="run.checkpoint")
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.exceptions import DataError, RattleboxError
 from rattlebox._util.quantities import amount
 from rattlebox.core import _core
 from rattlebox.core.choose import instructions
@@ -71,11 +74,14 @@ def checked_end(case: Case, run: Run) -> RunEnd:
             name = type(method).__name__
             raise Hint(f"runs of the method {name} cannot be continued", "another method from the start", ["method"])
     end = run.end
+    if run.status not in ("finished", "interrupted"):
+        raise Hint(f"the run has the status {run.status} and cannot be continued", "a run that reached its end")
     if end is None:
-        reason = (
-            "it comes from a study, or from a file of an earlier version" if run.ok else f"its status is {run.status}"
+        raise Hint(
+            "the run has no state from which another run could continue: it comes from a study, or from a file of an "
+            "earlier version",
+            _AGAIN,
         )
-        raise Hint(f"the run has no state from which another run could continue: {reason}", _AGAIN)
     if end.obstacle:
         raise Hint(f"the run cannot be continued: {end.obstacle}", "a checkpoint, from which a run resumes")
     here = Provenance.now().version, instructions()
@@ -109,6 +115,17 @@ def continues(run: Run, end: RunEnd) -> str:
     name = f"{run.case.name!r}" if run.case.name else "a run"
     earlier = f", which continues {run.provenance.continues}" if run.provenance.continues else ""
     return f"{name} from {amount(end.time, 's', 9)}, of {run.provenance.created}, case {digest}{earlier}"
+
+
+@contextmanager
+def reading_state() -> Iterator[None]:
+    """Turn the error of the core about a state that is not one of the case into one with advice."""
+    try:
+        yield
+    except ValueError as error:
+        if isinstance(error, RattleboxError) or not str(error).startswith("the state"):
+            raise
+        raise DataError(f"the run cannot be continued: {error}", _AGAIN) from None
 
 
 def numbers_of(packed: _core.Problem) -> str:

@@ -14,7 +14,16 @@ from rattlebox._util.interrupts import raise_if_pressed
 from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
-from rattlebox.engines.continued import Start, checked_end, continues, end_of, from_start, pack_continued, read_start
+from rattlebox.engines.continued import (
+    Start,
+    checked_end,
+    continues,
+    end_of,
+    from_start,
+    pack_continued,
+    read_start,
+    reading_state,
+)
 from rattlebox.engines.responses import structure_arrays
 from rattlebox.engines.run_notes import extrapolation_notes, impact_notes, simultaneous_notes, vibration_notes
 from rattlebox.engines.status import contact_name, describe, final_status
@@ -123,15 +132,17 @@ def _continue(
     run, time = read_start(start)
     if time is not None:
         run = _repeated(run.case, time, progress)
+        if not run.ok:  # stopped by the user
+            return run
     end = checked_end(case, run)
     origin = continues(run, end)
     if case.particle_dampers:
         from rattlebox.engines.dem import simulate_from
 
-        with progress_bar(progress, "steps") as report:
+        with progress_bar(progress, "steps") as report, reading_state():
             return simulate_from(case, run.case, end, origin, report)
     packed = pack_continued(case, run, end)
-    with progress_bar(progress, "runs") as report:
+    with progress_bar(progress, "runs") as report, reading_state():
         (raw,) = _core.simulate([packed], 1, lambda done: report(done, 1))
     return run_from_core(case, from_start(raw, end.time, len(case.each_stop)), packed, origin)
 
