@@ -20,7 +20,14 @@ Vocabulary = Mapping[str, Mapping[str, Mapping[str, str]]]
 
 _LIMIT = 4  # errors in a message
 _EXAMINED = 100  # errors that are compared with each other and with all known names; others are only counted
-_SPELLINGS = {"loads": "load", "dampers": "damper", "balls": "ball", "radius": "diameter"}
+_SPELLINGS = {
+    "loads": "load",
+    "dampers": "damper",
+    "tuned_masses": "tuned_mass",
+    "stops": "stop",
+    "balls": "ball",
+    "radius": "diameter",
+}
 _NOTHING = object()
 
 
