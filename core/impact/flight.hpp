@@ -201,6 +201,13 @@ public:
         each_part(contact, [&](real weight, const Series& part) {
             for (int n = 0; n <= Series::order; ++n) sizes[n] += std::fabs(weight * part.c[n]);
         });
+        // A stop may touch at a point that another one holds: the forces there are the terms that cancel.
+        for (std::size_t i = 0; contact.above == ground && i < series_motion_.held().size(); ++i) {
+            const Contact& held = problem_.contacts[static_cast<std::size_t>(series_motion_.held()[i])];
+            const real response = std::fabs(contact_coupling(problem_, contact, held));
+            for (int n = 2; n <= Series::order; ++n)
+                sizes[n] += response * std::fabs(series_motion_.forces()[i].c[n - 2]) / (n * (n - 1));
+        }
         real scale = 0, power = 1;
         for (int n = 1; n <= Series::order; ++n)
             scale = std::max(scale, std::fabs(g.c[n]) * (power *= horizon_));
