@@ -267,6 +267,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "panel_variants",
         "particles_or_tuned_mass",
         "regimes",
+        "pounding",
         "restitution_of_metals",
         "rules_of_thumb",
         "softening_and_step",
