@@ -81,7 +81,9 @@ found = rb.sweep(
 )
 free = float(gaps[found.impacts.values == 0].min())
 alone = float(found.peak_acceleration[-1])
-print(f"no collision from a gap of {1e3 * free:.0f} mm; acceleration up to {found.peak_acceleration.max() / alone:.1f} times")
+print(
+    f"no collision from a gap of {1e3 * free:.0f} mm; acceleration up to {found.peak_acceleration.max() / alone:.1f} times"
+)
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3), layout="constrained")
 late = (run.arrays.time > 4) & (run.arrays.time < 9)

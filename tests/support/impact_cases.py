@@ -179,28 +179,20 @@ def inelastic_ball(gamma: float, cycles: float, times: Sequence[float] = (0.0,))
     )
 
 
-STOP_GAP = 20.0
-
-
 def impact_oscillator(orbit: StopOrbit, cycles: float) -> Any:
-    """Return an oscillator whose stop is a ball of very large mass, starting half a cycle after an impact."""
+    """Return an oscillator with a hard stop, half a cycle after an impact of a periodic motion."""
     begin = math.pi / orbit.omega
     x, v = orbit.state(begin)
     return rb.Case(
         structure=rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio=orbit.zeta, displacement=x, velocity=v),
-        damper=rb.ImpactDamper(
-            ball=ball(1e15),
-            gap=STOP_GAP,
-            start=(orbit.stop - STOP_GAP - x) / STOP_GAP,
-            contact=rb.Tsuji(restitution=orbit.restitution),
-        ),
+        stop=rb.Stop(gap=orbit.stop, contact=rb.Tsuji(restitution=orbit.restitution)),
         load=rb.Harmonic(
             amplitude=1.0,
             frequency=f"{orbit.omega!r} rad/s",
             phase=orbit.load_phase + orbit.omega * begin + 0.5 * math.pi,
         ),
         duration=cycles * 2 * math.pi / orbit.omega,
-        method=rb.Newton(restitution=orbit.restitution),
+        method=rb.Newton(),
         output=rb.Output(times=[0.0]),
     )
 
