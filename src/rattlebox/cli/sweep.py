@@ -33,7 +33,7 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         typer.echo(printable(f"{path}: {note}"), err=True)
     try:
         with _cluster(dask) as client, _error_context(path, out), warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "no trial is feasible")  # a line of the output below
+            warnings.filterwarnings("ignore", "no trial is feasible|at .*, which decides")  # lines of the output below
             backend = {"backend": client, "workers": None} if client else {"workers": workers} if workers else {}
             result = study.run(store=out, **backend)
     except Stopped as stopped:

@@ -72,6 +72,7 @@ def test_objectives_are_means_over_packings(robust: Any, reduce: Any) -> None:
     assert result.attrs["study"] == "design"
 
 
+@pytest.mark.filterwarnings("ignore:at .*, which decides")
 def test_the_least_damping_ratio_is_an_objective() -> None:
     """A damping ratio is maximised: the least one over the amplitudes of each packing."""
     options: dict[str, Any] = {"amplitudes": ["0.2 mm", "0.25 mm"]}

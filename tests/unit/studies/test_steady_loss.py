@@ -112,6 +112,7 @@ def test_a_shaken_cavity_warns_of_a_bed_that_falls() -> None:
     assert float(found.dissipated_power) > 20 * float(np.abs(found.active_power).max())
 
 
+@pytest.mark.filterwarnings("ignore:at .*, which decides")
 def test_maps_and_designs_flag_motions_that_are_not_steady() -> None:
     """Loss maps and designs have the flag "unsteady" where a bed still falls, and a note."""
     motion = rb.Harmonic(amplitude="2 m/s^2", frequency=HERTZ, direction="z")

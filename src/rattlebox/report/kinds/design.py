@@ -12,12 +12,14 @@ import numpy as np
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount
 from rattlebox.model.case import Case
+from rattlebox.plots.damping_curve import plot_damping_curve
 from rattlebox.plots.design import goals_of, parameters_of, plot_design
 from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Limit, Picture, Table
+from rattlebox.studies.design.evidence import CURVE, LEVEL, curves_of
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.run.backends import duration
 from rattlebox.studies.work.measures import INTERVAL, MEASURES
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _MAX_ROWS = 12
+_MAX_CURVES = 6
 _EXTREME = {"max": "largest", "min": "smallest"}
 
 
@@ -77,6 +80,8 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
         )
     elif robust:
         yield f"Values are the {robust} over all levels, starts and amplitudes of a trial."
+    if order := str(study.attrs.get("order", "")):
+        yield f"{order[0].upper()}{order[1:].partition('; try: ')[0]}."
 
 
 def _choice(study: xr.Dataset, trial: xr.Dataset) -> str:
@@ -101,6 +106,20 @@ def _pictures(study: xr.Dataset) -> Iterator[Picture]:
     else:
         caption = "Objective of each trial with the best value so far, and the objective over each parameter."
     yield Picture(caption, partial(plot_design, study, size="page"))
+    if CURVE in study and (shown := _ranked(study, _MAX_CURVES)):
+        yield Picture(
+            "Damping ratio over the amplitude for the best trials. Bands are 95 % intervals of the mean over the random "
+            "initial states; the grey line is the structure alone.",
+            partial(plot_damping_curve, curves_of(study, shown), size="page"),
+        )
+
+
+def _ranked(study: xr.Dataset, count: int) -> list[int]:
+    """Return the trials of the front, and then the others with the largest damping ratio."""
+    front = [int(trial) for trial in study.front.values]
+    rest = study[DAMPING_RATIO].where(study.feasible, -np.inf).values
+    order = [int(trial) for trial in np.argsort(-rest, kind="stable") if study.feasible.values[trial]]
+    return list(dict.fromkeys([*front, *order]))[: max(1, count // study.sizes.get(LEVEL, 1))]
 
 
 def _tables(study: xr.Dataset) -> Iterator[Table]:
@@ -113,6 +132,24 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
     note = f"{study.front.size - _MAX_ROWS} more are in the dataset." if study.front.size > _MAX_ROWS else ""
     header = ("trial", *(name_of(study[name]) for name in (*paths, *goals)))
     yield Table("Best trials", header, rows, note, numbers=True)
+    if CURVE in study:
+        yield _curve_table(study)
+
+
+def _curve_table(study: xr.Dataset) -> Table:
+    """Return the damping ratio of the trials at each amplitude, with its interval."""
+    trials = _ranked(study, _MAX_ROWS)
+    curves = curves_of(study, trials)
+    rows = []
+    for name, curve in curves.items():
+        mean = curve.damping_ratio.values
+        half = curve.upper.values - mean
+        cells = (with_interval(float(one), float(width), "%") for one, width in zip(mean, half, strict=True))
+        rows.append((name.removeprefix("trial "), *cells, amount(float(curve.bare[0]), "%", 3)))
+    header = ("trial", *(amount(each, "m") for each in study.amplitude.values.tolist()), "structure alone")
+    left = int(study.feasible.sum()) - len(trials)
+    note = f"{left} more are in the dataset." if left > 0 else ""
+    return Table("Damping ratio over the amplitude", header, rows, note, numbers=True)
 
 
 def _cell(variable: xr.DataArray, value: Any) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.studies.damping_curve import OTHER_MOTION, Way, damping_curve, damping_curve_cases
+from rattlebox.studies.design.evidence import deciding_note, order_note, with_curves, with_order
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
 from rattlebox.studies.grid.axes import ParsedAxes, materials_in, read_axes
 from rattlebox.studies.grid.grid import Grid, Parameter
@@ -72,6 +73,14 @@ class Curve:
     cycles: tuple[int, int] | None
 
 
+class Curves(NamedTuple):
+    """Damping curves of a trial, or of several ones, trials first."""
+
+    ratios: Vector  # Damping ratios, (levels, amplitudes, packings)
+    halves: Vector  # Half of the widths of the intervals of their means, (levels, amplitudes)
+    bare: Vector  # Damping ratios of the structure alone, (levels,)
+
+
 @dataclass
 class Evaluation:
     """Result of the runs of a trial."""
@@ -82,6 +91,7 @@ class Evaluation:
     missing: float = 0.0
     warnings: int = 0
     reason: str = ""
+    curves: Curves | None = None
 
 
 @dataclass(frozen=True)
@@ -138,6 +148,14 @@ class DesignSearch:
             return [] if self.curve is None else [case]
         grid = self.levels.grid(case)
         return [grid.case_at(case, index) for index in range(grid.size)]
+
+    @property
+    def curve_levels(self) -> list[str]:
+        """Texts of the levels of the damping curves; one without levels."""
+        if self.levels is None:
+            return [""]
+        grid = self.levels.grid(self.case)
+        return [grid.describe_variant(self.case, index) for index in range(grid.size)]
 
     @property
     def curve_options(self) -> dict[str, Any]:
@@ -325,6 +343,7 @@ class DesignSearch:
         """Run a design."""
         tables: dict[str, tuple[Vector, Vector | None]] = {}
         missing, warnings, reason = [], 0, ""
+        curves: Curves | None = None
         if self.measured:
             work = self.work_of(case)
             runs = run_work(work, **self.where)
@@ -338,15 +357,16 @@ class DesignSearch:
                 tables[each.name] = self._table(runs[each.name]), None if half is None else self._table(half)
             missing.append(failed.mean())
         if self.curve is not None:
-            ratios, names = self._ratios(case)
+            curves, names = self._curves(case)
             warnings |= sum(2**bit for bit, name in enumerate(FLAGS) if name in names)
-            tables[DAMPING_RATIO] = ratios, None
-            missing.append(1 - np.isfinite(ratios).mean())
+            tables[DAMPING_RATIO] = curves.ratios.reshape(-1, self.count), None
+            missing.append(1 - np.isfinite(curves.ratios).mean())
         if max(missing, default=0.0):
-            return self._nothing(reason or _reason(tables), float(max(missing)), warnings)
+            nothing = self._nothing(reason or _reason(tables), float(max(missing)), warnings)
+            return replace(nothing, curves=curves)
         parts = [self._reduced(each, *tables[each.name]) for each in self.computed]
         values, halves, packings = (np.array(part) for part in zip(*parts, strict=True)) if parts else 3 * [np.zeros(0)]
-        return Evaluation(values, halves, packings.reshape(len(parts), self.count), 0.0, warnings)
+        return Evaluation(values, halves, packings.reshape(len(parts), self.count), 0.0, warnings, curves=curves)
 
     def _table(self, values: xr.DataArray) -> Vector:
         """Return a result of a sweep as a table, (levels, packings)."""
@@ -354,14 +374,15 @@ class DesignSearch:
             return np.asarray(values.values.reshape(-1, 1))
         return np.asarray(values.transpose(..., PACKING).values.reshape(-1, self.count))
 
-    def _ratios(self, case: Case) -> tuple[Vector, set[str]]:
-        """Return the damping ratios of all levels and amplitudes, (levels, packings), and the names of exceeded limits."""
-        tables, names = [], set()
-        for each in self.curve_cases(case):
-            found = damping_curve(each, **self.curve_options, **self.where)
-            tables.append(found.damping_ratios.transpose("amplitude", "packing").values)
-            names |= set(found.attrs["exceeded"])
-        return np.concatenate(tables), names
+    def _curves(self, case: Case) -> tuple[Curves, set[str]]:
+        """Return the damping curves of a trial, and the names of exceeded limits."""
+        found = [damping_curve(each, **self.curve_options, **self.where) for each in self.curve_cases(case)]
+        curves = Curves(
+            np.array([each.damping_ratios.transpose("amplitude", "packing").values for each in found]),
+            np.array([(each.upper - each.lower).values / 2 for each in found]),
+            np.array([float(each.bare[0]) for each in found]),
+        )
+        return curves, {name for each in found for name in each.attrs["exceeded"]}
 
     def _reduced(self, objective: Objective, values: Vector, half: Vector | None) -> tuple[float, float, Vector]:
         """Return an objective, half of the width of its interval, and its value for each packing.
@@ -427,16 +448,39 @@ class DesignSearch:
         found["warnings"] = ("trial", exceeded, flags)
         reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)
         found["reason"] = ("trial", reasons, {"long_name": "why a trial is not feasible"})
-        if not feasible.any():
-            found.attrs["warnings"] = [_none_feasible([str(reason) for reason in reasons])]
         front = pareto_front(values * np.array([each.sign for each in self.objectives]), feasible)
         if notes := [_exceeded(number, exceeded[number]) for number in front if exceeded[number]]:
             found.attrs["flagged"] = "; ".join(notes)
         cases = np.array([self.case_file(trials[number].params) for number in front], dtype=object)
-        return found.assign_coords(trial=np.arange(len(trials))).assign(
+        found = found.assign_coords(trial=np.arange(len(trials))).assign(
             front=("front", front, {"long_name": "number of the trial"}),
             case=("front", cases, {"long_name": "case file"}),
         )
+        return self._with_evidence(found, trials)
+
+    def _with_evidence(self, found: xr.Dataset, trials: Sequence[Any]) -> xr.Dataset:
+        """Return a result with the damping curves, the trials that may be best, and notes about both."""
+        found = with_order(found, [each.sign for each in self.objectives])
+        if self.curve is not None:
+            levels = self.curve_levels
+            shape = len(levels), len(self.curve.amplitudes)
+            stored = [trial.user_attrs["curves"] or (None, None, None) for trial in trials]
+            ratios, halves, bare = zip(*stored, strict=True) if stored else ((), (), ())
+            found = with_curves(
+                found,
+                _rows(ratios, *shape, self.count),
+                _rows(halves, *shape),
+                _rows(bare, len(levels)),
+                self.curve.amplitudes,
+                levels,
+            )
+        if not found.front.size:
+            found.attrs["warnings"] = [_none_feasible([str(reason) for reason in found.reason.values])]
+        elif note := deciding_note(found):
+            found.attrs["warnings"] = [note]
+        if note := order_note(found):
+            found.attrs["order"] = note
+        return found
 
     def on(self, where: Mapping[str, object]) -> DesignSearch:
         """Return the search with the backend and the workers of a study (see `Study.where`)."""

@@ -19,7 +19,7 @@ from rattlebox._util.exceptions import StoreError
 from rattlebox._util.owned_folder import read_marker
 from rattlebox.model.differences import differences
 from rattlebox.results.provenance import with_version
-from rattlebox.studies.design.search import MOST_COMBINATIONS, DesignSearch, Evaluation, Values
+from rattlebox.studies.design.search import MOST_COMBINATIONS, Curves, DesignSearch, Evaluation, Values
 from rattlebox.studies.design.space import ADDED_MASS, DesignVariable
 from rattlebox.studies.run.backends import Budget
 from rattlebox.studies.run.store import JOURNAL, exclusive_writer
@@ -210,6 +210,7 @@ class Trials:
             "warnings": found.warnings,
             "reason": found.reason,
             "seconds": seconds,
+            "curves": None if found.curves is None else [each.tolist() for each in found.curves],
         }
         for name, value in attributes.items():
             trial.set_user_attr(name, value)
@@ -240,6 +241,7 @@ class Trials:
                     trial.constraints["missing"],
                     about["warnings"],
                     about["reason"],
+                    None if about["curves"] is None else Curves(*map(np.array, about["curves"])),
                 )
                 return about[ADDED_MASS], found
         return self._search.evaluate(values)

@@ -108,12 +108,15 @@ class Design(Study):
         Over `trial`: the parameters; each objective, with half of the width of its 95 % interval (`..._interval`) and, over
         `packing`, its value for each one (`..._packings`); `added_mass` [kg]; `missing`, the share of runs without a value
         (because they did not finish or never settled); `feasible`, whether no value is missing and the mass is within
-        its limit, otherwise the `reason`; `warnings`, the exceeded validity limits of all runs (`flag_meanings`). Over
+        its limit, otherwise the `reason`; `warnings`, the exceeded validity limits of all runs (`flag_meanings`);
+        `may_be_best`, whether it is on the front or cannot be excluded from it within the 95 % intervals. With a damping
+        ratio, over `amplitude`, too (and `level`): `damping_curve`, its `..._interval` and `..._packings`; `bare`, of the
+        structure alone; and, for the worst amplitude, `bare_decides`, whether the damper adds nothing there. Over
         `front`: the numbers of the Pareto-optimal trials (of the best trial for one objective) and their case files; if no
         trial is feasible it is empty, and a warning, also in the attribute `warnings`, lists the reasons.
         Attributes: `predicted_wall_time` and `predicted_cpu_time` [s] of all trials before the first one, `wall_time`
-        and, on threads, `cpu_time` [s] that they took; `flagged`, if a trial on the front exceeds validity limits; and
-        `stopped`, if the budget ended the search.
+        and, on threads, `cpu_time` [s] that they took; `order`, the trials that cannot be told apart; `flagged`, if a trial
+        on the front exceeds validity limits; and `stopped`, if the budget ended the search.
 
     Raises
     ------
@@ -133,7 +136,11 @@ class Design(Study):
     of independent runs; NaN for measures without an interval.
 
     A trial with the objectives f dominates another one, g, if all f_k <= g_k and one f_k < g_k (of objectives to minimise).
-    The front is the feasible trials that no other one dominates.
+    The front is the feasible trials that no other one dominates. A trial is excluded from it with certainty if one on the
+    front dominates it even with f_k + its half width and g_k - its half width.
+
+    `bare_decides`: at the amplitude with the least damping ratio the damper adds less than a tenth of the ratio of the
+    structure alone, or less than the half width of the interval. A warning is issued if this holds for the best trial.
 
     References
     ----------

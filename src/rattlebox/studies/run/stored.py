@@ -275,12 +275,14 @@ def status_lines(study: xr.Dataset) -> list[str]:
         lines.append(f"{sum(counts.values()):,} variants: {statuses}")
     if "refused" in study.attrs:
         lines.append(f"refused, for example with {study.attrs['refused']}")
-    given = study.attrs.get("warnings", [])  # of a design without a feasible trial; a single one is read as a text
+    given = study.attrs.get("warnings", [])  # of a design; a single one is read as a text
     if "reason" in study and given:
         lines += [given] if isinstance(given, str) else list(given)
-    elif "reason" in study and (refused := [str(reason) for reason in study.reason.values if reason]):
+    none = "front" in study.sizes and not study.sizes["front"] and bool(given)  # whose warning has the reasons
+    if not none and "reason" in study and (refused := [str(reason) for reason in study.reason.values if reason]):
         first = refused[0].replace("\n", "\n  ")
         lines.append(f"{len(refused):,} of {study.sizes['trial']:,} trials are not feasible, for example: {first}")
+    lines += [str(study.attrs["order"])] if "order" in study.attrs else []  # of the trials of a design
     return [*lines, *warning_lines(study)]
 
 

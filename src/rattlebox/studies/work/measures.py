@@ -171,7 +171,24 @@ def parts_needed(names: Iterable[str]) -> list[str]:
 
 _VARIANT_NAMES = {*OUTCOMES, "state", "displacement", "velocity", "relative_position", "relative_velocity"}
 _IMPACT_NAMES = {"last_time", "last_approach_speed", "last_contact"}
-_DESIGN_NAMES = {"trial", "front", "case", "missing", "feasible", "added_mass", "damping_ratio", "reason", "warnings"}
+_DESIGN_NAMES = {
+    "trial",
+    "front",
+    "case",
+    "missing",
+    "feasible",
+    "added_mass",
+    "damping_ratio",
+    "reason",
+    "warnings",
+} | {
+    "damping_curve",
+    "bare",
+    "may_be_best",
+    "bare_decides",
+    "level",
+    "amplitude",
+}
 RESERVED_NAMES = _VARIANT_NAMES | _IMPACT_NAMES | _DESIGN_NAMES
 """Names of variables of studies that a function of a Run must not have."""
 
