@@ -11,6 +11,7 @@ from .drift import drift
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
 from .measured import read_frequency_response
 from .measures import peak_reduction, rms_reduction, settling_time
+from .notching import Notched, apparent_mass, notch
 from .over_records import over_records
 from .power_spectra import (
     band_levels,
@@ -26,7 +27,9 @@ from .spectra import amplitude_spectrum
 
 __all__ = [
     "Interval",
+    "Notched",
     "amplitude_spectrum",
+    "apparent_mass",
     "band_levels",
     "complex_power",
     "damping_over_amplitude",
@@ -43,6 +46,7 @@ __all__ = [
     "mean_interval",
     "miles_rms",
     "minimum_real_part",
+    "notch",
     "over_records",
     "peak_reduction",
     "phase_portrait",

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray
 from scipy.integrate import solve_ivp
 
 from rattlebox.analysis import shock_response_spectrum
@@ -99,3 +100,20 @@ def test_bad_input(options, word):
     time = np.arange(100) / 1000.0
     with pytest.raises(ValueError, match=word):
         shock_response_spectrum(time, np.sin(time), **options)
+
+
+def test_pseudo_velocity() -> None:
+    """It is the displacement of the base times w for low oscillators, the peak acceleration over w for high ones."""
+    time = np.arange(20_001) * 1e-5
+    pulse = np.where(time < 0.01, 300 * np.sin(np.pi * time / 0.01), 0.0)
+    labelled = xarray.DataArray(pulse, {"time": time}, attrs={"units": "m/s^2"})
+    spectrum = shock_response_spectrum(time, labelled, [0.5, 80.0, 4000.0], damping_ratio=0.0)
+    change = 300 * 2 * 0.01 / np.pi  # of the velocity
+    assert float(spectrum.pseudo_velocity[0]) == pytest.approx(change, rel=2e-3)
+    assert float(spectrum.pseudo_velocity[2]) == pytest.approx(300 / (2 * np.pi * 4000), rel=0.02)
+    assert spectrum.pseudo_velocity.values == pytest.approx(
+        2 * np.pi * spectrum.frequency.values * spectrum.relative_displacement.values, rel=1e-12
+    )
+    assert spectrum.pseudo_velocity.attrs["units"] == "m/s"
+    in_g = shock_response_spectrum(time, labelled.assign_attrs(units="g"), [80.0])
+    assert in_g.pseudo_velocity.attrs["units"] == "g s"
