@@ -260,6 +260,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "boring_bar_checks",
         "building_variants",
         "calibration",
+        "fatigue_damage",
         "fills",
         "ida",
         "lecture",

@@ -172,8 +172,9 @@ def notch(
 
     at 96 or more frequencies an octave, more near natural frequencies, and those of a transfer function. In the notch the
     force is at its limit there; between two of them the straight lines of the new profile exceed it by at most 0.05 %. The
-    limit is that of the force along the motion. A transfer function of a structure with a damper holds for the
-    level at which it was computed: with a damper repeat run and notch until the level in the notch changes no more.
+    limit is that of the force along the motion, in steady vibration: in a sweep over a mode of 80 Hz and
+    3 % the force exceeds it by less than 2 % at 1 oct/min, and by 3 % at 3 oct/min. A transfer function of a structure with
+    a damper holds for the level at which it was computed: repeat run and notch until the level changes no more.
 
     References
     ----------
