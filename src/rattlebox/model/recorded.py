@@ -37,6 +37,10 @@ from .units_in_text import unit_above, units_in_lines
 _SHOWN = 60  # characters of a line in a message
 _NO_UNIT = "unit left out; scale is a factor of the record apart from its unit"
 _UNIT_ADVICE = 'unit = "m/s^2", and scale = ..., the factor from the numbers to that unit'
+_VELOCITY = re.compile(r"\bveloc|\bgeschw|\bvitesse|\bsnelheid|\bскорост|(?<!加)速度", re.I)
+_DERIVATIVE = (
+    'the acceleration, its derivative: rb.Record(times=t, values=numpy.gradient(v, t), unit="m/s^2"), with v in m/s'
+)
 _SCALE_FACTOR = re.compile(r"\bscale\s+factor\b\W*([\d.]+)(\s*\(?[a-z].*/)?", re.I)
 """A factor of the numbers; with a unit, as in "2000(gal)/8388608", they are readings of a converter."""
 
@@ -57,6 +61,9 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
     try:
         stated = unit_above(columns.headings[1], UNITS)
     except Hint as hint:
+        # No factor makes an acceleration of a velocity, whatever the user states.
+        if _is_velocity(columns.headings[1]):
+            raise DataError(hint.complaint, _DERIVATIVE, ["file"]) from None
         if own is not None:
             return None, []  # an unknown heading does not contradict the user
         raise DataError(hint.complaint, _UNIT_ADVICE, ["file"]) from None
@@ -70,6 +77,8 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
         raise Hint(f"the file states another unit above the column: {heading!r}", _NO_UNIT, ["unit"])
     if stated is not None:
         return stated, []
+    if own is None and (heading := next((text for text in columns.headings[1] if _VELOCITY.search(text)), "")):
+        raise DataError(f"{name}: the column {heading[:_SHOWN]!r} is a velocity", _DERIVATIVE, ["file"])
     # In the lines above: free text, in which a unit may also belong to something else.
     try:
         found, mentioned = units_in_lines(columns.lines, UNITS)
@@ -104,6 +113,14 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
             ["file"],
         )
     return None, []
+
+
+def _is_velocity(headings: Sequence[str]) -> bool:
+    """Return whether the text above a column states the unit of a velocity."""
+    try:
+        return unit_above(headings, ("m/s",)) is not None
+    except Hint:
+        return False
 
 
 def is_table(form: Format[Callable[..., Any]]) -> bool:

@@ -137,3 +137,9 @@ def test_bad_records_of_one_column(tmp_path: Path, options: dict[str, Any], mess
         rb.Record(file=str(tmp_path / "bare.txt"), **options)
     with pytest.raises(rb.RattleboxError, match="times or dt, not both"):
         rb.Record(values=[1.0, 2.0], times=[0.0, 1.0], dt=0.1)
+
+
+def test_time_step_in_milliseconds(tmp_path: Path) -> None:
+    """A header may state the time step in milliseconds, which was read as seconds: no header of a test had another unit."""
+    (tmp_path / "quake.AT2").write_text(HEAD + NEW.replace(".0100 SEC", "12.5 MSEC") + rows())
+    np.testing.assert_allclose(rb.Record.from_file(tmp_path / "quake.AT2").times, np.arange(23) * 0.0125, rtol=1e-12)

@@ -168,8 +168,7 @@ def test_a_unit_above_the_numbers_is_used_or_refused(tmp_path: Path, head: str) 
         ("Scale Factor 2000(gal)/8388608", "scale factor of its header is not applied"),
         ("recorded in g\nfiltered then in cm/s^2", "in line 1, 'recorded in g' and 2"),
         ("Y_Unit_Label Volts", "'Volts', which is not a unit of"),
-        ("unit: mm/s", "'mm/s', written above the column"),
-        ("time (s)  velocity (cm/s)", "'cm/s', written above the column"),
+        ("unit: psi", "'psi', which is not a unit of"),
     ],
 )
 def test_units_that_are_not_clear_are_refused(tmp_path: Path, head: str, words: str) -> None:

@@ -166,3 +166,10 @@ def test_mutants(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
         assert "try: " in message and len(message) < 5000, f"mutant {number}"
         assert time.process_time() - start < 2, f"mutant {number}"
     assert not capfd.readouterr().err  # the library prints damaged texts
+
+
+def test_unit_of_the_channel_of_times(tmp_path: Path) -> None:
+    """A channel of times may be in milliseconds by its unit, which was overlooked: all times in tests were in seconds."""
+    times = np.array([0.0, 3.0, 6.0, 9.0, 12.0])
+    path = write(tmp_path / "a.tdms", channel("Time", times, unit_string="ms"), channel("plate", unit_string="g"))
+    np.testing.assert_allclose(rb.Record.from_file(path, columns="plate").times, times / 1000, rtol=1e-15)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.set_58 import set58
 
 import rattlebox as rb
 from rattlebox.model.plausibility import plausibility_notes
@@ -39,7 +40,7 @@ def test_usual_units_above_a_column(tmp_path: Path, unit: str, factor: float, si
         np.testing.assert_allclose(record.evaluate(record.times), np.array([0.1, -0.2]) * factor, rtol=1e-14)
 
 
-@pytest.mark.parametrize("unit", ["furlong", "rod", "a", "V", "counts", "m/s", "s", "banana/s^2"])
+@pytest.mark.parametrize("unit", ["furlong", "rod", "a", "V", "counts", "s", "banana/s^2"])
 def test_other_units_above_a_column_are_refused(tmp_path: Path, unit: str) -> None:
     """A unit that is unknown or of another dimension is refused; the arguments that are advised take its place."""
     path = written(tmp_path, f"time (s),x ({unit})")
@@ -164,3 +165,54 @@ def test_logarithmic_units_are_unknown() -> None:
     """A unit with octaves ended in an AttributeError of the library of units, which computes dimensions late."""
     with pytest.raises(rb.CaseError, match=r"unknown unit 'g\^2/oct'"):
         rb.HalfSine(amplitude="5 g^2/oct", duration="1 ms")
+
+
+@pytest.mark.parametrize("options", [{}, {"unit": "m/s^2", "scale": 1.0}])
+@pytest.mark.parametrize("above", ["t (s),v (cm/s)", "t (s),v [m/s]"])
+def test_velocities_are_refused_with_any_unit(tmp_path: Path, above: str, options: dict[str, Any]) -> None:
+    """The advice for an unknown unit, a factor, made accelerations of velocities; no test followed it for them."""
+    with pytest.raises(rb.RattleboxError, match=r"'[cm]?m/s', written above the column(.|\n)*its derivative"):
+        rb.Record.from_file(written(tmp_path, above), **options)
+
+
+@pytest.mark.parametrize("above", ["time,velocity", "Zeit,Geschwindigkeit x", "时间,速度"])
+def test_columns_with_the_name_of_a_velocity(tmp_path: Path, above: str) -> None:
+    """A column with the name of a velocity and no unit was taken for an acceleration, with a note; a unit decides."""
+    path = written(tmp_path, above)
+    with pytest.raises(rb.DataError, match="is a velocity"):
+        rb.Record.from_file(path)
+    assert rb.Record.from_file(path, unit="g").unit == "m/s^2"
+    assert rb.Record.from_file(written(tmp_path, "时间,加速度")).unit is None
+
+
+SET_164 = """    -1
+   164
+        10             Model               2
+   1.0000000000000000D+03   1.0000000000000000D+00   1.0000000000000000D+00
+   0.0000000000000000D+00
+    -1
+"""
+
+
+def test_universal_files_without_labels(tmp_path: Path) -> None:
+    """Without labels the type of data and the units of the file count, which all labelled functions of tests left open.
+
+    Velocities were taken for accelerations, and mm/s^2 for m/s^2.
+    """
+    pytest.importorskip("pyuff")
+    text = set58(1, np.array([0.0, 4.0, -2.5, 0.5]), "NONE", over=17)
+    path = tmp_path / "a.uff"
+    path.write_text(SET_164 + with_quantity(text, 12))
+    record = rb.Record.from_file(path)
+    np.testing.assert_allclose(record.values, [0.0, 0.004, -0.0025, 0.0005], rtol=1e-12)
+    assert "set 164" in "".join(record.notes())
+    assert rb.Record.from_file(path, unit="g").peak == 4 * G
+    path.write_text(with_quantity(text, 11))
+    with pytest.raises(rb.DataError, match="its derivative"):
+        rb.Record.from_file(path)
+
+
+def with_quantity(text: str, kind: int) -> str:
+    """Return a set 58 with another type of data of its values."""
+    lines = text.splitlines(keepends=True)
+    return "".join([*lines[:10], f"{kind:10d}{lines[10][10:]}", *lines[11:]])

@@ -16,6 +16,7 @@ from .guarded import errors_of
 
 _COUNT = re.compile(r"NPTS\s*=\s*(\d+)", re.I)
 _STEP = re.compile(r"DT\s*=\s*(\d*\.?\d*(?:E[-+]?\d+)?)", re.I)
+_MILLISECONDS = re.compile(r"DT\s*=\s*[\d.E+-]+\s*(?:ms|milli)", re.I)
 _OLD_HEADER = re.compile(r"^\s*(\d+)\s+(\d*\.?\d*(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
 _UNIT = re.compile(r"UNITS?\s+OF\s+(\S+)", re.I)
 _QUANTITY = re.compile(r"\b(accel|velocity|displacement)", re.I)
@@ -87,6 +88,8 @@ def _header(path: Path, lines: list[str]) -> tuple[int, int, str]:
             " positive and finite",
             _WHOLE,
         )
+    if _MILLISECONDS.search(lines[above - 1]):
+        step = repr(float(step) / 1000)
     return above, int(count), step
 
 

@@ -62,14 +62,14 @@ def tdms_signals(path: Path) -> list[SignalInFile]:
                 others.append(f"{name} ({reason})")
                 continue
             properties = channel.properties
-            unit = next((str(properties[key]).strip() for key in _NAMES_OF_UNIT if properties.get(key)), "")
+            times, time_unit = _times(path, name, group, channel)
             signals.append(
                 SignalInFile(
-                    _times(path, name, group, channel),
+                    times,
                     values.astype(np.float64),
                     name,
-                    unit,
-                    str(properties.get("wf_xunit_string", "")).strip(),
+                    _unit(properties),
+                    time_unit,
                     notes=notes,
                 )
             )
@@ -132,8 +132,13 @@ def _reason_against(channel: Any, values: NDArray[Any]) -> str:
     return "times" if _TIMES.fullmatch(channel.name.strip()) and bool(np.all(np.diff(values) > 0)) else ""
 
 
-def _times(path: Path, name: str, group: Any, channel: Any) -> NDArray[np.float64]:
-    """Return the times of a channel: of its waveform, or of the channel of times of its group; NaN if there are none."""
+def _unit(properties: Any) -> str:
+    """Return the unit of a channel; "" if it states none."""
+    return next((str(properties[key]).strip() for key in _NAMES_OF_UNIT if properties.get(key)), "")
+
+
+def _times(path: Path, name: str, group: Any, channel: Any) -> tuple[NDArray[np.float64], str]:
+    """Return times and their unit, of the waveform or of the channel of times of the group; NaN if there are none."""
     count = len(channel)
     step = channel.properties.get("wf_increment")
     if step:
@@ -142,13 +147,14 @@ def _times(path: Path, name: str, group: Any, channel: Any) -> NDArray[np.float6
             raise DataError(
                 f"{path}: {name} has the increment {step:g} and the offset {start:g}", "an increment greater than zero"
             )
-        return start + step * np.arange(count, dtype=np.float64)
+        unit = str(channel.properties.get("wf_xunit_string", "")).strip()
+        return start + step * np.arange(count, dtype=np.float64), unit
     for other in group.channels():
         if other is channel or len(other) != count:
             continue
         values = np.asarray(other[:])
         if values.dtype.kind == "M":  # time stamps
-            return np.asarray((values - values[0]) / np.timedelta64(1, "ns") * 1e-9, dtype=np.float64)
+            return np.asarray((values - values[0]) / np.timedelta64(1, "ns") * 1e-9, dtype=np.float64), "s"
         if values.dtype.kind in "fiu" and _TIMES.fullmatch(other.name.strip()) and bool(np.all(np.diff(values) > 0)):
-            return values.astype(np.float64)
-    return np.full(count, np.nan)
+            return values.astype(np.float64), _unit(other.properties)
+    return np.full(count, np.nan), ""

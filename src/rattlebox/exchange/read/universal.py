@@ -30,6 +30,11 @@ _UNIT_CODES = {
 _NORMAL_MODES = 2
 _COMPLEX_MODES = (3, 7)
 _DISPLACEMENT, _UNKNOWN = 8, (0, 1)  # also types of data of the set 55
+_LENGTHS = {1e3: "mm", 1e2: "cm", 39.37008: "in", 3.28084: "ft"}
+_FORCES = {1e3: "mN", 0.224809: "lbf", 0.101972: "kgf"}
+"""Units by their factor from SI."""
+_ACCELERATION, _VELOCITY, _FORCE_TYPES = 12, 11, (4, 9, 13)
+"""Types of data of functions."""
 _QUANTITIES = {
     0: "unknown data", 1: "general data", 2: "stress", 3: "strain", 4: "element force", 5: "temperature",
     6: "heat flux", 7: "strain energy",
@@ -87,6 +92,9 @@ class Function:
     over: int = 0
     abscissa_unit: str = ""
     texts: tuple[str, ...] = ()
+    units_of_file: tuple[
+        tuple[int, str], ...
+    ] = ()  # Line and text of the unit after the set 164, if that has no SI units
 
     @property
     def is_history(self) -> bool:
@@ -448,6 +456,18 @@ def _mass_unit(path: Path, sets: list[dict[str, Any]], is_needed: bool) -> float
     return length / force
 
 
+def _unit_of_quantity(sets: list[dict[str, Any]], quantity: int) -> tuple[tuple[int, str], ...]:
+    """Return the unit of a quantity after the set 164, as a line of text; none for SI units, other quantities and units."""
+    known, name = (_LENGTHS, "length") if quantity in (_DISPLACEMENT, _ACCELERATION) else (_FORCES, "force")
+    if not sets or quantity not in (_DISPLACEMENT, _ACCELERATION, *_FORCE_TYPES):
+        return ()
+    factor = float(sets[0][name])
+    unit = next((unit for size, unit in known.items() if abs(factor / size - 1) < 1e-3), "")
+    if not unit:
+        return () if abs(factor - 1) < 1e-3 else ((1, f"unit of the set 164: {name} {factor:g}"),)
+    return ((1, f"the set 164, unit: {unit}/s^2" if quantity == _ACCELERATION else f"the set 164, unit: {unit}"),)
+
+
 def read_functions(path: Path) -> list[Function]:
     """Read the functions of the sets 58 and 58b of a universal file.
 
@@ -457,7 +477,9 @@ def read_functions(path: Path) -> list[Function]:
     """
     with errors_of(path, "a universal file"):
         functions = []
-        for number, block in enumerate(_read_sets(path, (58,)), start=1):
+        every = _read_sets(path, (58,), (164,))
+        units = [block for block in every if block["type"] == 164]
+        for number, block in enumerate((block for block in every if block["type"] == 58), start=1):
             # The number of points and the size of the values show a truncated file and a wrong byte order, which the
             # reader does not notice.
             values = np.asarray(block["data"])
@@ -485,6 +507,7 @@ def read_functions(path: Path) -> list[Function]:
                     over=int(block.get("abscissa_spec_data_type", 0)),
                     abscissa_unit=_label(block, "abscissa"),
                     texts=tuple(str(block.get(f"id{k}", "")) for k in range(1, 6)),
+                    units_of_file=_unit_of_quantity(units, int(block["ordinate_spec_data_type"])),
                 )
             )
         return functions
@@ -499,8 +522,9 @@ def time_histories(path: Path) -> list[SignalInFile]:
             each.abscissa,
             np.asarray(each.values, dtype=float),
             each.name,
-            each.unit,
+            each.unit or ("m/s" if each.quantities[0] == _VELOCITY else ""),
             each.abscissa_unit,
+            each.units_of_file if not each.unit else (),
         )
         for each in every
         if each.is_history
