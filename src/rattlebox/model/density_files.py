@@ -25,7 +25,9 @@ _LARGEST_TEXT = 300  # characters of a line that are searched for a unit
 _PER_HERTZ = re.compile(r"/\s*k?(?:hz|hertz)\b\)?|[m²2]\s*/\s*s\s*(?:\^?3\b|³)", re.I)
 _ROOT = re.compile(r"(?:/\s*|per\s+)(?:sqrt|√|root|rt)\s*\(?\s*hz|hz\s*\^?\s*\(?\s*(?:1/2|0?\.5)", re.I)
 _DECIBEL = re.compile(r"(?<![a-z])dB(?![a-z])", re.I)
-_OTHER_MEASURE = re.compile(r"/\s*oct|[\s·*.]s\s*/\s*hz|\bESD\b|energy spectral", re.I)
+_OTHER_MEASURE = re.compile(
+    r"/\s*oct|[\s·*.-]s(?:ec)?\s*/\s*hz|hz\)?\s*[\s·*.]\s*s(?:ec)?\b|\bESD\b|energy spectral", re.I
+)
 _TWO_SIDED = re.compile(r"\b(?:two|double|2)[- ]?sided\b|\bzweiseitig|\bbilat[eé]ral", re.I)
 _PEAK = re.compile(r"\bpeak(?:[- ]hold|[- ]to[- ]peak)?\b|\bmax(?:imum)?[- ]hold\b", re.I)
 _ANGULAR = re.compile(r"rad\s*/\s*s|\bomega\b|ω", re.I)

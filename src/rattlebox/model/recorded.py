@@ -235,11 +235,11 @@ class Record(FileSignal):
         data.
     columns
         Columns or variables with times and values, by number in the order of the file from 1, or by name: `columns=(1, 3)`,
-        `columns=("t", "a")`. A name alone, `columns="acc_z"`, is that of the values: their times are the first column, if it
-        increases, and in a MAT file the first of two columns of that variable, or the variable called t or time. With `dt`
-        only that of the values; in a file of time histories the name or number of one. Optional if the file has only two
-        columns (with `dt` one), or variables called time and value. `columns="rows"`: samples that go on from row to row,
-        five or eight a row; optional if the rows show it.
+        `columns=("t", "a")`. A name alone, `columns="acc_z"`, is that of the values: their times are the column called time,
+        or the first one, if it increases, and in a MAT file the first of two columns of that variable, or the variable
+        called t or time. With `dt` only that of the values; in a file of time histories the name or number of one. Optional
+        if the file has only two columns (with `dt` one), or variables called time and value. `columns="rows"`: samples that
+        go on from row to row, five or eight a row; optional if the rows show it.
     time_zero
         Time of the record that is 0 s in the run [s], or "first" for its first point; default 0 s, in universal files
         "first". A run notes a shift, and points before 0 s, which are not used.

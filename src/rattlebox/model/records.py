@@ -54,9 +54,16 @@ _SAMPLES = re.compile(
 _HEADINGS = 2  # lines above a single column that may name it
 _STEP = re.compile(r"\bDT\s*[=:]\s*(\d*\.?\d+(?:E[-+]?\d+)?)\s*(?:$|[,;)]|s\b|sec)", re.I)
 """Time step in a line above the numbers: "NPTS= 2676, DT= .0200 SEC"."""
-_TIMES = ("t", "time", "times", "time_s", "zeit", "temps", "tiempo", "tempo")
-"""Names of variables of times."""
+_TIMES = re.compile(r"(?:t|times?|zeit|temps|tiempo|tempo)(?:[ _](?:s|sec|ms|us|µs|ns|min|h))?", re.I)
+"""Names of times, with their unit or without."""
+_COUNTS = re.compile(
+    r"#|(?:[ikn]|no|nr|num(?:ber)?|idx|index|samples?|points?|rows?|counts?|scans?|punkte?|messpunkte?)\.?",
+    re.I,
+)
+"""Names of columns that count the rows."""
+_EXPONENT_ALONE = re.compile(r"[-+]?\d*\.\d+[-+]\d{3}")  # 1.5-101, which Fortran writes for exponents of three digits
 _LARGE = 10  # samples from which a number in a text is no coincidence
+_EVEN_STEPS = 5  # even steps from which a first column is no coincidence
 _PROBED = 2000  # rows from which the layout is concluded
 
 
@@ -126,7 +133,37 @@ class _Text:
         for stated in (beside, anywhere if cells >= _LARGE else set()):
             if (cells in stated) != (len(self.rows) in stated):
                 return cells in stated
-        return (self.names is None and len(self.rows.end.cells) < self.width) or _continues(self.table())
+        if self.names is None and len(self.rows.end.cells) < self.width:
+            return True
+        return not self._has_even_times() and _continues(self.table())
+
+    def _has_even_times(self) -> bool:
+        """Return whether the first column rises by even steps, and not all others do, as those of a ramp."""
+        steps = np.diff(self.table(), axis=0)
+        if len(steps) < _EVEN_STEPS:
+            return False
+        with np.errstate(over="ignore", invalid="ignore"):  # of a damaged file
+            mean = steps.mean(axis=0)
+            is_even = (mean > 0) & np.all(np.abs(steps - mean) < 0.01 * mean, axis=0)
+        return bool(is_even[0] and not is_even.all())
+
+    def place_of_times(self) -> int | None:
+        """Return the index of the column of times: the only one with such a name, or the first one if it increases."""
+        names = [] if self.names is None else [_without_unit(name) for name in self.names]
+        table = self.table()
+        called = [k for k, name in enumerate(names) if _TIMES.fullmatch(name) and _increases(table[:, k:])]
+        if len(called) == 1:
+            return called[0]
+        return 0 if _increases(table) and not self.counts_rows(0) else None
+
+    def counts_rows(self, index: int) -> bool:
+        """Return whether a column counts the rows, by its name, or without a name beside others, as those of pandas."""
+        if self.names is None:
+            return False
+        name, column = _without_unit(self.names[index]), self.table()[:, index]
+        is_whole = len(column) > 2 and bool(np.all(np.diff(column) == np.round(np.diff(column))))
+        is_count = is_whole and column[0] in (0, 1) and bool(np.all(np.diff(column) == 1))
+        return (is_whole and bool(_COUNTS.fullmatch(name))) or (is_count and not self.names[index].strip())
 
     def rises(self) -> bool:
         """Return whether the first column increases, as times do."""
@@ -162,14 +199,19 @@ def read_columns(path: str, columns: Selection = None, step: float | None = None
             if not arrays:
                 raise DataError(f"{file} contains no numbers", _ANY)
             if step is None and columns != "rows":
-                return Columns(*_select_arrays(file, arrays, columns))
-            values, notes = _select_samples(file, arrays, columns)
-            return Columns(_even_times(file, values.size, step), values, notes=notes)
+                return _select_arrays(file, arrays, columns)
+            values, name, notes = _select_samples(file, arrays, columns)
+            return Columns(_even_times(file, values.size, step), values, ([], _heading(name)), notes=notes)
         text = _parse_text(file, requested=[str(column) for column in columns or ()])
         by_rows = columns == "rows" or (columns is None and text.goes_by_rows() and (step or text.step))
         if step is None and (columns not in (None, "rows") or not (by_rows or (text.step and text.width == 1))):
             return _times_and_values(text, columns if columns != "rows" else None)
         return _samples(text, columns, step, bool(by_rows))
+
+
+def _without_unit(name: str) -> str:
+    """Return the name of a column without a unit in brackets behind it."""
+    return re.sub(r"\s*[(\[].*", "", name.strip())
 
 
 def _times_and_values(text: _Text, columns: Sequence[Column] | None) -> Columns:
@@ -181,16 +223,27 @@ def _times_and_values(text: _Text, columns: Sequence[Column] | None) -> Columns:
             f"{text.file} has complex numbers, whose real and imaginary parts are read as columns 1 to {text.width}",
             "columns = [1, 3], the real parts of the first two numbers of each row, if all are complex",
         )
+    place = text.place_of_times()
+    counts = place is None and text.rises()
     if columns is not None and len(columns) == 1:
         (index,) = _column_indices(text.file, columns, text.labels, needed=1)
-        if index == 0 or not text.rises():
+        if place is None or index == place:
+            what = "counts the rows" if counts else "does not increase as times do"
             raise DataError(
-                f"{text.file}: its first column does not increase as times do, so the times of {columns[0]!r} are not known"
-                if index
-                else f"{text.file}: {columns[0]!r} is its first column, and so has no times",
+                f"{text.file}: its first column {what}, so the times of {columns[0]!r} are not known"
+                if index and place is None
+                else f"{text.file}: {columns[0]!r} is its {'column of times' if place else 'first column'}, "
+                "and so has no times",
                 'columns = ["time", "force"], or dt = "0.01 s", the time between samples',
             )
-        columns = (1, index + 1)
+        columns = (place + 1, index + 1)
+    elif columns is None and text.width == 2:
+        if counts:
+            raise DataError(
+                f"{text.file}: its first column, {text.labels[0]!r}, counts the rows, so the times are not known",
+                f'dt = "0.01 s", the time between samples, and columns = {text.labels[1]!r}',
+            )
+        columns = (2, 1) if place == 1 else None
     indices = _column_indices(text.file, columns, text.labels, is_named=text.is_named, rises=text.rises())
     times, values = numbers_of_columns(text.file, text.rows, indices).T
     headings = text.above(indices[0]), text.above(indices[1])
@@ -265,32 +318,32 @@ def _by_rows_error(file: Path, width: int, advice: str) -> DataError:
     return DataError(f"{file}: its {width} columns are one signal, whose samples go on from row to row", advice)
 
 
-def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) -> tuple[Array, tuple[str, ...]]:
-    """Return the samples of a column of the only array, or of one variable, with notes."""
+def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) -> tuple[Array, str, tuple[str, ...]]:
+    """Return the samples of a column of the only array, or of one variable, the name of the variable, and notes."""
     if len(arrays) == 1 and next(iter(arrays.values())).ndim == 2 and not (columns and isinstance(columns[0], str)):
-        (table,) = arrays.values()
+        ((name, table),) = arrays.items()
         table = table.T if table.shape[0] == 1 else table
         one_signal = table.shape[1] > 1 and _continues(check_finite(table, f"{file}")[:_PROBED])
         if one_signal and columns is not None:
             raise _by_rows_error(file, table.shape[1], _BY_ROWS)
         if one_signal:
             notes = f"the samples are read row by row, {table.shape[1]} a row, {table.size} in all"
-            return table.ravel(), (notes,)
+            return table.ravel(), name, (notes,)
         labels = [str(k + 1) for k in range(table.shape[1])]
         rises = table.shape[1] > 1 and _increases(table[:_PROBED])
         (index,) = _column_indices(file, columns, labels, needed=1, is_named=False, rises=rises)
-        return check_finite(table[:, index], f"{file}: column {index + 1}"), ()
+        return check_finite(table[:, index], f"{file}: column {index + 1}"), name, ()
     if columns == "rows":
         if len(arrays) != 1:
             raise DataError(f"{file} has {len(arrays)} arrays ({', '.join(arrays)})", "a file with one of them")
-        (array,) = arrays.values()
-        return check_finite(array.ravel(), f"{file}"), ()
+        ((name, array),) = arrays.items()
+        return check_finite(array.ravel(), f"{file}"), name, ()
     variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
     (index,) = _column_indices(file, columns, list(arrays), variables, needed=1)
     name, array = list(arrays.items())[index]
     if array.size != max(array.shape, default=1):
         raise DataError(f"{file}: {name} has shape {array.shape}; one row of numbers is needed")
-    return check_finite(array.ravel(), f"{file}: {name}"), ()
+    return check_finite(array.ravel(), f"{file}: {name}"), name, ()
 
 
 def read_pairs(path: str, columns: Sequence[Column] | None) -> Columns:
@@ -304,7 +357,7 @@ def read_pairs(path: str, columns: Sequence[Column] | None) -> Columns:
             arrays = read_arrays(file)
             if not arrays:
                 raise DataError(f"{file} contains no numbers", "two columns of numbers")
-            return Columns(*_select_arrays(file, arrays, columns))
+            return _select_arrays(file, arrays, columns)
         text = _parse_text(file, requested=[str(column) for column in columns or ()], has_samples=False)
         if columns is not None and len(columns) == 1:
             columns = (1, *columns)
@@ -324,14 +377,16 @@ def columns_of_text(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
     if text.width == 1 or text.goes_by_rows():
         yield "samples", {**step, "columns": "rows"} if text.width > 1 else step
         return
-    first = 1 if text.rises() else 0
-    for index in range(first, text.width):
+    place = text.place_of_times()
+    for index in range(text.width):
         name = text.labels[index]
+        if index == place or (index == 0 and text.counts_rows(0)):
+            continue
         by_name = text.is_named and text.labels.count(name) == 1 and name != "rows"
         yield (
             name if by_name else f"column {index + 1}",
-            ({"columns": name} if by_name else {"columns": (1, index + 1)})
-            if first
+            ({"columns": name} if by_name else {"columns": (place + 1, index + 1)})
+            if place is not None
             else {"dt": None, "columns": (name if by_name else index + 1,)},
         )
 
@@ -354,7 +409,7 @@ def columns_of_arrays(file: Path, arrays: dict[str, Array]) -> Iterator[tuple[st
                 yield f"column {index + 1}", fields
         return
     for name, array in arrays.items():
-        is_time = name.lower().rpartition(".")[2] in _TIMES
+        is_time = bool(_TIMES.fullmatch(name.rpartition(".")[2]))
         if is_time or array.size < 2 or not (_has_times(array) or array.size == max(array.shape)):
             continue
         try:
@@ -383,13 +438,13 @@ def as_columns(value: Any, count: int = 2) -> Any:
     return tuple(value)
 
 
-def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
+def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> Columns:
     """Return times and values: two variables, or two columns of the only variable."""
     if columns is None and {"time", "value"} <= set(arrays):
         columns = ("time", "value")
     columns, arrays = _variable_of_values(file, arrays, columns)
     if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
-        ((_, table),) = arrays.items()
+        ((name, table),) = arrays.items()
         if columns is None and table.ndim == 2 and table.shape[0] == 2 != table.shape[1]:
             table = table.T
         if table.ndim == 2:
@@ -399,7 +454,8 @@ def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Colum
             first, second = (
                 table[:, k] for k in _column_indices(file, columns, names, is_named=False, rises=_increases(table))
             )
-            return check_finite(first, f"{file}: the times"), check_finite(second, f"{file}: the values")
+            times, values = check_finite(first, f"{file}: the times"), check_finite(second, f"{file}: the values")
+            return Columns(times, values, ([], _heading(name)))
     variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
     pair = [list(arrays.items())[k] for k in _column_indices(file, columns, list(arrays), variables)]
     for name, array in pair:
@@ -409,7 +465,12 @@ def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Colum
     (time, times), (value, values) = pair
     if times.size != values.size:
         raise DataError(f"{file}: {time} has {times.size} numbers, but {value} {values.size}", "as many of both")
-    return times.ravel(), values.ravel()
+    return Columns(times.ravel(), values.ravel(), (_heading(time), _heading(value)))
+
+
+def _heading(name: str) -> list[str]:
+    """Return the text above the values of a variable: its name, which may end with a unit, such as acc_g."""
+    return [name.rpartition(".")[2]] if name else []
 
 
 def _variable_of_values(
@@ -418,7 +479,7 @@ def _variable_of_values(
     """Return the columns of times and values, and the arrays that contain them, for a name of the values alone."""
     variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
     timed = [name for name, array in arrays.items() if _has_times(array)]
-    vectors = [name for name in arrays if name.lower().rpartition(".")[2] in _TIMES]
+    vectors = [name for name in arrays if _TIMES.fullmatch(name.rpartition(".")[2])]
     if columns is None and len(arrays) > 1 and (timed or (vectors and len(arrays) > 2)):
         beside = [
             key for key in arrays if vectors and key not in vectors and arrays[key].size == arrays[vectors[0]].size
@@ -721,7 +782,8 @@ def _first_data_line(lines: list[Row]) -> int | None:
     uncommented = [k for k, row in enumerate(lines) if not row.is_comment]
 
     def is_numeric(place: int, cell: int) -> bool:
-        return is_number(with_decimal_point(lines[uncommented[place]].cells[cell]))
+        text = with_decimal_point(lines[uncommented[place]].cells[cell])
+        return is_number(text) or bool(_EXPONENT_ALONE.fullmatch(text))
 
     only_numbers = (place for place, k in enumerate(uncommented) if all(map(is_number, lines[k].cells)))
     first = next(only_numbers, None)

@@ -21,9 +21,15 @@ _LABELS = re.compile(r"[txyzTXYZ]|\d*")
 # A unit in running text: "g", "cm/s^2", "CM/SEC/SEC", "m s^-2", "cm / s2". Words and numbers next to it are not part of it.
 _UNIT = r"(?:[^\W\d_]+(?:\s+s\^?-2|\s?/\s?\(?s(?:ec)?[\d^*²)]*(?:\s?/\s?s(?:ec)?)?)?|[^\s,;:()\[\]\"']+)"
 _END = r"(?=$|[\s,;:.()\[\]\"'])"
-_WORDS = "units?|einheit(?:en)?|unit[eéà]s?|unidade?s?|eenheid|enhet|jednostka|jednotka|birim|единица|单位|単位"
+_WORDS = (
+    r"(?:unit[eéà]?s?|einheit(?:en)?|unidade?s?|eenheid|enhet|jednostka|jednotka|birim)(?![^\W\d_])|единица|单位|単位"
+)
 _WORD = rf"(?<![^\W_])(?:{_WORDS})(?:[ _-](?:label|[xyz\d])(?![^\W_]))?"
-_MARKED = re.compile(rf"{_WORD}\s*(?:of|is|are|in)?\s*[:=;,]?\s*[(\[\"']?\s*({_UNIT}){_END}", re.I)
+_OF = r"(?:\s+[^\W\d_]+){1,3}\s*[:=]"  # "units of acceleration:"
+_TIME_FIRST = r"(?:(?:s|ms|secs?|seconds)\s*[,;]\s*)?"  # "units: s, g" of two columns
+_MARKED = re.compile(
+    rf"{_WORD}(?:{_OF}|\s*(?:of|is|are|in)?\s*[:=;,]?)\s*{_TIME_FIRST}[(\[\"']?\s*({_UNIT}){_END}", re.I
+)
 _IN = re.compile(rf"\b(?:in|en|em)\s+[(\[]?({_UNIT}){_END}", re.I)
 _BARE = re.compile(r"(?<![\w/^.-])([^\W\d_]+\s?/\s?\(?s(?:ec)?[\d^*²)]*(?:\s?/\s?s(?:ec)?)?|m?gals?)(?![\w/^])", re.I)
 _CLOSING = re.compile(r"[,;)\]]")

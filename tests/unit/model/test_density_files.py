@@ -69,6 +69,10 @@ def test_other_tables(tmp_path: Path) -> None:
         ("f (Hz), S (g/sqrt(Hz))\n" + LINES, {"unit": "g"}, "is the root of a density"),
         ("f (Hz), S (g^2/oct)\n" + LINES, {"unit": "g"}, "is no mean square per Hz"),
         ("f (Hz), S (g^2 s/Hz)\n" + LINES, {"unit": "g"}, "is no mean square per Hz"),
+        *[
+            (f"f (Hz), S ({unit})\n" + LINES, {}, "is no mean square per Hz")
+            for unit in ("g^2/Hz*s", "g^2-s/Hz", "g^2/Hz s")
+        ],
         ("f (Hz), S (dB)\n" + LINES, {}, "decibels of an unknown reference"),
         ("f (Hz), S (V^2/Hz)\n" + LINES, {}, r"V\^2/Hz.* is no unit of a density"),
         ("f (Hz), S (g^2/Hz)\n" + LINES, {"unit": "m/s^2"}, r"states another unit of the density.*\n.*unit left out"),

@@ -433,3 +433,61 @@ def test_free_lines() -> None:
     assert [(each.number, each.factor) for each in found] == [(1, G)] and [each.number for each in mentioned] == [3]
     assert unit_above(["acc g"], ("m/s^2",)) == (G, "m/s^2")
     assert unit_above(["force N"], ("N",)) is None  # may be north
+
+
+NUMBERED = "{}\n" + "".join(
+    f"{k},{0.004 * k:g},{v:g}\n" for k, v in enumerate([0.0, 1.5, -2.25, 0.5, 0.75, -0.25, 1.0])
+)
+
+
+def test_times_by_their_name(tmp_path: Path) -> None:
+    """Beside numbers of rows the column called time has the times: the first column of each table in tests was time."""
+    path = tmp_path / "a.csv"
+    for head in ("n,time (ms),acc (g)", "No.,t [ms],acc (g)", "sample,Zeit ms,acc (g)"):
+        path.write_text(NUMBERED.format(head))
+        for columns in ("acc (g)", (3,)):
+            record = rb.Record.from_file(path, columns=columns)
+            np.testing.assert_allclose(record.times, 4e-6 * np.arange(7), rtol=1e-12)
+        content = rb.inspect(path)
+        assert len(content.lines) == 1 and content.lines[0].startswith("acc (g): 7 samples every 4e-06 s")
+    path.write_text("acc (g),time (s)\n0.5,0\n0.75,0.02\n1.5,0.04\n")
+    np.testing.assert_allclose(rb.Record.from_file(path).times, [0.0, 0.02, 0.04])
+
+
+@pytest.mark.parametrize("name", ["n", "No", "Sample", "index", "#", "", "Point", "Messpunkt"])
+def test_numbers_of_rows_are_no_times(tmp_path: Path, name: str) -> None:
+    """A first column that counts the rows was read as seconds; the advised step is used instead."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"{name},acc (g)\n0,0.5\n1,1.5\n2,-0.75\n3,1\n")
+    for options in ({}, {"columns": "acc (g)"}):
+        with pytest.raises(rb.DataError, match=r"counts the rows(.|\n)*dt = "):
+            rb.Record.from_file(path, **options)
+    record = rb.Record.from_file(path, columns="acc (g)", dt="0.01 s")
+    np.testing.assert_allclose(record.times, [0.0, 0.01, 0.02, 0.03])
+    assert rb.inspect(path).lines[0].startswith("acc (g)")
+
+
+def test_units_in_names_of_variables(tmp_path: Path) -> None:
+    """Names of variables may end with a unit, as those of columns; no variable in tests did, and ms were read as s."""
+    times = np.array([0.0, 2.5, 5.0, 7.5])
+    np.savez(tmp_path / "a.npz", time_ms=times, acc_mg=[0.0, 40.0, -80.0, 20.0], mark=np.arange(4))
+    record = rb.Record.from_file(tmp_path / "a.npz", columns="acc_mg")
+    np.testing.assert_allclose(record.times, times / 1000, rtol=1e-15)
+    assert record.peak == pytest.approx(0.08 * 9.80665, rel=1e-12)
+    both = rb.Record.from_file(tmp_path / "a.npz", columns=("time_ms", "acc_mg"))
+    np.testing.assert_array_equal(both.times, record.times)
+
+
+def test_columns_below_even_times_are_no_rows_of_samples(tmp_path: Path) -> None:
+    """Three columns of large values below small times were taken for one signal, since no test had few of them."""
+    times, values = 0.004 * np.arange(8), np.array([0.0, 1.5, -3.25, 2.0, 0.5, -0.25, 0.125, 2.5])
+    np.savetxt(tmp_path / "a.txt", np.column_stack((times, values, 2 * values)), fmt="%.5f")
+    record = rb.Record.from_file(tmp_path / "a.txt", columns=(1, 3), unit="g")
+    np.testing.assert_allclose(record.times, times)
+
+
+def test_first_rows_with_exponents_of_three_digits(tmp_path: Path) -> None:
+    """A first row such as 1.5-101, which Fortran writes, was left out as a heading: tests had such cells in no first row."""
+    (tmp_path / "a.txt").write_text("0.1234-101 1\n0.1 2\n0.2 1\n0.3 0\n")
+    with pytest.raises(rb.DataError, match=r"line 1: '0\.1234-101' is not a number"):
+        rb.Record.from_file(tmp_path / "a.txt", unit="g")

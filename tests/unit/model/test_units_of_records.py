@@ -216,3 +216,20 @@ def with_quantity(text: str, kind: int) -> str:
     """Return a set 58 with another type of data of its values."""
     lines = text.splitlines(keepends=True)
     return "".join([*lines[:10], f"{kind:10d}{lines[10][10:]}", *lines[11:]])
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "Unité : mg",
+        "UNITÉ: MG",
+        "Unite: mg",
+        "units of acceleration: mg",
+        "Einheit der Beschleunigung: mg",
+        "units: s, mg",
+    ],
+)
+def test_units_in_lines_of_other_languages(tmp_path: Path, line: str) -> None:
+    """Words between "unit" and the unit were overlooked, and so was "unité": its test had a unit that stands for itself."""
+    (tmp_path / "a.txt").write_text(f"# {line}\n0 0.5\n0.02 -20\n0.04 1\n", encoding="utf-8")
+    assert rb.Record.from_file(tmp_path / "a.txt").peak == pytest.approx(0.02 * G, rel=1e-12)
