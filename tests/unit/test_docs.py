@@ -328,3 +328,18 @@ def test_one_line_names_the_repository():
     urls = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]
     assert urls["Repository"].startswith("https://github.com/")
     assert "@REPOSITORY@" in (DOCS / "index.md").read_text(encoding="utf-8")
+
+
+def test_the_table_of_files_lists_every_ending():
+    """The page of files has the endings that readers register, and no others: nothing compared them."""
+    from rattlebox.exchange.read.formats import density_reader, modes_reader, record_reader
+    from rattlebox.exchange.read.sheets import SHEETS
+    from rattlebox.model.modal_files import export_instead
+
+    table = "".join(line for line in (DOCS / "how-to/files.md").read_text().splitlines() if line.startswith("|"))
+    page = {ending.lower() for ending in re.findall(r"`(\.[A-Za-z0-9]+)`", table)}
+    read = {*record_reader.endings, *modes_reader.endings, *density_reader.endings, *SHEETS}
+    by_content = {".mtx", ".dat"}  # of rb.Matrices, and known by its first lines
+    refused = {ending for ending in page if export_instead(Path(f"a{ending}"))}
+    assert page - refused == read | by_content
+    assert refused == {".med", ".rmed", ".op2", ".xdb", ".odb", ".fil", ".sim"}

@@ -14,6 +14,7 @@ _FORTRAN = re.compile(r"([-+]?(?:\d+[.,]\d*|\.\d+))[dD]([-+]?\d{1,3})|([-+]?\d+)
 _COMPLEX = re.compile(rf"\(?(?<![\w.])({_REAL})([-+])(?=[-+]?[\d.])({_REAL})[ij]\)?(?![\w.])")
 """Complex numbers of numpy.savetxt, "(1.5e+00+-2.0e-01j)", and of others, "1.5-0.2i"."""
 _CONTROLS = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f]")
+_NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x19]")
 _PAIR = re.compile(r"(\d*),(\d+)")
 _LINES = 3  # last lines of data that show delimiter and decimal mark; the very last may be cut short
 
@@ -31,9 +32,11 @@ def decode(content: bytes) -> tuple[str, str] | None:
         if name in ("cp1252", "latin-1") and (encoding != "utf-8-sig" or _CONTROLS.search(content)):
             return None
         try:
-            return content.decode(name), name
+            text = content.decode(name)
         except UnicodeError:
             continue
+        # Zeros of numbers in a binary file look like those of UTF-16.
+        return None if encoding != "utf-8-sig" and _NO_TEXT.search(text) else (text, name)
     return None
 
 

@@ -16,7 +16,7 @@ from rattlebox.exchange.read.universal import Function, frequency_responses
 from rattlebox.model.errors import Hint
 from rattlebox.model.files import existing
 from rattlebox.model.records import Column, as_columns, read_numbers
-from rattlebox.model.units import factor_of
+from rattlebox.model.units import factor_of, unit_name
 from rattlebox.model.units_in_text import unit_above
 
 from .signals import FloatArray, labelled
@@ -137,7 +137,14 @@ def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, A
     if not 0 <= number < len(functions):
         raise DataError(f"{file} holds no function {wanted!r}, but {', '.join(names)}", "function = 1")
     chosen = functions[number]
-    return chosen.abscissa, np.asarray(chosen.values, complex), _stated_unit(chosen), _unit_of_quantities(chosen)
+    known = factor_of(chosen.abscissa_unit, ("Hz",))
+    if known is None and unit_name(chosen.abscissa_unit):
+        raise DataError(
+            f"{file}: the function {chosen.name!r} is over {chosen.abscissa_unit[:20]!r}, which is no unit of frequency",
+            "a function over Hz",
+        )
+    frequency = chosen.abscissa * (known[0] if known else 1.0)
+    return frequency, np.asarray(chosen.values, complex), _stated_unit(chosen), _unit_of_quantities(chosen)
 
 
 def _stated_unit(function: Function) -> str:

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from rattlebox._util.exceptions import DataError, RattleboxError
-from rattlebox.exchange.read.formats import modes_reader, record_reader, signals_in
+from rattlebox.exchange.read.formats import density_reader, modes_reader, record_reader, signals_in
 from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.modes_in_file import ModesInFile
+from rattlebox.exchange.read.universal import frequency_responses
 
 from .density_files import density_names, states_density
 from .effective_masses import effective_masses
@@ -51,7 +52,7 @@ class FileContents:
     notes
         What is assumed.
     toml, python
-        Lines that read the first channel, or the modes; "" if there is none.
+        Lines that read the first channel, or the modes; "" if there is none, and `toml` for frequency responses.
     """
 
     file: str
@@ -64,8 +65,10 @@ class FileContents:
     def __str__(self) -> str:
         parts = [f"{self.file}: {self.content}", *(f"  {line}" for line in self.lines)]
         parts += [f"  note: {note}" for note in self.notes]
+        if self.toml:
+            parts += ["", "In a case file:", "", self.toml]
         if self.python:
-            parts += ["", "In a case file:", "", self.toml, "", "In Python:", "", self.python]
+            parts += ["", "In Python:", "", self.python]
         return "\n".join(parts)
 
 
@@ -75,7 +78,8 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
     Parameters
     ----------
     file
-        A file with records (see `file` of `rb.Record`), power spectral densities (`rb.Random`) or modes (`rb.Modal`).
+        A file with records (see `file` of `rb.Record`), power spectral densities (`rb.Random`), modes (`rb.Modal`), or
+        frequency responses of a universal file.
 
     Returns
     -------
@@ -108,7 +112,7 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
             ".txt",
             ".tsv",
         )
-    for view in (_modes, _records) if is_table_of_modes else (_densities, _records, _modes):
+    for view in (_modes, _records) if is_table_of_modes else (_densities, _records, _modes, _responses):
         try:
             if found := view(path, given):
                 return found
@@ -231,6 +235,32 @@ def _densities(path: Path, given: str) -> FileContents | None:
         (f"assumed: duration = {_ASSUMED_DURATION!r}: set that of the run, or more", *notes),
         "\n".join(toml),
         f"rb.Random.from_file({json.dumps(given, ensure_ascii=False)}{python})",
+    )
+
+
+def _responses(path: Path, given: str) -> FileContents | None:
+    """Return the preview of a universal file with frequency responses."""
+    if density_reader.of(path) is None:
+        return None
+    functions = frequency_responses(path)
+    lines = []
+    for number, each in enumerate(functions[:_LISTED], start=1):
+        unit = f"({each.unit})/({each.source_unit})" if each.unit and each.source_unit else each.unit
+        lines.append(
+            f"{each.name or f'number {number}'}: {several(each.abscissa.size, 'line')} from {each.abscissa[0]:.6g} to "
+            f"{each.abscissa[-1]:.6g} {each.abscissa_unit or 'Hz'}, largest magnitude {np.abs(each.values).max():.4g} "
+            f"{unit or '(the file states no unit)'}"
+        )
+    if len(functions) > _LISTED:
+        lines.append(f"... and {len(functions) - _LISTED} more")
+    choice = ", function=1" if len(functions) > 1 else ""
+    return FileContents(
+        given,
+        several(len(functions), "frequency response"),
+        tuple(lines),
+        (),
+        "",
+        f"rb.analysis.read_frequency_response({json.dumps(given, ensure_ascii=False)}{choice})",
     )
 
 

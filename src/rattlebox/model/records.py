@@ -41,6 +41,7 @@ Selection = Sequence[Column] | Literal["rows"] | None
 """Columns of a record; "rows" for samples that go on from row to row; None for all that there are."""
 
 _ANY = "one or two columns of numbers below their names and units: time (s), acceleration (g)"
+_NO_ARRAYS = "contains no variable of real numbers that is read: cells, arrays of structs and complex numbers are not"
 _NEEDED = {1: "one is", 2: "two are", 3: "three are"}
 _BY_ROWS = 'columns = "rows"'
 _COUNT = re.compile(r"\+?\d+\.?")
@@ -197,7 +198,7 @@ def read_columns(path: str, columns: Selection = None, step: float | None = None
         if file.suffix.lower() in BINARY:
             arrays = read_arrays(file)
             if not arrays:
-                raise DataError(f"{file} contains no numbers", _ANY)
+                raise DataError(f"{file} {_NO_ARRAYS}", _ANY)
             if step is None and columns != "rows":
                 return _select_arrays(file, arrays, columns)
             values, name, notes = _select_samples(file, arrays, columns)
@@ -356,7 +357,7 @@ def read_pairs(path: str, columns: Sequence[Column] | None) -> Columns:
         if file.suffix.lower() in BINARY:
             arrays = read_arrays(file)
             if not arrays:
-                raise DataError(f"{file} contains no numbers", "two columns of numbers")
+                raise DataError(f"{file} {_NO_ARRAYS}", "two columns of numbers")
             return _select_arrays(file, arrays, columns)
         text = _parse_text(file, requested=[str(column) for column in columns or ()], has_samples=False)
         if columns is not None and len(columns) == 1:
@@ -394,7 +395,7 @@ def columns_of_text(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
 def columns_of_arrays(file: Path, arrays: dict[str, Array]) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the name of each channel of arrays, and the fields of a record that read it; dt None is unknown."""
     if not arrays:
-        raise DataError(f"{file} contains no numbers", _ANY)
+        raise DataError(f"{file} {_NO_ARRAYS}", _ANY)
     if len(arrays) == 1:
         ((name, table),) = arrays.items()
         width = table.shape[1] if table.ndim == 2 and table.shape[0] > 1 else 1

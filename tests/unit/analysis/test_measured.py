@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.set_58 import set58
 
 import rattlebox as rb
 from rattlebox.analysis import read_frequency_response, transfer_function
@@ -128,6 +129,7 @@ def test_the_wrong_order_of_bytes(tmp_path: Path) -> None:
     lines = content.split(b"\n")
     place = next(k for k, line in enumerate(lines) if line.startswith(b"    1         0"))
     lines[place] = b"    4" + lines[place][5:]
+    lines[place + 2] = lines[place + 2].replace(b"s         ", b"Hz        ")
     content = b"\n".join(lines)
     path = tmp_path / "b.uff"
     path.write_bytes(content)
@@ -137,3 +139,18 @@ def test_the_wrong_order_of_bytes(tmp_path: Path) -> None:
     path.write_bytes(content.replace(b"58b     1     2", b"58b     2     2"))
     with pytest.raises(rb.DataError, match=r"any measurement|cannot be read"):
         read_frequency_response(path, unit="m/s^2/N")
+
+
+@pytest.mark.parametrize(("label", "factor"), [("kHz", 1e3), ("HZ", 1.0), ("rad/s", 0.5 / np.pi), ("NONE", 1.0)])
+def test_units_of_frequencies_of_universal_files(tmp_path: Path, label: str, factor: float) -> None:
+    """Frequencies are in the unit of their label; every file of the tests had Hz, which was assumed."""
+    path = tmp_path / "a.uff"
+    text = set58(4, np.array([1.0, 2.5 - 3.0j, 0.25j]), "m/s^2/N", step=4.0)
+    path.write_text(text.replace(f"{'Hz':<20}", f"{label:<20}"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        measured = read_frequency_response(path)
+    np.testing.assert_allclose(measured.frequency, factor * np.array([0.0, 4.0, 8.0]), rtol=1e-12)
+    path.write_text(text.replace(f"{'Hz':<20}", f"{'rpm':<20}"))
+    with pytest.raises(rb.DataError, match="over 'rpm', which is no unit of frequency"):
+        read_frequency_response(path)

@@ -494,6 +494,24 @@ def test_columns_of_participation_in_any_order(tmp_path: Path) -> None:
             rb.Modal.from_file(tmp_path / "a.csv")
 
 
+def test_other_quantities_in_tables_of_modes(tmp_path: Path) -> None:
+    """Ratios of masses are no participation factors, and effective masses no shapes; no table of a test had them."""
+    head = "frequency (Hz),damping (%),modal mass (kg),tip,"
+    for others in (
+        "participation ratio",
+        "participation mass (kg)",
+        "effective mass x (kg)",
+        "modal stiffness",
+        "zeta",
+    ):
+        (tmp_path / "a.csv").write_text(head + others + "\n12,1,4,1,0.5\n")
+        modal = rb.Modal.from_file(tmp_path / "a.csv")
+        assert modal.participation is None and list(modal.shapes) == ["tip"]
+        assert f"a.csv: the column '{others.removesuffix(' (kg)')}' is not read" in modal.notes()
+    (tmp_path / "a.csv").write_text(head + "participation factor\n12,1,4,1,0.5\n")
+    assert rb.Modal.from_file(tmp_path / "a.csv").participation == [0.25]
+
+
 def test_toml_tables(tmp_path: Path) -> None:
     """A TOML table has the fields of Modal and, optionally, modal masses."""
     (tmp_path / "modes.toml").write_text(

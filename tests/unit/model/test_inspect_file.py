@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.io
+from support.set_58 import set58
 
 import rattlebox as rb
 
@@ -101,3 +102,16 @@ def test_a_preview_of_modes_with_many_points(tmp_path: Path, monkeypatch: pytest
     part = eval(contents.python, {"rb": rb})
     ((_, fields),) = tomllib.loads(contents.toml).items()
     assert fields.pop("kind") == "modal" and rb.Modal(**fields) == part
+
+
+def test_frequency_responses(tmp_path: Path) -> None:
+    """Frequency responses of a universal file are listed, with the line that reads the first; they were refused."""
+    pytest.importorskip("pyuff")
+    path = tmp_path / "a.uff"
+    values = np.array([1.0, 2.5 - 3.0j, 0.25j])
+    path.write_text(set58(4, values, "g/N", name="Head", step=4.0) + set58(4, 2 * values, "g/N", name="Foot"))
+    content = rb.inspect(path)
+    assert content.content == "2 frequency responses" and not content.toml
+    assert content.lines[0].startswith("Head: 3 lines from 0 to 8 Hz, largest magnitude 3.905 g/N")
+    read = eval(content.python, {"rb": rb})
+    assert read.transfer.size == 3 and content.python in str(content) and "case file" not in str(content)

@@ -227,3 +227,18 @@ def test_commas_of_thousands_are_not_taken_for_decimal_marks(tmp_path: Path, row
             rb.Record.from_file(tmp_path / "a.txt")
         (tmp_path / "a.txt").write_text(text + row.format(count, 0))
         np.testing.assert_allclose(rb.Record.from_file(tmp_path / "a.txt").values[:3], [1.25, 2.25, 3.25])
+
+
+def test_what_a_file_without_a_record_is(tmp_path: Path) -> None:
+    """Binary files and variables that are no real numbers are named as such; the message denied that they have numbers."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["NASTRAN"] = np.arange(50.0)
+    (tmp_path / "b.txt").write_bytes("t (s);F (N)\n0;1\n1;2\n".encode("utf-32"))
+    structs = np.zeros(2, dtype=[("t", object), ("y", object)])
+    for k in range(2):
+        structs[k] = TIMES, FORCES
+    scipy.io.savemat(tmp_path / "c.mat", {"rec": structs})
+    np.save(tmp_path / "d.npy", FORCES + 1j)
+    for name, words in [("a.h5", "is not text"), ("b.txt", "is not text"), ("c.mat", "structs"), ("d.npy", "complex")]:
+        with pytest.raises(rb.DataError, match=words):
+            rb.Record.from_file(tmp_path / name)

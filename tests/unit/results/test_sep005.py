@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -32,3 +34,32 @@ def test_channels_of_sep005(output: rb.Output) -> None:
     assert (only["unit_str"], only["quantity"]) == ("N", "f")
     with pytest.raises(rb.DataError, match="no time history"):
         run.to_sep005(variables=["impacts"])
+
+
+@pytest.mark.parametrize("output", [rb.Output(rate="2 kHz"), rb.Output(times=[0.0, 0.001, 0.07, 0.1])])
+def test_channels_and_universal_files_become_records(output: rb.Output, tmp_path: Path) -> None:
+    """A run that is written is read as records with its times, values and units: each way was tested without the other.
+
+    Velocities are refused by both readers.
+    """
+    pytest.importorskip("pyuff")
+    case = rb.reference_case(duration=0.1)
+    run = rb.simulate(case.model_copy(update={"output": output}), progress=False)
+    run.to_uff(tmp_path / "run.uff")
+    read = 0
+    for number, channel in enumerate(run.to_sep005(), start=1):
+        readers = (
+            lambda given=channel: rb.Record.from_sep005(given),
+            lambda place=number: rb.Record.from_file(tmp_path / "run.uff", columns=[place]),
+        )
+        for reader in readers:
+            if channel["unit_str"] == "m/s":
+                with pytest.raises(rb.RattleboxError, match=r"velocity|derivative"):
+                    reader()
+                continue
+            record = reader()
+            assert record.unit == channel["unit_str"] and not record.unit_is_assumed
+            np.testing.assert_array_equal(record.values, channel["data"])
+            np.testing.assert_allclose(record.times, run.arrays.time, atol=1e-12)
+            read += 1
+    assert read >= 8

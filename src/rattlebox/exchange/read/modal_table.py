@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,8 +20,13 @@ from .modes_in_file import FloatArray, ModesInFile, read_start
 _AXES = {"x": 0, "y": 1, "z": 2}
 _QUANTITIES = {
     "frequency": "frequency", "f": "frequency", "damping": "damping", "damping ratio": "damping", "modal mass": "mass",
-    "participation": "participation",
+    "participation": "participation", "participation factor": "participation",
 }  # fmt: skip
+_OTHER_QUANTITIES = re.compile(
+    r"(?:effective|participating|generali[sz]ed|modal) .*|participation (?:factor )?(?:ratio|mass|share|percent|r[xyz]).*"
+    r"|period|eigenvalue|zeta|xi|omega|quality factor"
+)
+"""Quantities of modes that are not read, and are no shapes at a point either."""
 _NUMBERING = ("mode", "mode number", "mode no", "mode no.", "number", "no", "no.", "nr", "nr.", "set")
 """Headings of columns that only number or name the modes."""
 _FREQUENCY = {"": 1.0, "hz": 1.0, "khz": 1e3, "rad/s": 1 / (2 * np.pi)}
@@ -132,7 +138,7 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
             )
         return factors[key]
 
-    columns, points = _quantities_and_points(path, names)
+    columns, points, others = _quantities_and_points(path, names)
     # The unit of mass follows from what the table states: modal masses, or else the unit kg^-1/2 of mass-normalised
     # shapes.
     (frequency,) = columns["frequency"]
@@ -168,7 +174,7 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
             )
     # Units that the table leaves out are assumed, and noted with the largest value, which shows a wrong assumption.
     frequencies, damping = table[:, frequency] * float(scale(frequency, _FREQUENCY) or 1.0), None
-    notes = []
+    notes = [f"{path.name}: the column {name!r} is not read" for name in others]
     if not units[frequency].strip():
         notes.append(f"{path.name} states no unit of frequency; Hz is assumed, up to {frequencies.max():.4g} Hz")
     if "damping" in columns:
@@ -189,17 +195,22 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
 
 def _quantities_and_points(
     path: Path, names: tuple[str, ...]
-) -> tuple[dict[str, list[int]], dict[str, dict[int, int]]]:
-    """Return the columns of each quantity, and the column of each axis of each point; -1 is a shape without axes."""
+) -> tuple[dict[str, list[int]], dict[str, dict[int, int]], list[str]]:
+    """Return columns of quantities, columns of the axes of points (-1 is a shape without axes), and names of others."""
     # Each column is a quantity of the mode, its number, or a mode shape: a name that is no quantity is a point, with an
     # axis after a blank.
     columns: dict[str, list[int]] = {}
     points: dict[str, dict[int, int]] = {}
+    others: list[str] = []
     for column, name in enumerate(names):
         words = _words(name)
         if words in _NUMBERING:
             continue
-        quantity = _QUANTITIES.get(words) or ("participation" if words.startswith("participation ") else "")
+        quantity = _QUANTITIES.get(words, "")
+        if not quantity and _OTHER_QUANTITIES.fullmatch(words):
+            others.append(name)
+            continue
+        quantity = quantity or ("participation" if words.startswith("participation ") else "")
         if quantity:
             columns.setdefault(quantity, []).append(column)
             continue
@@ -215,7 +226,7 @@ def _quantities_and_points(
             raise DataError(f"{path}: two columns are called {names[places[1]]!r}", "another name for one of them")
     if not points:
         raise DataError(f"{path} contains no mode shape at any point", "a column for each point, called by its name")
-    return columns, points
+    return columns, points, others
 
 
 def _shape(table: FloatArray, axes: dict[int, int]) -> FloatArray:
