@@ -12,12 +12,21 @@ from pydantic import model_validator
 from rattlebox._util.quantities import amount
 
 from .elementwise import Vector
-from .errors import Hint
+from .errors import Hint, nearest
 from .signals import Amplitude, Polyline, Signal
 from .units import NotNegativeTime, PositiveTime
 
 if TYPE_CHECKING:
     from typing import Self
+
+
+PULSES: dict[str, tuple[float, float]] = {
+    "MIL-STD-810H 516.8 flight vehicle": (20.0, 0.011),
+    "MIL-STD-810H 516.8 weapon launch": (30.0, 0.011),
+    "MIL-STD-810H 516.8 ground": (40.0, 0.011),
+    "MIL-STD-810H 516.8 truck": (20.0, 0.011),
+}
+"""Named sawtooth pulses: peak [g] and duration [s]."""
 
 
 class Shock(Signal):
@@ -130,6 +139,49 @@ class Sawtooth(Shock, Polyline):
 
     kind: Literal["sawtooth"] = "sawtooth"
     peak: Literal["terminal", "initial"] = "terminal"
+
+    @classmethod
+    def profile(cls, name: str, **options: Any) -> Sawtooth:
+        """Return the terminal-peak sawtooth of a standard.
+
+        Parameters
+        ----------
+        name
+            "MIL-STD-810H 516.8 flight vehicle" (20 g), "... weapon launch" (30 g, also captive carry), "... ground" (40 g)
+            or "... truck" (20 g, mounted only in trucks and semi-trailers); all of 11 ms.
+        **options
+            Other fields: start, direction; `amplitude="-40 g"` for the other direction.
+
+        Returns
+        -------
+        Sawtooth
+            The pulse.
+
+        Raises
+        ------
+        CaseError
+            If there is no pulse of this name.
+
+        Notes
+        -----
+        These are the default parameters of functional shocks, procedure I, for which the standard prefers measured data. It
+        applies classical pulses in both directions.
+
+        References
+        ----------
+        MIL-STD-810H (2019), Method 516.8, Shock, Table 516.8-IV with note 3.
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> pulse = rb.Sawtooth.profile("MIL-STD-810H 516.8 ground", direction="x")
+        >>> round(pulse.amplitude / 9.80665), pulse.duration, pulse.peak
+        (40, 0.011, 'terminal')
+        """
+        if name not in PULSES:
+            raise Hint(f"there is no pulse {name!r}", nearest(name, PULSES))
+        peak, duration = PULSES[name]
+        return cls(**{"amplitude": f"{peak:g} g", "duration": duration, **options})
 
     def polyline(self) -> tuple[Vector, Vector]:
         """Return times [s] and values of the corners."""

@@ -244,3 +244,24 @@ def test_an_amplitude_is_read_once(alone: bool, monkeypatch: pytest.MonkeyPatch)
     signal = rb.HalfSine(**load) if alone else rb.Case(structure=structure, load=load, duration="1 s").loads[0]
     assert read == ["3 kN"]
     assert (signal.amplitude, signal.unit, type(signal.amplitude)) == (3000.0, "N", float)
+
+
+@pytest.mark.parametrize(
+    ("name", "peak"), [("flight vehicle", 20), ("weapon launch", 30), ("ground", 40), ("truck", 20)]
+)
+def test_named_shocks_of_a_standard(name: str, peak: float) -> None:
+    """Each name is a terminal-peak sawtooth of 11 ms, with the change of velocity of its area."""
+    pulse = rb.Sawtooth.profile(f"MIL-STD-810H 516.8 {name}")
+    assert (pulse.duration, pulse.peak, pulse.unit) == (0.011, "terminal", "m/s^2")
+    assert pulse.amplitude == pytest.approx(peak * 9.80665)
+    free = rb.Case(structure=rb.SDOF(mass="1 kg", stiffness=0), base=pulse, duration="20 ms")
+    run = rb.simulate(free)
+    assert run.arrays.velocity[-1, 0] == pytest.approx(-0.5 * peak * 9.80665 * 0.011, rel=1e-9)
+    other = rb.Sawtooth.profile(f"MIL-STD-810H 516.8 {name}", amplitude=f"-{peak} g", start="5 ms", direction="x")
+    assert other.amplitude == -pulse.amplitude and other.start == 0.005
+
+
+def test_an_unknown_shock_is_refused() -> None:
+    """A name that is no pulse raises with the nearest one."""
+    with pytest.raises(rb.CaseError, match=r"did you mean 'MIL-STD-810H 516\.8 ground'"):
+        rb.Sawtooth.profile("MIL-STD-810H 516.8 grond")
