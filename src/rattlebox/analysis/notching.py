@@ -87,13 +87,24 @@ def apparent_mass(case: Case, frequencies: ArrayLike, direction: Any = None) -> 
         along, residual = along @ axis, None if residual is None else axis @ residual @ axis
     hertz = finite("frequencies", frequencies)
     omega = 2 * np.pi * hertz
-    moved = -modes.harmonic_response(omega, along[:, None])[:, :, 0]  # of a unit acceleration
+    with np.errstate(divide="ignore", invalid="ignore"):  # checked below
+        moved = -modes.harmonic_response(omega, along[:, None])[:, :, 0]  # of a unit acceleration
+    if not np.isfinite(moved).all():
+        infinite = hertz[~np.isfinite(moved).all(axis=1)][0]
+        raise _without_damping(infinite)
     internal = moved * (modes.stiffness + 2j * modes.decay * omega[:, None])
     if modes.coupling is not None:
         internal = internal + 1j * omega[:, None] * (moved @ modes.coupling)
     values = -(internal @ along) + (0.0 if residual is None else float(residual))
     axis_of = ("frequency", hertz, {"units": "Hz", "long_name": "frequency"})
     return labelled("apparent_mass", values, "kg", "force on the base over its acceleration", frequency=axis_of)
+
+
+def _without_damping(hertz: float) -> Hint:
+    """Return the error of a structure that has no damping at a natural frequency [Hz]."""
+    return Hint(
+        f"the structure has no damping at {hertz:.6g} Hz, where its apparent mass is infinite", "damping_ratio = 0.01"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -276,7 +287,10 @@ def _sampled_mass(
     even = np.geomspace(low, high, count)
     if hasattr(structure, "modes"):
         natural = np.sqrt(np.maximum(structure.modes.stiffness, 0.0)) / (2 * np.pi)
-        near = natural[(natural > low) & (natural < high)]  # a narrow peak must not fall between two frequencies
+        inside = (natural > low) & (natural < high)
+        if structure.modes.coupling is None and (undamped := inside & (structure.modes.decay <= 0)).any():
+            raise _without_damping(natural[undamped][0])
+        near = natural[inside]  # a narrow peak must not fall between two frequencies
         frequency = np.unique(np.concatenate([even, corners, near]))
         frequency[[0, -1]] = ends
         mass = apparent_mass(structure, frequency, direction).values

@@ -162,3 +162,13 @@ def test_limits_that_do_not_fit(profile: Any, options: dict[str, Any], message: 
         notch(profile, BOX, **options)
     with pytest.raises(rb.CaseError, match="neither a case nor a transfer function"):
         notch(FLAT, "box", force="3 N")
+
+
+def test_structures_without_damping_are_refused() -> None:
+    """At a natural frequency without damping the apparent mass is infinite, which gave NaN as the depth of the notch."""
+    bare = BOX.model_copy(update={"structure": rb.SDOF(mass=MASS, frequency=HERTZ)})
+    with pytest.raises(rb.CaseError, match="no damping at 80 Hz"):
+        notch(FLAT, bare, force="10 N")
+    with pytest.raises(rb.CaseError, match="no damping at 80 Hz"):
+        apparent_mass(bare, [10.0, 80.0])
+    assert notch([("100 Hz", "1 g"), ("200 Hz", "1 g")], bare, force="10 N").depth > 0

@@ -118,3 +118,18 @@ def test_cycles_choose_the_window() -> None:
         late = run.arrays.time >= 4 / frequency
         drifts = np.diff(run.arrays.displacement[late][:, :3], axis=1, prepend=0.0)
         assert float(study.largest_drift[index]) == pytest.approx(np.abs(drifts).max(), rel=1e-6)
+
+
+def test_structures_of_an_axis_without_the_point() -> None:
+    """A variant whose structure lacks the observed point or the storeys raised a KeyError."""
+    case = case_of(None).model_copy(update={"tuned_masses": ()})
+    mass = rb.SDOF(mass="1 t", frequency="2 Hz")
+    for options, message in (
+        ({"point": "storey 1"}, "has no point 'storey 1'"),
+        ({}, "needs the floors of a building"),
+    ):
+        measures = ["peak"] if options else ["largest_drift"]
+        with pytest.raises(rb.CaseError, match=message):
+            rb.sweep(case, {"structure": [TOWER, mass]}, measures, progress=False, **options)
+    study = rb.sweep(case, {"structure": [TOWER, mass]}, ["largest_acceleration"], progress=False)
+    assert (study.largest_acceleration > 0.5).all()

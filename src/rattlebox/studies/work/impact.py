@@ -285,7 +285,7 @@ class ImpactEngine:
         packed = part.packed
         settings = packed.settings
         self.variants.require_structure()
-        observed = self.variants.observed or Observed.of(self.case.modes, self._point)
+        observed = self.variants.observed or self._usual(part)
         period = _period(packed)
         if self.variants.cycles is not None:
             if period is None:
@@ -335,11 +335,12 @@ class ImpactEngine:
     def _balls(self) -> int:
         return sum(len(damper.balls) for damper in self.case.impact_dampers)
 
-    @property
-    def _point(self) -> str:
+    def _usual(self, part: Batch) -> Observed:
+        """Return the motion that is observed unless a point is named: that of the first damper."""
         if not (self.motion or any(MEASURES[name].samples for name in self.variants.names)):
-            return next(iter(self.case.modes.lines()), "")  # nothing observes it
-        return self.case.modes.point(self.case.dampers[0].point if self.case.dampers else None)
+            return Observed(next(iter(part.points)))  # nothing observes it
+        modes = self.case.modes
+        return Observed.of(modes, modes.point(self.case.dampers[0].point if self.case.dampers else None))
 
 
 def _period(packed: _core.Problem) -> Any:

@@ -340,6 +340,9 @@ class Observed:
             unit = np.asarray(np.eye(modes)[self.mode])
             axes = next((shape.ndim for shape in points.values()), 1) - 1
             return np.asarray(unit.reshape(-1, *(1,) * axes))
+        for name in (self.name, self.lower):
+            if name and name not in points:
+                raise Hint(f"the structure of a variant has no point {name!r}", nearest(name, points), ["point"])
         return points[self.name] - points[self.lower] if self.lower else points[self.name]
 
     def column(self, points: Sequence[str], of_points: FloatArray, of_modes: FloatArray) -> FloatArray:
