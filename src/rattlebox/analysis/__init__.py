@@ -11,6 +11,7 @@ from .drift import drift
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
 from .measured import read_frequency_response
 from .measures import peak_reduction, rms_reduction, settling_time
+from .modal_estimates import Resonance, circle_fit, damping_as, frequency_response_as, half_power
 from .notching import Notched, apparent_mass, notch
 from .over_records import over_records
 from .power_spectra import (
@@ -28,16 +29,21 @@ from .spectra import amplitude_spectrum
 __all__ = [
     "Interval",
     "Notched",
+    "Resonance",
     "amplitude_spectrum",
     "apparent_mass",
     "band_levels",
+    "circle_fit",
     "complex_power",
+    "damping_as",
     "damping_over_amplitude",
     "damping_ratio",
     "decay_envelope",
     "drift",
     "energy_shares",
     "equivalent_damping",
+    "frequency_response_as",
+    "half_power",
     "impacts_per_cycle",
     "largest_acceleration",
     "largest_drift",
