@@ -131,6 +131,7 @@ class Random(FileSignal):
     positional: ClassVar[tuple[str, ...]] = ("psd", "duration", "rate")
     file_fields: ClassVar[tuple[str, ...]] = ("psd",)
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("psd", "file"),)
+    spectra: ClassVar[tuple[str, ...]] = ("psd", "third_octaves")
     kind: Literal["random"] = "random"
     psd: Density
     duration: PositiveTime

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +32,7 @@ PULSES: dict[str, tuple[float, float]] = {
 class Shock(Signal):
     """Base class of shocks."""
 
+    spectra: ClassVar[tuple[str, ...]] = ("shock_spectrum",)
     amplitude: Amplitude
     duration: PositiveTime
     start: NotNegativeTime = 0.0

@@ -67,6 +67,8 @@ class Signal(Part):
     kind: str
     is_sampled: ClassVar[bool] = False
     """Whether the signal is known at samples only, of which a step in time takes the mean."""
+    spectra: ClassVar[tuple[str, ...]] = ()
+    """Figures over frequency, methods of `Run.plot`, that suit a response to the signal."""
     unit: Unit | None = None
     point: str | None = None
     direction: Direction | None = None

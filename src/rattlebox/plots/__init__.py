@@ -20,6 +20,7 @@ from .phase import plot_phase_portrait
 from .response import plot_frequency_response
 from .responses import plot_responses
 from .sensitivity import plot_sensitivity
+from .spectra import plot_psd, plot_shock_spectrum, plot_third_octaves
 from .stability_lobes import plot_stability_lobes
 from .style import (
     CHANNEL_COLOURS,
@@ -66,9 +67,12 @@ __all__ = [
     "plot_motion",
     "plot_particles",
     "plot_phase_portrait",
+    "plot_psd",
     "plot_response_from_map",
     "plot_responses",
     "plot_sensitivity",
+    "plot_shock_spectrum",
     "plot_stability_lobes",
+    "plot_third_octaves",
     "scaled",
 ]

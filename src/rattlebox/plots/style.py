@@ -19,7 +19,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import ArrayLike
 
 from rattlebox._util.atomic_io import atomic_write
@@ -235,9 +235,7 @@ def scaled(values: ArrayLike, unit: str) -> Scale:
     """
     array = np.abs(np.asarray(values, dtype=float))
     array = array[np.isfinite(array)]
-    # 0.4 mm and 0.5 s are easier to read than 400 µm and 500 ms.
-    least = 0.1 if unit in ("m", "s") else 1.0
-    return Scale(*in_unit(float(array.max()) if array.size else 0.0, unit, least))
+    return Scale(*in_unit(float(array.max()) if array.size else 0.0, unit))
 
 
 def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
@@ -261,6 +259,35 @@ def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
     # Lines that are shorter than the panel is high, so that labels do not run into each other.
     lines = wrap(text, letters(axes, "y")) if unit or len(text) > letters(axes, "y") else text.rsplit(" ", 1)
     axes.set_ylabel("\n".join([*lines, f"({unit})"] if unit else lines))
+
+
+def axis_in_g(axes: Axes, which: Literal["x", "y"], per_g: float, text: str = "", unit: str = "g") -> None:
+    """Add a second axis in g above or to the right of axes.
+
+    Parameters
+    ----------
+    axes
+        Axes, on whose scale the second one depends.
+    which
+        "x" or "y".
+    per_g
+        Value on the axis that is an acceleration of 1 g.
+    text
+        Name of the quantity.
+    unit
+        Unit of the second axis, "g" or one that contains it.
+    """
+    both = (lambda value: value / per_g, lambda value: value * per_g)
+    second = axes.secondary_xaxis("top", both) if which == "x" else axes.secondary_yaxis("right", both)
+    axis = second.xaxis if which == "x" else second.yaxis
+    log = (axes.get_xscale() if which == "x" else axes.get_yscale()) == "log"
+    axis.set_minor_formatter(NullFormatter())
+    if which == "x" or not log:
+        axis.set_major_formatter("{x:g}")
+    if which == "x" and log:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    unit = unit.replace("^2", "²")
+    axis.set_label_text(f"{text} ({unit})" if text else unit)
 
 
 def pen(width: float = 0.6) -> float:
@@ -319,7 +346,7 @@ def letters(axes: Axes, along: Literal["x", "y"] = "x") -> int:
     """Estimate the number of letters that fit in a legend above an axes, or in a line of the label to its left."""
     figure, grid = present(axes.get_figure(root=True)), axes.get_gridspec()
     if along == "y":
-        length, share = figure.get_figheight() / (grid.nrows if grid is not None else 1), 0.85
+        length, share = figure.get_figheight() / (grid.nrows if grid is not None else 1), 0.6
     else:
         length, share = figure.get_figwidth() / (grid.ncols if grid is not None else 1), 0.8
     return max(int(share * 72.0 * length / (0.58 * 0.9 * float(mpl.rcParams["font.size"]))), 1)

@@ -68,6 +68,17 @@ class Plots:
         def phase_portrait(self, of: str | None = None, *, size: Size = "column") -> Figure:
             """Draw velocity over displacement; see `rattlebox.plots.plot_phase_portrait`."""
 
+        def psd(
+            self,
+            *,
+            of: str = "absolute_acceleration",
+            point: str | None = None,
+            resolution: float | None = None,
+            size: Size = "column",
+            between: tuple[float, float] | None = None,
+        ) -> Figure:
+            """Draw the power spectral density of a response; see `rattlebox.plots.plot_psd`."""
+
         def responses(
             self,
             *,
@@ -76,6 +87,27 @@ class Plots:
             between: tuple[float, float] | None = None,
         ) -> Figure:
             """Draw responses over time, one panel for each; see `rattlebox.plots.plot_responses`."""
+
+        def shock_spectrum(
+            self,
+            *,
+            point: str | None = None,
+            damping_ratio: float = 0.05,
+            size: Size = "column",
+            between: tuple[float, float] | None = None,
+        ) -> Figure:
+            """Draw the shock response spectrum of points and of the base; see `rattlebox.plots.plot_shock_spectrum`."""
+
+        def third_octaves(
+            self,
+            *,
+            of: str = "absolute_acceleration",
+            point: str | None = None,
+            resolution: float | None = None,
+            size: Size = "column",
+            between: tuple[float, float] | None = None,
+        ) -> Figure:
+            """Draw the RMS of a response in third octaves; see `rattlebox.plots.plot_third_octaves`."""
 
     def __init__(self, run: Record) -> None:
         load_plugins()

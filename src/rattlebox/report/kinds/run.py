@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount
+from rattlebox.analysis.signals import is_even
 from rattlebox.report.limits import readable_case, run_limits
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Picture, Table
@@ -23,6 +24,9 @@ _CAPTIONS = {
     "motion": "Displacement of the structure over time, and the motion in each cavity.",
     "energy": "Energies over time, and below them where the energy supplied is lost. The line is the energy supplied.",
     "impacts": "Impacts over time.",
+    "psd": "Power spectral density of the absolute acceleration, with its RMS value.",
+    "third_octaves": "RMS value of the absolute acceleration in third-octave bands, with the largest one.",
+    "shock_spectrum": "Shock response spectrum: largest absolute acceleration of oscillators on the points and on the base.",
     "particles": "The particles at the end of the run, as seen from the base.",
 }
 _LOSSES = {
@@ -32,6 +36,9 @@ _LOSSES = {
     "sliding": "in sliding",
     "rolling": "in rolling",
 }
+_SPECTRA = ("psd", "third_octaves", "shock_spectrum")
+"""Figures that a report has only for loads and base motions that they suit."""
+_MIN_SAMPLES = 512
 _NEGLIGIBLE = 5e-4
 """Share of the energy that is not mentioned."""
 
@@ -110,10 +117,18 @@ def result_sentences(values: Mapping[str, Value], leave_out: Sequence[str] = ())
 
 def _pictures(run: Run) -> Iterator[Picture]:
     for name, caption in _CAPTIONS.items():
-        if name in dir(run.plot):
+        if name in dir(run.plot) and (name not in _SPECTRA or _has_spectrum(run, name)):
             # Without PyVista, which takes seconds to load, and half as wide, which takes a quarter of the time.
             options = {"renderer": "plain", "size": "column"} if name == "particles" else {"size": "page"}
             yield Picture(caption, partial(getattr(run.plot, name), **options))
+
+
+def _has_spectrum(run: Run, name: str) -> bool:
+    """Return whether a run has even times and a load or base motion whose response a figure over frequency suits."""
+    case = readable_case(run)
+    if case is None or not run.arrays.points or run.arrays.time.size < _MIN_SAMPLES or not is_even(run.arrays.time):
+        return False
+    return any(name in signal.spectra for signal in (*case.loads, *case.base))
 
 
 def _about(run: Run) -> Iterator[str]:
