@@ -22,27 +22,37 @@ def _exponent(value: float, significant: int) -> int:
     return int(f"{value:.{significant - 1}e}".partition("e")[2])
 
 
-def prefix(value: float, least: float = 1.0) -> tuple[float, str]:
-    """Return the SI prefix in which `value` is at least `least` and less than 1000 `least`."""
+def prefix(value: float, least: float = 1.0, powers: tuple[int, int] = (-12, 12)) -> tuple[float, str]:
+    """Return the SI prefix in which `value` is at least `least` and less than 1000 `least`, between two powers of ten."""
     if value == 0.0 or not math.isfinite(value):
         return 1.0, ""
-    power = min(max(3 * (_exponent(value / least, 4) // 3), min(PREFIXES)), max(PREFIXES))
+    power = min(max(3 * (_exponent(value / least, 4) // 3), powers[0]), powers[1])
     return 10.0**power, PREFIXES[power]
 
 
-def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
-    """Return the divisor and the prefixed unit for a number.
+_POWERS = {"m": (-12, 3), "s": (-12, 0), "m/s": (-12, 0), "Hz": (0, 9)}
+"""Lowest and highest power of ten of the prefix of a unit: nobody writes mHz, ks, km/s or km/s^2."""
+_POWERS_OF_OTHERS = (-12, 12)
+_SYMBOL = re.compile(r"(?:m|s|N|J|W|Pa|Hz)(?![\w^])")
+"""First symbol of a unit that can have a prefix; of m^2 and (m/s^2)^2/Hz a prefix would be squared, too."""
 
-    Masses are written in grams, kilograms and tonnes: kkg and Mg are not used.
+
+def in_unit(value: float, unit: str) -> tuple[float, str]:
+    """Return the divisor and the prefixed unit for a number: the only place that decides on prefixes.
+
+    Masses are written in grams, kilograms and tonnes: kkg, Mg and kt are not used. Lengths and times have numbers from 0.1
+    on, since 0.4 mm and 0.5 s are easier to read than 400 µm and 500 ms.
     """
-    base = 1.0
-    if unit == "m/s^2":
-        return base, unit
     if unit == "kg":
-        heavy = math.isfinite(value) and value != 0.0 and _exponent(value, 4) >= 3
-        base, unit = (1e3, "t") if heavy else (1e-3, "g")
-    scale, name = prefix(value / base, least)
-    return base * scale, name + unit
+        power = _exponent(value, 4) if math.isfinite(value) and value != 0.0 else 0
+        if power >= 3:
+            return 1e3, "t"
+        scale, name = prefix(value / 1e-3, powers=(-12, 3))
+        return 1e-3 * scale, name + "g"
+    if not _SYMBOL.match(unit) or unit.startswith("m/s^2"):
+        return 1.0, unit
+    scale, name = prefix(value, 0.1 if unit in ("m", "s") else 1.0, _POWERS.get(unit, _POWERS_OF_OTHERS))
+    return scale, name + unit
 
 
 def digits(value: float, significant: int = 4) -> str:
@@ -62,8 +72,8 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
 
     Examples
     --------
-    >>> quantity(0.00041234, "m")
-    '412.3 µm'
+    >>> quantity(0.00041234, "m"), quantity(0.93, "Hz"), quantity(1.2e6, "kg")
+    ('0.4123 mm', '0.9300 Hz', '1200 t')
     """
     if math.isnan(value):
         return MISSING
@@ -87,7 +97,7 @@ def amount(value: float, unit: str = "", significant: int = 4) -> str:
         return MISSING
     value += 0.0  # turns -0.0 into 0.0
     if unit in PREFIXED_UNITS and not (unit == "s" and abs(value) >= 1):
-        divisor, written = in_unit(value, unit, 0.1 if unit in ("m", "s") else 1.0)
+        divisor, written = in_unit(value, unit)
         return f"{without_zeros(digits(value / divisor, significant))} {written}"
     if unit == "%":
         return f"{without_zeros(digits(100.0 * value, significant))} %"

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from ..model.units import STANDARD_GRAVITY
 from .style import (
-    ABOVE,
     FAINT,
     SERIES_MARKERS,
     SERIES_STYLES,
     StyledFigure,
+    axis_in_g,
     figure_style,
     label,
     pen,
@@ -40,7 +42,8 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
     Returns
     -------
     Figure
-        Figure with one panel.
+        Figure with one panel. The axis above it has the amplitudes as accelerations at the frequency of the mode, if all
+        curves have the same.
 
     Raises
     ------
@@ -68,7 +71,10 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
         axes.set_ylim(bottom=0)
         label(axes, "x", "Amplitude", unit)
         label(axes, "y", "Damping ratio", "%")
-        axes.legend(**ABOVE, ncols=3)
+        frequencies = {curve.attrs.get("frequency", math.nan) for curve in named.values()}
+        if len(frequencies) == 1 and (frequency := frequencies.pop()) > 0:  # False for NaN
+            axis_in_g(axes, "x", STANDARD_GRAVITY / (2 * math.pi * frequency) ** 2 / divisor, "Acceleration")
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=3)
     return figure
 
 

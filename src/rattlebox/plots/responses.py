@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 
 from rattlebox._util.exceptions import CaseError
 
+from ..model.units import STANDARD_GRAVITY
 from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
 from .panels import draw_largest, time_panels, time_window
-from .style import figure_style, label, scaled, time_axis
+from .style import axis_in_g, figure_style, label, scaled, time_axis
 from .types import Size, Vector
 
 QUANTITIES = {
@@ -95,6 +96,8 @@ def plot_responses(
             scale = scaled(values, panel.unit)
             draw_largest(axis, arrays.time[window] / time.divisor, values / scale.divisor, panel.names)
             label(axis, "y", panel.text, scale.unit)
+            if panel.unit == "m/s^2":
+                axis_in_g(axis, "y", STANDARD_GRAVITY)
         time_axis(axes[-1], arrays.time[window], time)
         figure.align_ylabels(axes)
     return figure

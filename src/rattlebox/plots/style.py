@@ -346,7 +346,7 @@ def letters(axes: Axes, along: Literal["x", "y"] = "x") -> int:
     """Estimate the number of letters that fit in a legend above an axes, or in a line of the label to its left."""
     figure, grid = present(axes.get_figure(root=True)), axes.get_gridspec()
     if along == "y":
-        length, share = figure.get_figheight() / (grid.nrows if grid is not None else 1), 0.6
+        length, share = figure.get_figheight() / (grid.nrows if grid is not None else 1), 0.75
     else:
         length, share = figure.get_figwidth() / (grid.ncols if grid is not None else 1), 0.8
     return max(int(share * 72.0 * length / (0.58 * 0.9 * float(mpl.rcParams["font.size"]))), 1)

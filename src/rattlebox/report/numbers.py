@@ -13,7 +13,7 @@ def with_interval(value: float, half: float, unit: str = "") -> str:
         return amount(value, unit)
     divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
     if unit in PREFIXED_UNITS:
-        divisor, written = in_unit(value, unit, 0.1 if unit in ("m", "s") else 1.0)
+        divisor, written = in_unit(value, unit)
     value, half = value / divisor, abs(half) / divisor
     # Two digits of the interval, and as many decimals of the value.
     decimals = max(0, 1 - math.floor(math.log10(half))) if half > 0 else 4
@@ -29,5 +29,5 @@ def between(lower: float, upper: float, unit: str = "") -> str:
     divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
     if unit in PREFIXED_UNITS:
         largest = max(abs(lower), abs(upper))
-        divisor, written = in_unit(largest, unit, 0.1 if unit in ("m", "s") else 1.0)
+        divisor, written = in_unit(largest, unit)
     return f"{amount(lower / divisor, significant=3)} to {amount(upper / divisor, significant=3)} {written}".rstrip()

@@ -44,7 +44,7 @@ def test_sweep_and_show(study: Path, run_cli: RunCli) -> None:
     assert (code, error) == (0, "")
     assert shown.startswith("study.zarr: 6 variants, complete\n")
     words = shown.split()
-    for word in ("damper.gap", "200.0", "µm", "damper.ball.material", "brass", f"{np.max(data.impacts.values):.0f}"):
+    for word in ("damper.gap", "0.2000", "mm", "damper.ball.material", "brass", f"{np.max(data.impacts.values):.0f}"):
         assert word in words
     assert shown.endswith("6 variants: 6 finished\n")
 
@@ -114,7 +114,7 @@ def test_missing_values_are_counted(study: Path, run_cli: RunCli) -> None:
     count = int(np.isfinite(open_study("study.zarr").mean_approach_speed.values).sum())
     rows = [line.split() for line in run_cli("show", "study.zarr")[1].splitlines()]
     (axis,) = (words for words in rows if words[:1] == ["damper.gap"])
-    assert axis[-4:] == ["200.0", "µm", "20.00", "mm"]
+    assert axis[-4:] == ["0.2000", "mm", "20.00", "mm"]
     (share,) = (words for words in rows if words[:1] == ["impact_share"])
     (speed,) = (words for words in rows if words[:1] == ["mean_approach_speed"])
     assert (share[-1], speed[-1]) == ("6", f"{count}")

@@ -309,6 +309,12 @@ def test_amplitudes_may_be_accelerations() -> None:
     with pytest.raises(rb.CaseError, match=r"a length \(m\) or an acceleration .* is needed, not a mass"):
         rb.damping_curve(ball_case(), ["1 kg", "2 kg"])
     with pytest.raises(rb.CaseError, match="'2 g' is an acceleration") as caught:
-        rb.design(ball_case(), {"damper.gap": ["0.4 mm", "0.5 mm"]}, "damping_ratio", amplitudes=["2 g", "3 g"])
-    assert "'199 µm' at 50 Hz" in caught.value.suggestion
+        rb.design(ball_case(), {"structure.mass": ["2 kg", "3 kg"]}, "damping_ratio", amplitudes=["2 g", "3 g"])
+    assert "'0.199 mm' at 50 Hz" in caught.value.suggestion
     assert (100 * math.pi) ** 2 * 199e-6 == pytest.approx(2 * 9.80665, rel=5e-3)
+    options |= {"amplitudes": ["3 g", "3.3 g"]}
+    designs = [
+        rb.design(ball_case(), {"damper.gap": ["0.4 mm", "0.5 mm"]}, "damping_ratio", **options | more)
+        for more in ({}, {"amplitudes": place[:2]})
+    ]
+    np.testing.assert_allclose(designs[0].damping_ratio, designs[1].damping_ratio, rtol=1e-6)

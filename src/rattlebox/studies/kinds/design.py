@@ -16,7 +16,7 @@ from rattlebox._util.interrupts import deadline
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import announce, progress_bar
 from rattlebox.model.errors import Hint
-from rattlebox.studies.damping_curve import Way, read_amplitudes
+from rattlebox.studies.damping_curve import Way, mode_of, read_amplitudes
 from rattlebox.studies.design.search import Curve, DesignSearch, Robust
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
 from rattlebox.studies.design.trials import LAYOUT, Trials, load_study, quiet, trial_storage
@@ -82,7 +82,7 @@ class Design(Study):
         reduced values of all packings.
     amplitudes, way, mode
         Amplitudes of the objective "damping_ratio", way of its computation, and number of the mode; see
-        `rb.damping_curve`.
+        `rb.damping_curve`. Accelerations, such as "2 g", need a structure that no parameter changes.
     max_added_mass
         Upper limit of the mass of all balls or particles [kg].
     log
@@ -189,7 +189,9 @@ class Design(Study):
         measured = [name for name in names if name not in (ADDED_MASS, DAMPING_RATIO)]
         curve = None
         if self.amplitudes is not None:
-            amplitudes = tuple(read_amplitudes(self.amplitudes).tolist())
+            fixed = not any("structure." in path for path in map(str, parameters))  # a path, or a tuple of several
+            omega = mode_of(self.case, self.mode, self.point).omega if fixed else None
+            amplitudes = tuple(read_amplitudes(self.amplitudes, omega).tolist())
             curve = Curve(amplitudes, self.way, self.mode, self.cycles)
         if (curve is None) == (DAMPING_RATIO in names):
             raise (
