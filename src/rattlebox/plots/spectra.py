@@ -295,5 +295,5 @@ def plot_shock_spectrum(
         axes.set_yscale("log")
         log_ticks(axes.yaxis)
         signals.finish(axes, "Largest absolute acceleration", "m/s^2", STANDARD_GRAVITY)
-        label(axes, "x", f"Natural frequency of oscillators with {100 * damping_ratio:g} % damping", "Hz")
+        label(axes, "x", f"Natural frequency, {100 * damping_ratio:g} % damping", "Hz")
     return figure
