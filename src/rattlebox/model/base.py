@@ -214,6 +214,10 @@ class Part(BaseModel, metaclass=_PartMeta):
         """Return the fields that a value of a field excludes."""
         return [other for pair in cls.alternatives if name in pair for other in pair if other != name]
 
+    def excludes(self, name: str, value: object) -> list[str]:
+        """Return the fields of this part that a new value of a field excludes."""
+        return self.excluded_by(name, value)
+
     @classmethod
     def expand_aliases(cls, values: dict[str, Any]) -> dict[str, Any]:
         """Return values with the names of fields in place of aliases.

@@ -16,6 +16,11 @@ class FileSignal(FilePart, Sampled):
     _unit_as_given: str | None = PrivateAttr(default=None)
     _notes: tuple[str, ...] = PrivateAttr(default=())
 
+    def excludes(self, name: str, value: object) -> list[str]:
+        """Return the fields that a new value excludes; a file excludes numbers in the case and their unit."""
+        numbers = [*self.file_fields, "unit"] if name == "file" and not self.fields_from_file() else []
+        return [*super().excludes(name, value), *numbers]
+
     def as_given(self) -> dict[str, Any]:
         """Return the fields in the notation of the input: those of a file with the unit that the user states."""
         fields = super().as_given()

@@ -180,7 +180,7 @@ def places_of(case: Part, values: Mapping[str, object]) -> dict[Place, Any]:
         *above, name = place
         holder = part_at(case, above)
         if isinstance(holder, Part):
-            for other in holder.excluded_by(str(name), places[place]):
+            for other in holder.excludes(str(name), places[place]):
                 places.setdefault((*above, other), None)
     return places
 

@@ -330,7 +330,7 @@ class Record(FileSignal):
     @staticmethod
     def _read(values: dict[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
         """Return the fields with the content of the file in SI units, and notes."""
-        if "times" in values or "values" in values:
+        if values.get("times") is not None or values.get("values") is not None:
             raise Hint(
                 "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
             )

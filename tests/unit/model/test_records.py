@@ -491,3 +491,27 @@ def test_first_rows_with_exponents_of_three_digits(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("0.1234-101 1\n0.1 2\n0.2 1\n0.3 0\n")
     with pytest.raises(rb.DataError, match=r"line 1: '0\.1234-101' is not a number"):
         rb.Record.from_file(tmp_path / "a.txt", unit="g")
+
+
+def test_a_file_in_place_of_numbers(tmp_path: Path) -> None:
+    """A file as another value excludes the numbers of the case and their unit; axes in tests replaced files by files."""
+    (tmp_path / "level.csv").write_text("f (Hz),S (g^2/Hz)\n12,0.02\n70,0.02\n")
+    (tmp_path / "a.csv").write_text("t (s),a (g)\n0,0\n0.5,1.5\n1.5,0\n")
+    structure = rb.SDOF(mass="2 kg", frequency="6 Hz", damping_ratio=0.02)
+    psd = [("15 Hz", "0.3 (m/s^2)^2/Hz"), ("60 Hz", "0.3 (m/s^2)^2/Hz")]
+    for given, file, peak in [
+        (rb.Random([(15, 0.3), (60, 0.3)], "1 s", unit="m/s^2"), "level.csv", None),
+        (rb.Random(psd, "1 s"), "level.csv", None),
+        (rb.Random("gevs_acceptance", "1 s"), "level.csv", None),
+        (rb.Record(times=[0, 1], values=[0, 3], unit="gal"), "a.csv", 1.5 * 9.80665),
+        (rb.Record(values=[0, 3, 1], dt="0.5 s"), "a.csv", 1.5 * 9.80665),
+    ]:
+        base = rb.Case(structure=structure, base=given, duration="0.8 s")
+        case = base.replaced({"base.file": str(tmp_path / file)})
+        signal: Any = case.base[0]
+        assert signal.unit == "m/s^2"
+        if peak is None:
+            assert signal.rms == pytest.approx(9.80665 * (0.02 * 58) ** 0.5, rel=1e-12)
+        else:
+            assert signal.peak == pytest.approx(peak, rel=1e-12)
+        assert rb.Case.from_toml(case.to_toml()) == case and "gal" not in case.to_toml()
