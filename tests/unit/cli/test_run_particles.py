@@ -91,7 +91,7 @@ def test_bad_input(tmp_path: Path, run: Run) -> None:
 @pytest.mark.parametrize(
     ("function", "message"),
     [
-        ("rattlebox.prepare.particles.settle", "no results were written"),
+        ("rattlebox.prepare.settle.settle", "no results were written"),
         ("rattlebox.results.Run.save", "repeat the command to resume from out/run.checkpoint"),
         ("rattlebox.cli.run.write_table", "repeat the command to resume from out/run.checkpoint"),
     ],
