@@ -168,12 +168,15 @@ def sweep(
     dask: Annotated[
         str | None, typer.Option(help="Address or scheduler file of a Dask cluster on which to run.")
     ] = None,
+    estimate: Annotated[
+        bool, typer.Option("--estimate", help="Print the predicted processor time, from a few short runs, and stop.")
+    ] = False,
 ) -> None:
     """Run a study file: many variants of one case. Repeat the command to resume a stopped study."""
     _check_single(ctx, study)
     from rattlebox.cli.sweep import run_sweep
 
-    run_sweep(study, out, workers, dask)
+    run_sweep(study, out, workers, dask, estimate=estimate)
 
 
 @_command(example="fmu case.toml --alone -o damper.fmu")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 import warnings
 from collections.abc import Iterator
@@ -23,8 +24,8 @@ from rattlebox.studies.run.stored import status_lines
 from rattlebox.studies.study_file import read_study
 
 
-def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:
-    """Run a study file and store its results, or resume a stored study."""
+def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None, *, estimate: bool = False) -> None:
+    """Run a study file and store its results, or resume a stored study; or print its predicted time."""
     if dask and workers:
         raise typer.BadParameter("--workers counts threads of this machine; --dask runs on the workers of the cluster")
     study = read_study(path)
@@ -35,6 +36,9 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         with _cluster(dask) as client, _error_context(path, out), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "no trial is feasible|at .*, which decides")  # lines of the output below
             backend = {"backend": client, "workers": None} if client else {"workers": workers} if workers else {}
+            if estimate:
+                typer.echo(printable(f"{path}: {dataclasses.replace(study, **backend).estimate()}"))
+                return
             result = study.run(store=out, **backend)
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)

@@ -57,6 +57,11 @@ def start_positions(damper: ParticleDamper) -> Array:
     return settle(damper) if damper.packing.is_computed else damper.start.position
 
 
+def bed_key(damper: ParticleDamper) -> str:
+    """Return a text that is equal for dampers with the same settled bed."""
+    return damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
+
+
 @overload
 def settle(damper: ParticleDamper) -> Array: ...
 @overload
@@ -69,7 +74,7 @@ def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -
     Returns positions relative to the centre of the cavity [m]; None if `proceed` stopped it, (n, 3).
     """
     packing = instance(damper.packing, Bed)
-    key = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
+    key = bed_key(damper)
     if key in _beds:
         return _beds[key].copy()
     radii = damper.contents.radius

@@ -130,7 +130,7 @@ def test_a_box_of_particles_is_calibrated_by_both_measurements(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each sample has a packing of its own; ring-down and shaker of one box together bound its restitution."""
-    monkeypatch.setattr("rattlebox.studies.run.backends.TIMED", 0.02)
+    monkeypatch.setattr("rattlebox.studies.run.estimate.TIMED", 0.02)
     monkeypatch.setattr("rattlebox.studies.calibration.calibrate._ROUNDS", 1)
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="4 mm", count=6),

@@ -21,7 +21,7 @@ from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Limit, Picture, Table
 from rattlebox.studies.design.evidence import CURVE, LEVEL, curves_of
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
-from rattlebox.studies.run.backends import duration
+from rattlebox.studies.run.estimate import duration
 from rattlebox.studies.work.measures import INTERVAL, MEASURES
 
 if TYPE_CHECKING:

@@ -29,7 +29,8 @@ from rattlebox.studies.calibration.restitution import restitution_of
 from rattlebox.studies.calibration.work import CalibrationEngine, Point, Simulation, simulation_of
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.grid.sampling import random_design
-from rattlebox.studies.run.backends import duration, workers_of
+from rattlebox.studies.run.backends import workers_of
+from rattlebox.studies.run.estimate import duration
 from rattlebox.studies.run.runner import run_work
 from rattlebox.studies.run.store import exclusive_writer, save_result
 from rattlebox.studies.work.work import Work

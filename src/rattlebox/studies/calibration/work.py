@@ -22,7 +22,7 @@ from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.studies.calibration.measurements import Losses, RingDown, ShakerLoss
 from rattlebox.studies.damping_curve import Remarks, damping_curve_cases, mode_of, random_starts, ratios_of_decays
 from rattlebox.studies.grid.axes import read_axes
-from rattlebox.studies.run.backends import RunGroup, time_of_particle_runs
+from rattlebox.studies.run.estimate import RunGroup, time_of_particle_runs
 from rattlebox.studies.work.particles import FLAGS, engine_of
 from rattlebox.studies.work.variants import AMPLITUDE, FREQUENCY, Variants, describe_case
 from rattlebox.studies.work.work import Cancelled, Outputs, Values, proceed_unless

@@ -29,7 +29,8 @@ from rattlebox.studies.design.evidence import deciding_note, order_note, with_cu
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
 from rattlebox.studies.grid.axes import ParsedAxes, materials_in, read_axes
 from rattlebox.studies.grid.grid import Grid, Parameter
-from rattlebox.studies.run.backends import TRIAL, Budget, RunGroup, time_of_particle_runs, workers_of
+from rattlebox.studies.run.backends import workers_of
+from rattlebox.studies.run.estimate import TRIAL, Estimate, RunGroup, time_of_particle_runs
 from rattlebox.studies.run.runner import run_work
 from rattlebox.studies.run.study import known_measures
 from rattlebox.studies.work.measures import INTERVAL, about, check_names
@@ -262,7 +263,7 @@ class DesignSearch:
 
     # ---- cost
 
-    def predict(self, trials: int) -> Budget:
+    def predict(self, trials: int) -> Estimate:
         """Return the predicted cost of a number of trials."""
         designs = self.sample(_SAMPLED)
         runs = 0
@@ -281,7 +282,7 @@ class DesignSearch:
         cpu_time = trials * (TRIAL + sum(times) / max(1, len(designs)))
         workers = workers_of(self.where.get("backend", "threads"), self.where.get("workers"))
         wall_time = cpu_time / share / max(1, min(workers, runs_each))
-        return Budget(trials, round(trials * runs_each), cpu_time, wall_time, workers)
+        return Estimate(trials, round(trials * runs_each), cpu_time, wall_time, workers)
 
     def _valid(self, designs: Sequence[Values]) -> Iterator[Case]:
         """Yield the cases of the designs that a trial would run."""

@@ -21,7 +21,7 @@ from rattlebox.model.differences import differences
 from rattlebox.results.provenance import with_version
 from rattlebox.studies.design.search import MOST_COMBINATIONS, Curves, DesignSearch, Evaluation, Values
 from rattlebox.studies.design.space import ADDED_MASS, DesignVariable
-from rattlebox.studies.run.backends import Budget
+from rattlebox.studies.run.estimate import Estimate
 from rattlebox.studies.run.store import JOURNAL, exclusive_writer
 
 if TYPE_CHECKING:
@@ -149,6 +149,12 @@ def trial_seed(seed: int, number: int) -> int:
 # ---- trials
 
 
+def number_of_trials(search: DesignSearch, wanted: int | None) -> int:
+    """Return the number of trials of a new search."""
+    most = wanted or MOST_COMBINATIONS
+    return most if search.combinations is None else min(most, len(search.combinations))
+
+
 class Trials:
     """Trials of a design search: those that are finished, and the next one."""
 
@@ -179,7 +185,7 @@ class Trials:
         predicted = self._study.user_attrs.get("predicted", {}).get("times", {})
         return {**predicted, "wall_time": wall, **({"cpu_time": cpu} if own else {})}
 
-    def store_prediction(self, left: Budget) -> None:
+    def store_prediction(self, left: Estimate) -> None:
         """Store the predicted times of all trials, if this is their first prediction."""
         if self._study.user_attrs.get("predicted", {}).get("trials") != self.total:
             scale = self.total / left.trials

@@ -157,6 +157,11 @@ class Basins(Study):
         )
         return ImpactEngine(variants, motion=True)
 
+    @property
+    def work(self) -> Work:
+        """Runs of all initial states."""
+        return Work(self.engine)
+
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
         if not (self.case.dampers or self.case.stops):
@@ -169,7 +174,7 @@ class Basins(Study):
     def compute(self) -> xarray.Dataset:
         """Run all initial states and determine their attractors; see `Study.compute`."""
         engine, grid = self.engine, self.engine.grid
-        runs = self.run_work(Work(engine)).load().isel(instant=slice(1, None)).rename(instant="strobe")
+        runs = self.run_work(self.work).load().isel(instant=slice(1, None)).rename(instant="strobe")
         strobes, ranges = reduced_strobes(runs, engine.packed, engine.output.period)
         orbits = classify(strobes / ranges[..., None, :], self.tolerance, self.apart)
         flat, scale = strobes.reshape(grid.size, self.cycles[1], -1), ranges.reshape(grid.size, -1)

@@ -19,9 +19,9 @@ from rattlebox.model.errors import Hint
 from rattlebox.studies.damping_curve import Way, mode_of, read_amplitudes
 from rattlebox.studies.design.search import Curve, DesignSearch, Robust
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
-from rattlebox.studies.design.trials import LAYOUT, Trials, load_study, quiet, trial_storage
+from rattlebox.studies.design.trials import LAYOUT, Trials, load_study, number_of_trials, quiet, trial_storage
 from rattlebox.studies.grid.axes import ParsedAxes, packing_axis, parse_axes, robust_axes
-from rattlebox.studies.run.backends import duration
+from rattlebox.studies.run.estimate import Estimate, duration
 from rattlebox.studies.run.runner import Stopped
 from rattlebox.studies.run.store import save_result
 from rattlebox.studies.run.study import (
@@ -232,6 +232,11 @@ class Design(Study):
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
         self._search.validate(split_bounds(self.parameters, self.log)[1])
+
+    def predict(self) -> Estimate:
+        """Return the estimate of all trials; see `Study.estimate`."""
+        search = self._search.on(self.where)
+        return search.predict(number_of_trials(search, self.trials))
 
     def compute(self) -> xr.Dataset:
         """Run the trials; see `Study.compute`."""

@@ -137,6 +137,10 @@ class PairEngine:
         """The variants as a sweep."""
         return ImpactEngine(Variants(self.case, self.grid, skip=self.skip, cycles=self.cycles))
 
+    def timed_case(self, number: int) -> Case | None:
+        """Return None: variants are timed in blocks; see `Engine.timed_case`."""
+        return None
+
     def run(
         self, numbers: range, *, threads: int = 1, cancelled: Cancelled = None, reduction: None = None
     ) -> Values | None:

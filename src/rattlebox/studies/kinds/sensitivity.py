@@ -38,6 +38,7 @@ from rattlebox.studies.run.study import (
     study_function,
 )
 from rattlebox.studies.work.measures import INTERVAL
+from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -165,6 +166,11 @@ class Sensitivity(Study):
             samples=self.samples,
             point=self.point,
         )
+
+    @property
+    def work(self) -> Work:
+        """Runs of all points, levels and starts."""
+        return self._sweep.work
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""

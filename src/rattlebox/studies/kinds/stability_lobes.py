@@ -40,6 +40,7 @@ from rattlebox.studies.maps.map_response import (
 from rattlebox.studies.maps.response_from_map import DamperPoints, default_frequencies, modes_of, points_of_dampers
 from rattlebox.studies.run.store import save_finished, save_result
 from rattlebox.studies.run.study import CONFIG, Count, Cycles, Study, Values, study_function
+from rattlebox.studies.work.work import Work
 
 if TYPE_CHECKING:
     import xarray
@@ -177,6 +178,11 @@ class StabilityLobes(Study):
     number: Count | None = None
     frequencies: Values | None = None
     cycles: Cycles | None = None
+
+    @property
+    def works(self) -> tuple[Work, ...]:
+        """Runs of the map of a damper; none with a map that is computed already."""
+        return (self._map.work,) if self._runs_map else ()
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""

@@ -39,6 +39,7 @@ from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.record_sets import RecordSet
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, PositiveTime, Whole
 from rattlebox.studies.grid.sampling import RandomDesign, Replicas, Spaced
+from rattlebox.studies.run.estimate import Estimate, estimate_works
 from rattlebox.studies.run.runner import run_work
 from rattlebox.studies.work.measures import MEASURES, check_names, measure_function, named_functions
 from rattlebox.studies.work.work import Work
@@ -140,6 +141,44 @@ class Study(ABC):
     def where(self) -> dict[str, Any]:
         """Fields of execution and storage, as arguments of `run`."""
         return {"workers": self.workers, "backend": self.backend, "store": self.store, "progress": self.progress}
+
+    def estimate(self) -> Estimate:
+        """Predict the processor time of all runs from a few short ones.
+
+        Returns
+        -------
+        Estimate
+            Processor time, wall time and the factor within which the processor time is expected; as text, one sentence.
+
+        Raises
+        ------
+        CaseError
+            If a field is not valid for the case.
+
+        Notes
+        -----
+        Impact dampers: eight blocks of variants are timed. Particle dampers: the variants with the fewest and with the most
+        particles are timed for up to a second after their beds have settled, and the steps of the others are counted. If the
+        first and the last variant take less than 5 s together, they run as a whole. Otherwise runs that may continue until
+        their motion is steady are taken to last for the geometric mean of their shortest and longest length. Results that a
+        store has already are not subtracted. A design is predicted from runs of up to 16 of its trials.
+        """
+        self.validate()
+        return self.predict()
+
+    def predict(self) -> Estimate:
+        """Return the estimate of a valid study, see `estimate`."""
+        return estimate_works(self.works, backend=self.backend, workers=self.workers)
+
+    @property
+    def works(self) -> Sequence[Work]:
+        """Works that the study runs."""
+        return (self.work,)
+
+    @property
+    def work(self) -> Work:
+        """Only work of the study."""
+        raise NotImplementedError
 
     def run_work(self, work: Work) -> xr.Dataset:
         """Run work with the backend and store of the study."""

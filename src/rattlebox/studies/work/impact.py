@@ -137,6 +137,10 @@ class ImpactEngine:
         """Return the reason why a variant cannot run: none, since invalid variants are refused before any runs."""
         return ""
 
+    def timed_case(self, number: int) -> Case | None:
+        """Return None: variants are timed in blocks; see `Engine.timed_case`."""
+        return None
+
     def variant(self, index: int) -> Case:
         """Return the case of a variant, with the duration of its run."""
         part, _, number = self._part_of(index)

@@ -179,6 +179,19 @@ class ParticleEngine:
         start = self.variants.skip if cycles is None else cycles[0] / _frequency(case)
         return Window.of(run, case, start, self.variants.observed)
 
+    def timed_case(self, number: int) -> Case | None:
+        """Return the case of a variant, or None if it cannot run; see `Engine.timed_case`."""
+        try:
+            return self.variant(number)
+        except RattleboxError:  # the variant gets the status "refused"
+            return None
+
+    @property
+    def longest(self) -> float:
+        """Largest length of a run that continues until its motion is steady, over its length without a continuation."""
+        cycles = self.variants.cycles
+        return 1 + self.extensions * cycles[1] / sum(cycles) if self.extensions and cycles else 1.0
+
     # ---- runs
 
     def run(

@@ -6,12 +6,15 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.core._core import Status
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
 
 Values = Mapping[str, NDArray[Any]]
 """Arrays by the name of the output, variants first."""
@@ -74,6 +77,9 @@ class Engine(Protocol):
 
     def describe(self) -> Mapping[str, Any]:
         """Return a description of the results of each variant, in JSON types; a store refuses work with another one."""
+
+    def timed_case(self, number: int) -> Case | None:
+        """Return the case of a variant whose first steps can be timed alone; None if variants are timed in blocks."""
 
     def run(self, numbers: range, *, threads: int, cancelled: Cancelled, reduction: Reduction | None) -> Values | None:
         """Return the outputs of some variants, ascending, and the values of a reduction; None if it was cancelled."""
