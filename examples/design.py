@@ -55,8 +55,8 @@ print(f"{float(fastest.added_mass):.2f} kg of ball settle the structure within {
 assert abs(float(fastest.settling_time) - 1.8) < 0.1
 
 # %%
-# How certain is an order? For the damping ratio over a range of amplitudes, every candidate keeps its curve with its interval. Two of these four
-# clearances differ by 20 um only, and the search says that they cannot be told apart.
+# How certain is an order? For the damping ratio over a range of amplitudes, every candidate keeps its curve with its
+# interval. Two of these four clearances differ by 20 um only, and the search says that they cannot be told apart.
 
 ranked = rb.design(
     case,
