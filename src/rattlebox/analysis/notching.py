@@ -11,9 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rattlebox.model.errors import Hint, at
-from rattlebox.model.harmonics import SineSweep
-from rattlebox.model.random_vibration import Random
-from rattlebox.model.recorded import Record
+from rattlebox.model.signals import Signal
 from rattlebox.model.space import unit_vector
 from rattlebox.model.units import parse, parse_density
 
@@ -31,6 +29,7 @@ BEND = 1e-4
 _HALVINGS = 16  # of an interval between frequencies
 _PASSES = 60  # halvings of an interval of the limit for an RMS force
 _UNITS = ("N", "m/s^2")
+_PAIRS = '[("5 Hz", "1 g"), ("100 Hz", "1 g")]'
 
 
 def apparent_mass(case: Case, frequencies: ArrayLike, direction: Any = None) -> xarray.DataArray:
@@ -141,7 +140,7 @@ class Notched:
 
 
 def notch(
-    profile: Random | SineSweep | Sequence[Any],
+    profile: Signal | Sequence[Any],
     structure: Any,
     *,
     force: float | str | None = None,
@@ -200,7 +199,8 @@ def notch(
     """
     import xarray
 
-    is_random = isinstance(profile, Random)
+    test = profile if isinstance(profile, Signal) else _SineTable(profile)
+    is_random = test.is_density
     limits = {"force": force, "force_density": force_density, "force_rms": force_rms}
     given = [name for name, value in limits.items() if value is not None]
     allowed = ["force_density", "force_rms"] if is_random else ["force"]
@@ -208,12 +208,11 @@ def notch(
         advice = 'force_density = "200 N^2/Hz" or force_rms = "300 N"' if is_random else 'force = "2 kN"'
         kind = "random vibration" if is_random else "a sine profile"
         raise Hint(f"{kind} needs one limit, {' or '.join(allowed)}, not {' and '.join(given) or 'none'}", advice)
-    signal = profile if isinstance(profile, (Random, SineSweep)) else None
-    if signal and signal.unit not in ("m/s^2", None):
-        raise Hint(f"the profile is in {signal.unit}, not an acceleration of the base", 'unit = "g"')
-    corners = profile.corners if isinstance(profile, Random) else _amplitudes(profile)
-    direction = signal.direction if signal else None
-    frequency, mass = _sampled_mass(structure, corners[[0, -1], 0], corners[:, 0], direction)
+    with at("profile"):
+        if test.unit not in ("m/s^2", None):
+            raise Hint(f"the profile is in {test.unit}, not an acceleration of the base", 'unit = "g"')
+        corners = test.levels
+    frequency, mass = _sampled_mass(structure, corners[[0, -1], 0], corners[:, 0], test.direction)
     power = 2 if is_random else 1
     before = _at(corners, frequency)
     gain = np.abs(mass) ** power
@@ -225,17 +224,7 @@ def notch(
     inside = after < before
     # Corners of the profile, and all points of the notches with their edges.
     kept = inside | np.append(inside[1:], False) | np.insert(inside[:-1], 0, False) | np.isin(frequency, corners[:, 0])
-    points = np.stack([frequency[kept], after[kept]], axis=1)
-    new: Any = [tuple(row) for row in points.tolist()]
-    if isinstance(profile, Random):
-        own = {"duration": profile.duration, "rate": profile.rate, "seed": profile.seed, "direction": profile.direction}
-        new = Random(psd=new, unit="m/s^2", **{name: value for name, value in own.items() if value is not None})
-    elif isinstance(profile, SineSweep):
-        times, values = profile.polyline()
-        values = values * _at(points, profile.frequency_at(times)) / profile.amplitude
-        inside = times >= 0
-        along = {"direction": direction} if direction else {}
-        new = Record(times=times[inside], values=values[inside], unit="m/s^2", **along)
+    new = test.with_levels(np.stack([frequency[kept], after[kept]], axis=1))
     level, pushed = ("(m/s^2)^2/Hz", "N^2/Hz") if is_random else ("m/s^2", "N")
     axis = {"frequency": ("frequency", frequency, {"units": "Hz", "long_name": "frequency"})}
     decibels = (20 if power == 1 else 10) * np.log10(after / before)
@@ -250,17 +239,24 @@ def notch(
     return Notched(new, xarray.Dataset(variables, axis, {"limit": limit}))
 
 
-def _amplitudes(profile: Any) -> FloatArray:
-    """Return the corners of a sine profile, (n, 2): frequency [Hz] and amplitude [m/s^2]."""
-    with at("profile"):
-        if isinstance(profile, SineSweep):
-            profile = sorted((f, profile.amplitude) for f in (profile.first_frequency, profile.last_frequency))
-        if isinstance(profile, str) or np.ndim(np.asarray(profile, dtype=object)) != 2 or np.shape(profile)[1] != 2:
-            raise Hint("a sine profile needs pairs of frequency and amplitude", '[("5 Hz", "1 g"), ("100 Hz", "1 g")]')
-        points = np.array([(parse(f, ("Hz",))[0], parse(a, ("m/s^2",))[0]) for f, a in profile])
-        if len(points) < 2 or np.any(points <= 0) or np.any(np.diff(points[:, 0]) <= 0):
-            raise Hint("frequencies must rise, and all numbers be above zero", '[("5 Hz", "1 g"), ("100 Hz", "1 g")]')
-    return points
+class _SineTable:
+    """A sine profile of pairs of frequency and amplitude, with what a signal says of its levels."""
+
+    is_density = False
+    unit = "m/s^2"
+    direction = None
+
+    def __init__(self, pairs: Any) -> None:
+        with at("profile"):
+            if isinstance(pairs, str) or np.ndim(np.asarray(pairs, dtype=object)) != 2 or np.shape(pairs)[1] != 2:
+                raise Hint("a sine profile needs pairs of frequency and amplitude", _PAIRS)
+            self.levels = np.array([(parse(f, ("Hz",))[0], parse(a, ("m/s^2",))[0]) for f, a in pairs])
+            if len(self.levels) < 2 or np.any(self.levels <= 0) or np.any(np.diff(self.levels[:, 0]) <= 0):
+                raise Hint("frequencies must rise, and all numbers be above zero", _PAIRS)
+
+    def with_levels(self, levels: FloatArray) -> list[tuple[float, float]]:
+        """Return the pairs of other levels."""
+        return [(frequency, amplitude) for frequency, amplitude in levels.tolist()]
 
 
 def _limit(name: str, value: Any) -> float:

@@ -17,6 +17,7 @@ from rattlebox._util.quantities import amount
 
 from .elementwise import Vector, power
 from .errors import Hint
+from .recorded import Record
 from .signals import Amplitude, Points, Polyline, Signal, Unit
 from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime
 
@@ -255,6 +256,20 @@ class SineSweep(Polyline):
         if linear:
             return (self.first_frequency + self.last_frequency) / 2 * self.length
         return (self.last_frequency - self.first_frequency) / (rate * math.log(2))
+
+    @property
+    def levels(self) -> NDArray[np.float64]:
+        """The amplitude at the lower and the higher end, (2, 2)."""
+        ends = sorted((self.first_frequency, self.last_frequency))
+        return np.array([(frequency, self.amplitude) for frequency in ends])
+
+    def with_levels(self, levels: NDArray[np.float64]) -> Record:
+        """Return the record of the sweep whose amplitude follows other levels, (n, 2)."""
+        times, values = self.polyline()
+        amplitude = np.exp(np.interp(np.log(self.frequency_at(times)), *np.log(levels).T))
+        values, sweeps = values * amplitude / self.amplitude, times >= 0
+        along = {"direction": self.direction} if self.direction else {}
+        return Record(times=times[sweeps], values=values[sweeps], unit=self.unit, **along)
 
     def frequency_at(self, time: ArrayLike) -> NDArray[np.float64]:
         """Return the frequency at the given times [Hz]; before and after the sweep, the first and the last one."""

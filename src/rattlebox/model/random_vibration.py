@@ -132,6 +132,7 @@ class Random(FileSignal):
     file_fields: ClassVar[tuple[str, ...]] = ("psd",)
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("psd", "file"),)
     spectra: ClassVar[tuple[str, ...]] = ("psd", "third_octaves")
+    is_density: ClassVar[bool] = True
     kind: Literal["random"] = "random"
     psd: Density
     duration: PositiveTime
@@ -243,6 +244,17 @@ class Random(FileSignal):
         if isinstance(self.psd, str):
             return np.array(LEVELS[self.psd]) * (1.0, STANDARD_GRAVITY**2)
         return np.array(self.psd)
+
+    @property
+    def levels(self) -> NDArray[np.float64]:
+        """The corners."""
+        return self.corners
+
+    def with_levels(self, levels: NDArray[np.float64]) -> Random:
+        """Return random vibration with another density, (n, 2), in SI units."""
+        own = {"duration": self.duration, "rate": self.rate, "seed": self.seed, "direction": self.direction}
+        given = {name: value for name, value in own.items() if value is not None}
+        return Random(psd=[tuple(row) for row in levels.tolist()], unit=self.unit, **given)
 
     @property
     def rms(self) -> float:

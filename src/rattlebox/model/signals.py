@@ -24,6 +24,7 @@ UNITS: tuple[Unit, ...] = ("N", "m/s^2", "m")
 UNIT_NAMES = {"N": "a force", "m/s^2": "an acceleration", "m": "a displacement"}
 
 
+_PROFILES = "a Random, a SineSweep, or pairs of frequency and amplitude"
 _EXAMPLES = {"N": "5 kN", "m/s^2": "9.81 m/s^2", "m": "1 mm"}
 
 
@@ -69,6 +70,8 @@ class Signal(Part):
     """Whether the signal is known at samples only, of which a step in time takes the mean."""
     spectra: ClassVar[tuple[str, ...]] = ()
     """Figures over frequency, methods of `Run.plot`, that suit a response to the signal."""
+    is_density: ClassVar[bool] = False
+    """Whether the levels of the profile are a power spectral density."""
     unit: Unit | None = None
     point: str | None = None
     direction: Direction | None = None
@@ -164,6 +167,15 @@ class Signal(Part):
 
         They have no discretisation error. The motion starts from rest; that of an unlimited harmonic has zero means.
         """
+
+    @property
+    def levels(self) -> NDArray[np.float64]:
+        """Levels of a test profile, (n, 2): frequency [Hz] and amplitude or density, straight in log-log scales."""
+        raise Hint(f"a signal of kind {self.kind!r} has no levels over frequency", _PROFILES)
+
+    def with_levels(self, levels: NDArray[np.float64]) -> Signal:
+        """Return the profile with other levels in the same unit, (n, 2)."""
+        raise Hint(f"a signal of kind {self.kind!r} has no levels over frequency", _PROFILES)
 
     @property
     def is_resolved(self) -> bool:

@@ -150,6 +150,7 @@ def test_a_force_below_the_limit_leaves_the_profile() -> None:
         (FLAT, {"force": "3 kg"}, "force"),
         (FLAT, {"force": "-3 N"}, "greater than zero"),
         ([("20 Hz", "1 g")], {"force": "3 N"}, "must rise"),
+        (rb.HalfSine(amplitude="3 g", duration="11 ms"), {"force": "3 N"}, "no levels over frequency"),
         ("sine", {"force": "3 N"}, "pairs of frequency and amplitude"),
         (rb.Random([(20, 1.0), (30, 1.0)], "1 s", unit="N"), {"force_rms": "3 N"}, "not an acceleration"),
         (rb.Random([(20, 1.0), (30, 1.0)], "1 s", unit="g"), {"force": "3 N"}, "random vibration needs one limit"),
