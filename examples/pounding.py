@@ -4,7 +4,7 @@
 For structural engineers with buildings side by side: forces and accelerations of a collision, and the gap that avoids it.
 
 A stiff building of three storeys and a soft one of five stand side by side. In an earthquake the roof of the lower one meets
-the third floor of the higher one. The figure shows both motions, and the largest force and acceleration over the gap.
+the third floor of the higher one. The figure shows both motions, and the largest force over the gap.
 
 :doc:`/how-to/stops` explains it.
 """
@@ -13,7 +13,6 @@ the third floor of the higher one. The figure shows both motions, and the larges
 
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 import rattlebox as rb
@@ -85,18 +84,21 @@ print(
     f"no collision from a gap of {1e3 * free:.0f} mm; acceleration up to {found.peak_acceleration.max() / alone:.1f} times"
 )
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3), layout="constrained")
-late = (run.arrays.time > 4) & (run.arrays.time < 9)
-for name, shift, colour in (("low roof", 0.0, "C0"), ("high 3", 20.0, "C1")):
-    x = run.arrays.displacement[late, run.arrays.points.index(name)]
-    left.plot(run.arrays.time[late], 1e3 * x + shift, colour, label=name)
-left.set(xlabel="Time (s)", ylabel="Surface (mm)")
-left.legend(loc="lower left")
-right.plot(1e3 * gaps, 1e-6 * found.peak_contact_force, "C3", label="force (MN)")
-right.plot(1e3 * gaps, found.peak_acceleration / 9.80665, "C0", label="acceleration (g)")
-right.set(xlabel="Gap (mm)", ylim=(0, None))
-right.legend()
-figure.savefig("pounding.png", dpi=150)
+with rb.plots.figure_style("page"):
+    figure = rb.plots.StyledFigure("page", 0.42)
+    left, right = figure.subplots(1, 2)
+    late = (run.arrays.time > 4) & (run.arrays.time < 9)
+    for name, shift, colour in zip(("low roof", "high 3"), (0.0, 20.0), rb.plots.SERIES_COLOURS, strict=False):
+        x = run.arrays.displacement[late, run.arrays.points.index(name)]
+        left.plot(run.arrays.time[late], 1e3 * x + shift, color=colour, label=name)
+    rb.plots.label(left, "x", "Time", "s")
+    rb.plots.label(left, "y", "Surface of the floor", "mm")
+    right.plot(1e3 * gaps, 1e-6 * found.peak_contact_force, marker="o", label="largest contact force")
+    right.set_ylim(bottom=0)
+    rb.plots.label(right, "x", "Gap", "mm")
+    rb.plots.label(right, "y", "Largest contact force", "MN")
+    rb.plots.legend_above(left)
+    figure.savefig("pounding.png")
 
 # %%
 # The force of each impact has an upper bound: that of two free bodies of the effective masses of both floors.
