@@ -65,7 +65,7 @@ class Dialect:
         return cell
 
     def parts(self, line: str) -> str:
-        """Return a line with two cells, real and imaginary part, in place of each complex number."""
+        """Return a line, or several, with two cells, real and imaginary part, in place of each complex number."""
         if not self.has_complex:
             return line
         mark = self.delimiter or " "
@@ -79,10 +79,10 @@ class Dialect:
             line,
         )
 
-    def plain(self, line: str) -> str:
-        """Return a line of numbers only, as `numpy.loadtxt` reads it."""
-        line = self.parts(line)
-        return line.translate(_PLAIN) if self.has_comma else line.translate(_EXPONENTS) if self.has_fortran else line
+    def plain(self, lines: str) -> str:
+        """Return lines of numbers only, as `numpy.loadtxt` reads them."""
+        lines = self.parts(lines)
+        return lines.translate(_PLAIN) if self.has_comma else lines.translate(_EXPONENTS) if self.has_fortran else lines
 
     def note(self) -> str:
         """Return a note on a reading that is an assumption; "" for others."""

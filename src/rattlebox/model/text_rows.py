@@ -165,7 +165,7 @@ def read_quickly(file: Path) -> tuple[list[Row], Array, list[Row], Dialect] | No
                 warnings.simplefilter("error", UserWarning)  # no data
                 rows = islice(lines, between)
                 below = np.loadtxt(
-                    rows if dialect.is_plain else map(dialect.plain, rows),
+                    rows if dialect.is_plain else _plain_rows(rows, dialect),
                     delimiter=dialect.delimiter,
                     comments=None,
                     quotechar='"' if dialect.quoted and dialect.delimiter else None,
@@ -177,6 +177,13 @@ def read_quickly(file: Path) -> tuple[list[Row], Array, list[Row], Dialect] | No
         return None
     is_data = head and last and not last[0].is_comment
     return (head, below, last, dialect) if is_data and np.isfinite(below).all() else None
+
+
+def _plain_rows(lines: Iterator[str], dialect: Dialect) -> Iterator[str]:
+    """Yield lines of numbers as `numpy.loadtxt` reads them."""
+    # Thousands of lines are rewritten at once: one by one, a file with decimal commas takes three times as long.
+    while block := "".join(islice(lines, 4096)):
+        yield from dialect.plain(block).removesuffix("\n").split("\n")
 
 
 def _open(file: Path) -> BinaryIO:
