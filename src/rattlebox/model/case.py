@@ -243,7 +243,7 @@ class Case(Part):
         if self.impact_dampers:
             raise Hint(
                 "impact dampers and particle dampers cannot be in one case",
-                "a ParticleDamper with one particle in place of each impact damper",
+                'damper.in_space("x") in place of each ImpactDamper, a ball in a box of the 3-D engine',
                 ["dampers"],
             )
         if not isinstance(self.method, Dem):

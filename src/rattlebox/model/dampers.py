@@ -10,7 +10,16 @@ from operator import add
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Field, GetJsonSchemaHandler, Tag, WithJsonSchema, model_validator
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    Tag,
+    TypeAdapter,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
@@ -21,16 +30,21 @@ from rattlebox._util.quantities import amount
 
 from .also_accepts import AlsoAccepts
 from .base import Part
+from .cavities import Box
 from .contacts import AnyContact
 from .damper_base import Damper
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of
 from .materials import AnyMaterial, AnyWall
+from .packing import Positions
 from .pairs import Body, Pair
-from .particle_damper import MAX_DAMPERS
+from .particle_damper import MAX_DAMPERS, ParticleDamper
+from .particles import Particles
 from .signals import as_several
+from .space import Accelerations, unit_vector
 from .units import (
     SI,
+    STANDARD_GRAVITY,
     Acceleration,
     NotNegativeLength,
     PositiveLength,
@@ -41,6 +55,8 @@ from .units import (
     text,
 )
 
+_PLAY = 1e-3
+"""Room for a ball across its line, over its diameter, in the 3-D engine."""
 _GOLDEN = (math.sqrt(5) - 1) / 2
 """The fractional parts of its multiples are evenly spread, for any number of them."""
 
@@ -362,6 +378,78 @@ class ImpactDamper(Damper):
             name = f"{self.name}{index + 1}" if self.name else ""
             dampers.append(self.model_copy(update={"number": 1, "name": name, "start": start}))
         return tuple(dampers)
+
+    def in_space(self, direction: Any = "x", *, gravity: Any = (0.0, 0.0, -STANDARD_GRAVITY)) -> ParticleDamper:
+        r"""Return the ball in a box of the 3-D engine, for a case that has particle dampers, too.
+
+        The ball moves along the line in a box of its size, without friction, so that a floor below it does not act along
+        the line.
+
+        Parameters
+        ----------
+        direction
+            Direction of the line, "x", "y", "z" or three numbers along one of these axes.
+        gravity
+            Gravity of the other dampers of the case [m/s^2]; its component along the line must be that of this damper.
+
+        Returns
+        -------
+        ParticleDamper
+            A box with one ball, with name, point, start and velocity of this damper.
+
+        Raises
+        ------
+        CaseError
+            If the damper has several balls, a striker, or a number of dampers; if the direction is not along an axis; or if
+            gravity along the line differs.
+
+        Notes
+        -----
+        The dashpots of the 3-D engine belong to rigid walls. Those of the 1-D engine are adjusted to the effective mass M
+        of the structure, so that its contacts have their restitution against it. Here the damping ratio of a contact of a ball
+        of mass m is larger by the factor :math:`\sqrt{1 + m / M}`.
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> ball = rb.Sphere(diameter="20 mm", material="steel")
+        >>> damper = rb.ImpactDamper(ball=ball, gap="2 mm", contact=rb.Tsuji(restitution=0.6))
+        >>> box = damper.in_space("x")
+        >>> box.cavity.size
+        (0.024, 0.02002, 0.02002)
+        """
+        axis, down = np.asarray(unit_vector(direction)), np.asarray(TypeAdapter(Accelerations).validate_python(gravity))
+        if len(self.balls) > 1 or self.number > 1 or isinstance(self.balls[0], Striker):
+            raise Hint(f"only one ball can move in space, not {self.words()}", "an ImpactDamper with one Sphere")
+        if np.count_nonzero(axis) > 1:
+            raise Hint(
+                f"the direction {axis.tolist()} is not along an axis of the box", '"x", "y" or "z"', ["direction"]
+            )
+        along = float(axis @ down)
+        if abs(along - self.gravity) > 1e-3 * STANDARD_GRAVITY:
+            raise Hint(
+                f"gravity along the line is {self.gravity:.6g} m/s^2 in the damper and {along:.6g} m/s^2 in the case",
+                f'gravity = "{along:.6g} m/s^2" of the ImpactDamper',
+                ["gravity"],
+            )
+        ball, line = self.balls[0], np.abs(axis)
+        size = 2 * ball.half * (1 + _PLAY * (1 - line)) + self.clearance * line
+        place = float(self.positions0[0]) * axis + 0.5 * (size - 2 * ball.half) * np.sign(down) * (1 - line)
+        density = ball.weight / (4 / 3 * math.pi * ball.half**3)
+        return ParticleDamper(
+            name=self.name,
+            particles=Particles(
+                material=ball.material.model_copy(update={"density": density}), radius=ball.half, count=1
+            ),
+            cavity=Box(size=tuple(size.tolist())),
+            wall=self.wall,
+            contact=self.contact,
+            gravity=tuple(down.tolist()),
+            point=self.point,
+            direction=tuple(axis.tolist()),
+            packing=Positions(positions=[tuple(place.tolist())]),
+            velocity=tuple((float(self.velocities0[0]) * axis).tolist()),
+        )
 
     def alike(self) -> ImpactDamper:
         """Return the damper without its start, in which identical dampers differ."""
