@@ -406,7 +406,7 @@ class ImpactDamper(Damper):
         Notes
         -----
         The dashpots of the 3-D engine belong to rigid walls. Those of the 1-D engine are adjusted to the effective mass M
-        of the structure, so that its contacts have their restitution against it. Here the damping ratio of a contact of a ball
+        of the structure, so that contacts have their restitution against it. Here the damping ratio of a contact of a ball
         of mass m is larger by the factor :math:`\sqrt{1 + m / M}`.
 
         Examples
