@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support.command import rattlebox
@@ -226,8 +227,8 @@ def test_results_are_written_beside_files_that_appear(monkeypatch: pytest.Monkey
     other.save("other.nc")
     simulate = command_run._simulate
 
-    def put_files(case: rb.Case, folder: object) -> rb.Run:
-        run = simulate(case, folder)
+    def put_files(*arguments: Any) -> rb.Run:
+        run = simulate(*arguments)
         shutil.copy("other.nc", "out/run.nc")
         for name in ("motion.csv", "energy.png", "run.checkpoint"):
             Path("out", name).write_text("mine")
@@ -251,8 +252,8 @@ def test_replacement_spares_files_that_appear(monkeypatch: pytest.MonkeyPatch) -
     Path("case.toml").write_text(CASE.replace("0.3 mm", "0.6 mm"))
     simulate = command_run._simulate
 
-    def put_files(case: rb.Case, folder: object) -> rb.Run:
-        run = simulate(case, folder)
+    def put_files(*arguments: Any) -> rb.Run:
+        run = simulate(*arguments)
         Path("out/run.nc").write_text("mine")
         Path("out/motion.csv").write_text("mine")
         return run

@@ -163,7 +163,7 @@ def test_signatures_of_parts_have_the_names_of_calls():
     """The signature of a part has the accepted names, also the singular ones, and quantities accept text."""
     parameters = inspect.signature(rb.ImpactDamper).parameters
     assert str(parameters["gap"]) == "gap: number or text with unit | None = None"
-    assert str(parameters["ball"]) == "ball: Sphere | None = None" and "kind" not in parameters
+    assert str(parameters["ball"]) == "ball: Sphere | Striker | None = None" and "kind" not in parameters
     length = "number or text with unit"
     assert str(inspect.signature(rb.Box)) == f"(*, size: tuple[{length}, {length}, {length}])"
     assert str(parameters["start"]) == "start: float | str | Sequence[float | str] = 0.0"
@@ -199,7 +199,7 @@ def test_declared_attributes_exist():
         for group in groups(engine).values():
             holder = RunArrays if group.along == "time" else Table
             declared[holder] |= {v.name for v in variables(engine, group.name) if not v.derived}
-    others = {"engine", "time", "points", "balls", "dampers", "loads", "impacts", "particles", "group"}
+    others = {"engine", "time", "points", "balls", "dampers", "loads", "impacts", "particles", "stops", "group"}
     for holder, names in declared.items():
         assert set(holder.__annotations__) - others == names - others
     tree = ast.parse(Path(figures.__file__).read_text(encoding="utf-8"))

@@ -22,16 +22,19 @@ def _exponent(value: float, significant: int) -> int:
     return int(f"{value:.{significant - 1}e}".partition("e")[2])
 
 
-def prefix(value: float, least: float = 1.0, powers: tuple[int, int] = (-12, 12)) -> tuple[float, str]:
-    """Return the SI prefix in which `value` is at least `least` and less than 1000 `least`, between two powers of ten."""
+def prefix(value: float, powers: tuple[int, int] = (-12, 12)) -> tuple[float, str]:
+    """Return the SI prefix in which `value` is at least 1 and less than 1000, between two powers of ten."""
     if value == 0.0 or not math.isfinite(value):
         return 1.0, ""
-    power = min(max(3 * (_exponent(value / least, 4) // 3), powers[0]), powers[1])
+    power = min(max(3 * (_exponent(value, 4) // 3), powers[0]), powers[1])
     return 10.0**power, PREFIXES[power]
 
 
 _POWERS = {"m": (-12, 3), "s": (-12, 0), "m/s": (-12, 0), "Hz": (0, 9)}
 """Lowest and highest power of ten of the prefix of a unit: nobody writes mHz, ks, km/s or km/s^2."""
+_MILLI = {"m": range(-4, 0), "s": range(-4, -1)}
+"""Powers of ten of the first digit of lengths and times in mm and ms: 0.4 mm, 397 mm and 0.5 s are easier to read than
+400 µm, 0.397 m and 500 ms."""
 _POWERS_OF_OTHERS = (-12, 12)
 _SYMBOL = re.compile(r"(?:m|s|N|J|W|Pa|Hz)(?![\w^])")
 """First symbol of a unit that can have a prefix; of m^2 and (m/s^2)^2/Hz a prefix would be squared, too."""
@@ -40,8 +43,7 @@ _SYMBOL = re.compile(r"(?:m|s|N|J|W|Pa|Hz)(?![\w^])")
 def in_unit(value: float, unit: str) -> tuple[float, str]:
     """Return the divisor and the prefixed unit for a number: the only place that decides on prefixes.
 
-    Masses are written in grams, kilograms and tonnes: kkg, Mg and kt are not used. Lengths and times have numbers from 0.1
-    on, since 0.4 mm and 0.5 s are easier to read than 400 µm and 500 ms.
+    Masses are written in grams, kilograms and tonnes: kkg, Mg and kt are not used.
     """
     if unit == "kg":
         power = _exponent(value, 4) if math.isfinite(value) and value != 0.0 else 0
@@ -51,7 +53,13 @@ def in_unit(value: float, unit: str) -> tuple[float, str]:
         return 1e-3 * scale, name + "g"
     if not _SYMBOL.match(unit) or unit.startswith("m/s^2"):
         return 1.0, unit
-    scale, name = prefix(value, 0.1 if unit in ("m", "s") else 1.0, _POWERS.get(unit, _POWERS_OF_OTHERS))
+    if unit in _MILLI and math.isfinite(value) and value != 0.0:
+        first = _exponent(value, 4)
+        if first in _MILLI[unit]:
+            return 1e-3, f"m{unit}"
+        if unit == "s" and first == -1:
+            return 1.0, unit
+    scale, name = prefix(value, _POWERS.get(unit, _POWERS_OF_OTHERS))
     return scale, name + unit
 
 

@@ -195,7 +195,7 @@ def notch(
     >>> import rattlebox as rb
     >>> box = rb.Case(structure=rb.SDOF(mass="2 kg", frequency="100 Hz", damping_ratio=0.05), duration="1 s")
     >>> notch([("20 Hz", "1 g"), ("200 Hz", "1 g")], box, force="50 N")
-    <Notched: 11.9 dB at 99.82 Hz, from 78.82 to 117.2 Hz>
+    <Notched: 11.9 dB at 99.74 Hz, from 78.82 to 117.2 Hz>
     """
     import xarray
 

@@ -140,7 +140,7 @@ class Striker(Sphere):
     >>> import rattlebox as rb
     >>> pads = rb.Linear(contact_time="10 ms", restitution=0.5)
     >>> rb.ImpactDamper(ball=rb.Striker(mass="12 t"), gap="0.2 m", contact=pads).words()
-    'a striker of 12 t with 0.4 m of clearance'
+    'a striker of 12 t with 400 mm of clearance'
     """
 
     kind: Literal["striker"] = "striker"

@@ -123,7 +123,7 @@ def check(case: rb.Case, columns: Mapping[str, Any]) -> _core.Problem:
 
 def without_samples(problem: _core.Problem) -> _core.Problem:
     """Return a packed case without sample times, which a batch does not have."""
-    settings = problem.settings.replace(contact_samples=0)
+    settings = problem.settings.replace(contact_samples=0, keep_end=False)
     return problem.replace(settings=settings, sample_times=np.zeros(0))
 
 

@@ -117,7 +117,7 @@ def test_a_ball_that_nearly_touches_is_noted_with_its_distance() -> None:
     run = rb.simulate(rb.Case(structure=structure, damper=damper, duration="1 s", output=rb.Output(rate="2 kHz")))
     (note,) = [note for note in run.notes if "touched anything" in note]
     nearest = 10e-3 - 0.3 / (10 * np.pi)
-    assert f"smallest distance between surfaces {1e6 * nearest:.0f} µm, gap 10.0 mm" in note
+    assert f"smallest distance between surfaces {1e3 * nearest:.3f} mm, gap 10.0 mm" in note
 
 
 @pytest.mark.parametrize(("last", "noted"), [("50 m/s", 0), ("0.5 m/s", 1)])

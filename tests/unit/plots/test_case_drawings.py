@@ -77,7 +77,7 @@ CASES: dict[str, tuple[rb.Case, tuple[str, ...]]] = {
             BALL.model_copy(update={"point": "cavity", "name": "inner"}),
             loads=FORCE.model_copy(update={"point": "tip"}),
         ),
-        ("0.2 m", "50 g", "cavity", "tip", "damper and inner", "section"),
+        ("200 mm", "50 g", "cavity", "tip", "damper and inner", "section"),
     ),
     "pinned beam": (
         on(
@@ -95,7 +95,7 @@ CASES: dict[str, tuple[rb.Case, tuple[str, ...]]] = {
             damper(rb.Cylinder(diameter="16 mm", length="12 mm"), point="a", direction="z"),
             loads=FORCE.model_copy(update={"point": "middle"}),
         ),
-        ("0.6 m", "0.4 m", "3 mm thick", "cylinder, 16 mm in diameter, 12 mm long", "20 glass balls of 4 mm"),
+        ("600 mm", "400 mm", "3 mm thick", "cylinder, 16 mm in diameter, 12 mm long", "20 glass balls of 4 mm"),
     ),
     "building": (
         on(

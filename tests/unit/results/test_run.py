@@ -147,8 +147,16 @@ def test_unknown_figures_are_refused_with_the_available_ones(run: Run) -> None:
     """A figure that the run does not have is refused with the names of the available ones."""
     beads = Run(RunArrays(time=TIME, engine="dem"))
     for plots, name, expected in (
-        (beads.plot, "impacts", "case, energy, motion, particles, phase_portrait, responses"),
-        (run.plot, "particles", "case, energy, impacts, motion, phase_portrait, responses"),
+        (
+            beads.plot,
+            "impacts",
+            "case, energy, motion, particles, phase_portrait, psd, responses, shock_spectrum, third_octaves",
+        ),
+        (
+            run.plot,
+            "particles",
+            "case, energy, impacts, motion, phase_portrait, psd, responses, shock_spectrum, third_octaves",
+        ),
     ):
         with pytest.raises(AttributeError, match=f"^this run has no figure '{name}'; it has {expected}$"):
             getattr(plots, name)()

@@ -10,7 +10,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox import analysis
-from rattlebox._util.quantities import digits, prefix, quantity
+from rattlebox._util.quantities import digits, quantity
 from rattlebox.results import Run, RunArrays, compare
 
 
@@ -53,10 +53,12 @@ def test_quantities(value: float, unit: str, text: str) -> None:
     assert quantity(value, unit) == text
 
 
-def test_prefix_of_a_chosen_least() -> None:
-    """If numbers from 0.1 are allowed, 0.4 mm is written in millimetres."""
-    assert prefix(4e-4, 0.1) == (1e-3, "m")
-    assert prefix(4e-4) == (1e-6, "µ")
+def test_lengths_and_times_that_engineers_write() -> None:
+    """Lengths from 0.1 mm to 1 m are in mm, times from 0.1 ms to 0.1 s in ms; smaller ones have numbers from 1 on."""
+    lengths = {4e-5: "40.00 µm", 4e-4: "0.4000 mm", 0.397: "397.0 mm", 0.999996: "1.000 m", 1.2e-7: "120.0 nm"}
+    times = {1.5e-7: "150.0 ns", 2e-4: "0.2000 ms", 0.05: "50.00 ms", 0.0999996: "0.1000 s", 0.5: "0.5000 s"}
+    assert [quantity(value, "m") for value in lengths] == list(lengths.values())
+    assert [quantity(value, "s") for value in times] == list(times.values())
     assert digits(2.0, 2) == "2.0"
 
 
