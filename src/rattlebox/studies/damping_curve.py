@@ -171,9 +171,24 @@ def damping_curve(
     >>> bool((result.damping_ratio > result.bare).any())
     True
     """
+    run = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
+    return curve_from(run, case, amplitudes, way=way, mode=mode, point=point, packings=packings, cycles=cycles)
+
+
+def curve_from(
+    run: Evaluate,
+    case: Case,
+    amplitudes: Sequence[Any] | Spaced,
+    *,
+    way: Way,
+    mode: int,
+    point: str | None,
+    packings: int,
+    cycles: tuple[int, int] | None,
+) -> xarray.Dataset:
+    """Return the damping curve of a case; `run` simulates cases as `evaluate_cases` does."""
     levels, about, cases = _prepared(case, amplitudes, way, mode, point, packings)
     remarks = Remarks()
-    run = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
     steady = None
     if way == "shaking":
         ratios, steady = _from_shaking(cases, about, levels, cycles, run, remarks)

@@ -19,7 +19,7 @@ from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Limit, Picture, Table
-from rattlebox.studies.design.evidence import CURVE, LEVEL, curves_of
+from rattlebox.studies.design.evidence import CURVE, DROPPED, LEVEL, curves_of
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.run.estimate import duration
 from rattlebox.studies.work.measures import INTERVAL, MEASURES
@@ -80,6 +80,9 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
         )
     elif robust:
         yield f"Values are the {robust} over all levels, starts and amplitudes of a trial."
+    if DROPPED in study and (count := int(study[DROPPED].sum())):
+        verb = "was" if count == 1 else "were"
+        yield f"{counted(count, 'trial')} {verb} dropped early, with fewer random initial states: certainly not the best."
     if order := str(study.attrs.get("order", "")):
         yield f"{order[0].upper()}{order[1:].partition('; try: ')[0]}."
 
@@ -202,7 +205,15 @@ def _call(study: xr.Dataset) -> Call | None:
     arguments = {"parameters": space, "objective": objective, "trials": int(study.trial.size)}
     arguments |= words.option_of(study, "curve") or {}
     arguments |= {name: value for name, value in (words.option_of(study, "options") or {}).items() if value}
-    for name, usual in (("packings", 1), ("robust", "worst"), ("max_added_mass", None), ("seed", 0)):
+    usual_values = {
+        "packings": 1,
+        "drop": False,
+        "precision": None,
+        "robust": "worst",
+        "max_added_mass": None,
+        "seed": 0,
+    }
+    for name, usual in usual_values.items():
         value = words.option_of(study, name)
         if value not in (None, usual) or name == "packings":
             arguments[name] = value

@@ -25,6 +25,8 @@ MAY_BE_BEST = "may_be_best"
 """Variable of the trials that are on the front or cannot be excluded from it within their intervals."""
 BARE_DECIDES = "bare_decides"
 """Variable of the trials whose damper adds nothing at the amplitude that decides."""
+DROPPED = "dropped"
+"""Variable of the trials that ended early because they are certainly worse than another one."""
 LEVEL = "level"
 """Dimension of the levels of damping curves."""
 
@@ -34,14 +36,23 @@ _LISTED = 8
 """Largest number of trials that a note names."""
 
 
+def certainly_worse(low: Vector, high: Vector) -> NDArray[np.bool_]:
+    """Return which trials are dominated by which rivals even within their intervals, (trials, rivals).
+
+    `low`: optimistic limits of the trials, (trials, objectives). `high`: pessimistic limits of the rivals, (rivals,
+    objectives). Both are of objectives to minimise.
+    """
+    return np.asarray((high <= low[:, None]).all(axis=2) & (high < low[:, None]).any(axis=2))
+
+
 def with_curves(
-    found: xr.Dataset, ratios: Vector, half: Vector, bare: Vector, amplitudes: Any, levels: list[str]
+    found: xr.Dataset, ratios: Vector, half: Vector, bare: Vector, amplitudes: Any, levels: list[str], ran: list[int]
 ) -> xr.Dataset:
     """Return a result with the damping curves of its trials.
 
     `ratios`: damping ratios, (trials, levels, amplitudes, packings). `half`: half of the widths of the intervals of their
     means, (trials, levels, amplitudes). `bare`: ratios of the structures alone, (trials, levels). `levels`: texts of the
-    levels; only one without levels.
+    levels; only one without levels. `ran`: number of packings of each trial that ran.
     """
     attrs = {"units": "1", "long_name": "damping ratio"}
     over: tuple[str, ...] = ("trial", LEVEL, "amplitude")
@@ -50,7 +61,8 @@ def with_curves(
     else:
         found = found.assign_coords({LEVEL: levels})
     found = found.assign_coords(amplitude=("amplitude", np.array(amplitudes), {"units": "m", "long_name": "amplitude"}))
-    found[CURVE] = over, ratios.mean(axis=-1), attrs
+    means = [of_one[..., :count].mean(axis=-1) for of_one, count in zip(ratios, ran, strict=True)]
+    found[CURVE] = over, np.reshape(means, half.shape), attrs
     width = attrs | {"long_name": "half of the 95 % interval, damping ratio"}
     found[CURVE + INTERVAL] = over, half, width
     if "packing" in found.dims:
@@ -87,8 +99,10 @@ def with_order(found: xr.Dataset, signs: list[float]) -> xr.Dataset:
     half = np.stack([_half(found, name) for name in names], axis=1)
     usable, front = found.feasible.values, found.front.values
     low, high = values - half, values[front] + half[front]
-    excluded = ((high <= low[:, None]).all(axis=2) & (high < low[:, None]).any(axis=2)).any(axis=1)
+    excluded: NDArray[np.bool_] = np.array(certainly_worse(low, high).any(axis=1))
     excluded[front] = False
+    if DROPPED in found:  # each is certainly worse than a trial that may since have left the front
+        excluded |= found[DROPPED].values
     about = {"long_name": "on the front, or not certainly worse"}
     found[MAY_BE_BEST] = "trial", usable & ~excluded, about
     return found

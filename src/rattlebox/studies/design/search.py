@@ -8,7 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -24,14 +24,14 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.prepare.time_step import WARNINGS
-from rattlebox.studies.damping_curve import OTHER_MOTION, Way, damping_curve, damping_curve_cases
-from rattlebox.studies.design.evidence import deciding_note, order_note, with_curves, with_order
+from rattlebox.studies.damping_curve import OTHER_MOTION, Evaluate, Way, curve_from, damping_curve_cases
+from rattlebox.studies.design.evidence import DROPPED, deciding_note, order_note, with_curves, with_order
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
-from rattlebox.studies.grid.axes import ParsedAxes, materials_in, read_axes
+from rattlebox.studies.grid.axes import ParsedAxes, materials_in, packing_axis, parse_axes, read_axes
 from rattlebox.studies.grid.grid import Grid, Parameter
 from rattlebox.studies.run.backends import workers_of
 from rattlebox.studies.run.estimate import TRIAL, Estimate, RunGroup, time_of_particle_runs
-from rattlebox.studies.run.runner import run_work
+from rattlebox.studies.run.runner import evaluate_cases, run_work
 from rattlebox.studies.run.study import known_measures
 from rattlebox.studies.work.measures import INTERVAL, about, check_names
 from rattlebox.studies.work.particles import ParticleEngine, engine_of
@@ -51,6 +51,11 @@ PACKING = "packing"
 
 FLAGS = {**WARNINGS, OTHER_MOTION: "decays with another frequency than that of the mode"}
 """Validity limits that a run of a trial can exceed: name and description."""
+
+FIRST = 3
+"""Number of packings after which a trial can be dropped."""
+_GROWTH = 1.5
+"""Factor by which the number of packings grows from one decision about a trial to the next one."""
 
 MOST_COMBINATIONS = 100
 """Largest number of combinations of choices that are all tried by default, and the default number of trials."""
@@ -88,11 +93,57 @@ class Evaluation:
 
     values: Vector  # Objectives that need runs, and half of the widths of their 95 % intervals, (objectives,)
     intervals: Vector
-    packings: Vector  # Their values for each packing, (objectives, P)
+    packings: Vector  # Their values for each packing that ran, (objectives, P)
     missing: float = 0.0
     warnings: int = 0
     reason: str = ""
     curves: Curves | None = None
+    dropped: bool = False
+
+    def widened(self, scatter: Vector) -> Evaluation:
+        """Return the result with intervals of its packings for at least a given scatter, (objectives,)."""
+        count = np.isfinite(self.packings).sum(axis=1)
+        return replace(self, intervals=np.fmax(self.intervals, scatter / np.sqrt(count)))
+
+
+def pooled(found: Sequence[Evaluation]) -> Vector:
+    """Return the scatter of the packings of some trials with which their intervals are widened, (objectives,).
+
+    It is the root mean square of their standard deviations, times the quantile of Student's t. A few packings of one trial
+    may agree by chance, as where each has one of two steady motions, and their own interval is then too narrow.
+    """
+    variances = np.mean([np.nanvar(each.packings, axis=1, ddof=1) for each in found], axis=0)
+    freedom = sum(np.isfinite(each.packings).sum(axis=1) - 1 for each in found)
+    return np.asarray(stdtrit(freedom, 0.975) * np.sqrt(variances))
+
+
+@dataclass
+class Candidate:
+    """A design and the results of its packings so far."""
+
+    case: Case | None  # None if it is refused
+    mass: float = math.nan
+    refused: str = ""
+    ran: int = 0  # Number of packings in the tables
+    tables: dict[str, tuple[Vector, Vector | None]] = field(default_factory=dict)
+    missing: float = 0.0
+    warnings: int = 0
+    reason: str = ""
+    rows: dict[str, Any] = field(default_factory=dict)  # Results of the runs of damping curves, by case
+    seconds: Vector = field(default_factory=lambda: np.zeros(2))  # Wall and processor time of its runs [s]
+
+    def remember(self, evaluate: Evaluate) -> Evaluate:
+        """Return a function like `evaluate_cases` that runs each case once."""
+
+        def run(cases: Sequence[Case], function: Any, **options: Any) -> list[Any]:
+            texts = [case.to_toml() for case in cases]
+            new = [k for k, text in enumerate(texts) if text not in self.rows]
+            if new:
+                found = evaluate([cases[k] for k in new], function, **options)
+                self.rows |= {texts[k]: row for k, row in zip(new, found, strict=True)}
+            return [self.rows[text] for text in texts]
+
+        return run
 
 
 @dataclass(frozen=True)
@@ -109,6 +160,8 @@ class DesignSearch:
     limit: float | None  # Largest mass of the dampers [kg]
     curve: Curve | None
     options: dict[str, Any]
+    drop: bool = False
+    precision: float | None = None  # Half width over mean below which no packings are added
     where: dict[str, Any] = field(default_factory=dict)
 
     # ---- description and checks
@@ -138,6 +191,14 @@ class DesignSearch:
         axes = [each for each in (self.levels, self.packings) if each is not None]
         return read_axes(case, axes or {"duration": [case.duration]}, source="levels")
 
+    @property
+    def stages(self) -> list[int]:
+        """Numbers of packings after each of which a decision about a trial is taken; the last one is all."""
+        stages = [FIRST if self.drop or self.precision is not None else self.count]
+        while stages[-1] < self.count:
+            stages.append(min(self.count, math.ceil(_GROWTH * stages[-1])))
+        return stages
+
     def work_of(self, case: Case) -> Work:
         """Return the work that measures the runs of a trial."""
         measures = [each.measure for each in self.measured]
@@ -160,7 +221,7 @@ class DesignSearch:
 
     @property
     def curve_options(self) -> dict[str, Any]:
-        """Arguments of `damping_curve`."""
+        """Arguments of `damping_curve` with all packings."""
         return {**vars(instance(self.curve, Curve)), "point": self.options["point"], "packings": self.count}
 
     def curve_runs(self, case: Case) -> list[Case]:
@@ -206,6 +267,8 @@ class DesignSearch:
             each.name: fingerprint(each.measure) for each in self.objectives if not isinstance(each.measure, str)
         }
         curve = {} if self.curve is None else {"curve": vars(self.curve)}
+        early: dict[str, Any] = {"drop": True} if self.drop else {}
+        early |= {} if self.precision is None else {"precision": self.precision}
         return {
             **describe_case(self.case, self.grid.columns),
             "parameters": {path: about for each in self.variables for path, about in each.describe().items()},
@@ -214,6 +277,7 @@ class DesignSearch:
             "trial": self.grid.describe(),
             **curve,
             "packings": self.count,
+            **early,
             "robust": self.robust,
             "max_added_mass": self.limit,
             "options": self.options,
@@ -322,52 +386,88 @@ class DesignSearch:
 
     # ---- trials
 
-    def evaluate(self, values: Values) -> tuple[float, Evaluation]:
-        """Return the mass of a design [kg], NaN if it is not valid, and the result of its runs."""
+    def candidate(self, values: Values) -> Candidate:
+        """Return a design before its runs, with its mass [kg]."""
         try:
             case = self.case_of(values)
         except CaseError as error:
-            return math.nan, self._nothing(str(error))
+            return Candidate(None, refused=str(error))
         mass = added_mass(case)
         if self.is_too_heavy(case):
-            return mass, self._nothing(f"heavier than {self.limit:g} kg")
+            return Candidate(None, mass, f"heavier than {self.limit:g} kg")
+        return Candidate(case, mass)
+
+    def evaluate(self, candidate: Candidate, count: int) -> Evaluation:
+        """Return the result of a design from its first packings; only those that it lacks run."""
+        if candidate.case is None:
+            return self._nothing(candidate.refused)
+        before = time.monotonic(), time.process_time()
         try:
-            return mass, self._run(case)
+            return self._run(candidate, candidate.case, count)
         except RattleboxError as error:
-            return mass, self._nothing(str(error))
+            return self._nothing(str(error))
+        finally:
+            candidate.seconds += time.monotonic() - before[0], time.process_time() - before[1]
+
+    def objective_values(self, mass: float, found: Evaluation) -> tuple[Vector, Vector]:
+        """Return all objectives of a design, and half of the widths of their intervals, zero where it has none."""
+        values = dict(zip((each.name for each in self.computed), found.values.tolist(), strict=True))
+        halves = dict(zip(values, np.nan_to_num(found.intervals).tolist(), strict=True))
+        names = [each.name for each in self.objectives]
+        values[ADDED_MASS] = mass
+        return np.array([values[name] for name in names]), np.array([halves.get(name, 0.0) for name in names])
+
+    def is_precise(self, found: Evaluation) -> bool:
+        """Return whether all intervals are as narrow as asked."""
+        if self.precision is None:
+            return False
+        return bool(np.all(found.intervals <= self.precision * np.abs(found.values)))
 
     def _nothing(self, reason: str, missing: float = 1.0, warnings: int = 0) -> Evaluation:
         none = np.full(len(self.computed), np.nan)
         return Evaluation(none, none, np.full((none.size, self.count), np.nan), missing, warnings, reason)
 
-    def _run(self, case: Case) -> Evaluation:
-        """Run a design."""
-        tables: dict[str, tuple[Vector, Vector | None]] = {}
-        missing, warnings, reason = [], 0, ""
+    def _run(self, candidate: Candidate, case: Case, count: int) -> Evaluation:
+        """Run a design with the packings that it lacks."""
+        if self.measured and count > candidate.ran:
+            self._measure(candidate, case, count)
+        tables, missing, warnings = dict(candidate.tables), candidate.missing, candidate.warnings
         curves: Curves | None = None
-        if self.measured:
-            work = self.work_of(case)
-            runs = run_work(work, **self.where)
-            reason = work.first_refused(runs["status"].values)
-            failed = runs["status"].values != 0
-            if "warnings" in runs:
-                warnings |= int(np.bitwise_or.reduce(runs["warnings"].values, axis=None))
-            for each in self.measured:
-                failed |= ~np.isfinite(runs[each.name].values)
-                half = runs.get(each.name + INTERVAL)
-                tables[each.name] = self._table(runs[each.name]), None if half is None else self._table(half)
-            missing.append(failed.mean())
         if self.curve is not None:
-            curves, names = self._curves(case)
+            curves, names = self._curves(candidate, case, count)
             warnings |= sum(2**bit for bit, name in enumerate(FLAGS) if name in names)
-            tables[DAMPING_RATIO] = curves.ratios.reshape(-1, self.count), None
-            missing.append(1 - np.isfinite(curves.ratios).mean())
-        if max(missing, default=0.0):
-            nothing = self._nothing(reason or _reason(tables), float(max(missing)), warnings)
+            tables[DAMPING_RATIO] = curves.ratios.reshape(-1, count), None
+            missing = max(missing, float(1 - np.isfinite(curves.ratios).mean()))
+        candidate.ran = count
+        if missing:
+            nothing = self._nothing(candidate.reason or _reason(tables), missing, warnings)
             return replace(nothing, curves=curves)
         parts = [self._reduced(each, *tables[each.name]) for each in self.computed]
         values, halves, packings = (np.array(part) for part in zip(*parts, strict=True)) if parts else 3 * [np.zeros(0)]
-        return Evaluation(values, halves, packings.reshape(len(parts), self.count), 0.0, warnings, curves=curves)
+        return Evaluation(values, halves, packings.reshape(len(parts), count), 0.0, warnings, curves=curves)
+
+    def _measure(self, candidate: Candidate, case: Case, count: int) -> None:
+        """Add the measures of the packings that a design lacks to its tables."""
+        part = self
+        if count - candidate.ran < self.count:
+            packings = parse_axes(self.case, packing_axis(self.case, count, candidate.ran), source="levels")
+            part = replace(self, packings=packings, count=count - candidate.ran)
+        work = part.work_of(case)
+        runs = run_work(work, **self.where)
+        candidate.reason = candidate.reason or work.first_refused(runs["status"].values)
+        failed = runs["status"].values != 0
+        if "warnings" in runs:
+            candidate.warnings |= int(np.bitwise_or.reduce(runs["warnings"].values, axis=None))
+        for each in self.measured:
+            failed |= ~np.isfinite(runs[each.name].values)
+            half = runs.get(each.name + INTERVAL)
+            values, widths = part._table(runs[each.name]), None if half is None else part._table(half)
+            if each.name in candidate.tables:
+                before, widths_before = candidate.tables[each.name]
+                values = np.hstack([before, values])
+                widths = None if widths is None or widths_before is None else np.hstack([widths_before, widths])
+            candidate.tables[each.name] = values, widths
+        candidate.missing = max(candidate.missing, float(failed.mean()))
 
     def _table(self, values: xr.DataArray) -> Vector:
         """Return a result of a sweep as a table, (levels, packings)."""
@@ -375,9 +475,13 @@ class DesignSearch:
             return np.asarray(values.values.reshape(-1, 1))
         return np.asarray(values.transpose(..., PACKING).values.reshape(-1, self.count))
 
-    def _curves(self, case: Case) -> tuple[Curves, set[str]]:
+    def _curves(self, candidate: Candidate, case: Case, count: int) -> tuple[Curves, set[str]]:
         """Return the damping curves of a trial, and the names of exceeded limits."""
-        found = [damping_curve(each, **self.curve_options, **self.where) for each in self.curve_cases(case)]
+        run: Evaluate = partial(evaluate_cases, **self.where)
+        if len(self.stages) > 1:
+            run = candidate.remember(run)
+        options = {**self.curve_options, "packings": count}
+        found = [curve_from(run, each, **options) for each in self.curve_cases(case)]
         curves = Curves(
             np.array([each.damping_ratios.transpose("amplitude", "packing").values for each in found]),
             np.array([(each.upper - each.lower).values / 2 for each in found]),
@@ -422,7 +526,7 @@ class DesignSearch:
             found = found.assign_coords({path: ("trial", *column) for path, column in columns.items()})
         values = _rows([trial.values for trial in trials], len(self.objectives))
         halves = _rows([trial.user_attrs["intervals"] for trial in trials], len(self.computed))
-        packings = _rows([trial.user_attrs["packings"] for trial in trials], len(self.computed), self.count)
+        packings = padded([trial.user_attrs["packings"] for trial in trials], self.count, len(self.computed))
         for number, each in enumerate(self.objectives):
             attrs = _attributes(each)
             found[each.name] = ("trial", values[:, number], _with_goal(each))
@@ -449,6 +553,11 @@ class DesignSearch:
         found["warnings"] = ("trial", exceeded, flags)
         reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)
         found["reason"] = ("trial", reasons, {"long_name": "why a trial is not feasible"})
+        if len(self.stages) > 1:
+            dropped = np.array([trial.user_attrs[DROPPED] for trial in trials], bool)
+            found[DROPPED] = "trial", dropped, {"long_name": "ended early, because certainly worse than another trial"}
+            ran = {"units": "1", "long_name": "number of packings that ran"}
+            found["packings_run"] = "trial", [trial.user_attrs["ran"] for trial in trials], ran
         front = pareto_front(values * np.array([each.sign for each in self.objectives]), feasible)
         if notes := [_exceeded(number, exceeded[number]) for number in front if exceeded[number]]:
             found.attrs["flagged"] = "; ".join(notes)
@@ -469,11 +578,12 @@ class DesignSearch:
             ratios, halves, bare = zip(*stored, strict=True) if stored else ((), (), ())
             found = with_curves(
                 found,
-                _rows(ratios, *shape, self.count),
+                padded(ratios, self.count, *shape),
                 _rows(halves, *shape),
                 _rows(bare, len(levels)),
                 self.curve.amplitudes,
                 levels,
+                [np.shape(each)[-1] if each is not None else self.count for each in ratios],
             )
         if not found.front.size:
             found.attrs["warnings"] = [_none_feasible([str(reason) for reason in found.reason.values])]
@@ -523,6 +633,16 @@ def _rows(rows: Sequence[object], *shape: int) -> Vector:
     return np.array([nothing if row is None else np.asarray(row, float).reshape(shape) for row in rows]).reshape(
         len(rows), *shape
     )
+
+
+def padded(rows: Sequence[Any], count: int, *shape: int) -> Vector:
+    """Return lists of numbers of some packings, (*shape, P), as an array of all `count` packings; NaN for the others."""
+    array = np.full((len(rows), *shape, count), np.nan)
+    for values, row in zip(array, rows, strict=True):
+        if row is not None and np.size(row):
+            known = np.array(row, float)
+            values[..., : known.shape[-1]] = known
+    return array
 
 
 def _with_goal(objective: Objective) -> dict[str, str]:

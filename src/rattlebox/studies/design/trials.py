@@ -6,9 +6,9 @@ import json
 import math
 import os
 import re
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,17 @@ from rattlebox._util.exceptions import StoreError
 from rattlebox._util.owned_folder import read_marker
 from rattlebox.model.differences import differences
 from rattlebox.results.provenance import with_version
-from rattlebox.studies.design.search import MOST_COMBINATIONS, Curves, DesignSearch, Evaluation, Values
+from rattlebox.studies.design.evidence import DROPPED, certainly_worse
+from rattlebox.studies.design.search import (
+    MOST_COMBINATIONS,
+    Candidate,
+    Curves,
+    DesignSearch,
+    Evaluation,
+    Values,
+    padded,
+    pooled,
+)
 from rattlebox.studies.design.space import ADDED_MASS, DesignVariable
 from rattlebox.studies.run.estimate import Estimate
 from rattlebox.studies.run.store import JOURNAL, exclusive_writer
@@ -163,6 +173,7 @@ class Trials:
         self._stored = finished_trials(optuna, study)
         combinations = search.combinations
         self._all = combinations is not None and (wanted is None or wanted >= len(combinations))
+        self._begun: dict[str, tuple[Candidate, Evaluation]] = {}  # Designs after their first packings
         self.total = wanted or MOST_COMBINATIONS
         if self._all:
             self.total = len(self._stored) + len(self._missing())
@@ -193,18 +204,24 @@ class Trials:
             self._study.set_user_attr("predicted", {"trials": self.total, "times": times})
 
     def run_next(self) -> None:
-        """Run the next trial."""
+        """Run the next trial, or the first packings of a combination that has none."""
         samplers = self._optuna.samplers
         if self._all:
-            self._study.sampler = _fixed(samplers, self._missing()[0])
+            missing = self._missing()
+            if self._search.drop:
+                for values in missing:
+                    if _key(values) not in self._begun:
+                        self._begin(values)
+                        return
+                missing.sort(key=self._order())
+            self._study.sampler = _fixed(samplers, missing[0])
         else:
             self._study.sampler = samplers.TPESampler(seed=trial_seed(self._seed, self.done))
         trial = self._study.ask()
         for variable in self._search.variables:
             variable.suggest(trial)
-        before = time.monotonic(), time.process_time()
-        mass, found = self._evaluate(trial.params)
-        seconds = [time.monotonic() - before[0], time.process_time() - before[1]]
+        candidate, found = self._evaluate(trial.params)
+        mass = candidate.mass
         limit = self._search.limit
         excess = mass / limit - 1 if limit is not None and mass > limit else 0.0
         trial.set_constraint("missing", found.missing)
@@ -215,7 +232,9 @@ class Trials:
             "packings": found.packings.tolist(),
             "warnings": found.warnings,
             "reason": found.reason,
-            "seconds": seconds,
+            "seconds": candidate.seconds.tolist(),
+            DROPPED: found.dropped,
+            "ran": candidate.ran,
             "curves": None if found.curves is None else [each.tolist() for each in found.curves],
         }
         for name, value in attributes.items():
@@ -223,9 +242,7 @@ class Trials:
         if found.missing or excess:
             self._study.tell(trial, state=self._optuna.trial.TrialState.PRUNED)
         else:
-            values = dict(zip((each.name for each in self._search.computed), found.values.tolist(), strict=True))
-            values[ADDED_MASS] = mass
-            self._study.tell(trial, [values[each.name] for each in self._search.objectives])
+            self._study.tell(trial, self._search.objective_values(mass, found)[0].tolist())
         self._stored = finished_trials(self._optuna, self._study)
 
     def _missing(self) -> list[Values]:
@@ -233,24 +250,91 @@ class Trials:
         tried = [trial.params for trial in self._stored]
         return [values for values in self._search.combinations or () if values not in tried]
 
-    def _evaluate(self, values: Values) -> tuple[float, Evaluation]:
-        """Return the mass and the result of a design; that of an earlier trial with the same values, if there is one."""
+    def _begin(self, values: Values) -> tuple[Candidate, Evaluation]:
+        """Return a design after its first packings."""
+        candidate = self._search.candidate(values)
+        begun = candidate, self._search.evaluate(candidate, self._search.stages[0])
+        self._begun[_key(values)] = begun
+        return begun
+
+    def _order(self) -> Callable[[Values], float]:
+        """Return the rank of a combination after its first packings, summed over the objectives: the best one runs first.
+
+        It is the same after a stop, since it covers the finished trials, too.
+        """
+        first = self._search.stages[0]
+        found = {_key(trial.params): _stored(self._search, trial) for trial in self._stored} | self._begun
+        parts = []
+        for candidate, each in found.values():
+            values = np.mean(each.packings[:, :first], axis=1)
+            parts.append(self._search.objective_values(candidate.mass, replace(each, values=values))[0])
+        signs = np.array([each.sign for each in self._search.objectives])
+        table = np.nan_to_num(signs * np.array(parts), nan=np.inf)
+        ranks = np.sum(table[:, None] > table, axis=(1, 2))
+        order = dict(zip(found, ranks.tolist(), strict=True))
+        return lambda values: order[_key(values)]
+
+    def _evaluate(self, values: Values) -> tuple[Candidate, Evaluation]:
+        """Return a design and its result; that of an earlier trial with the same values, if there is one."""
         for trial in self._stored:
             if trial.params == values:
-                about = trial.user_attrs
-                names = [each.name for each in self._search.objectives]
-                known = dict(zip(names, trial.values or [np.nan] * len(names), strict=True))
-                found = Evaluation(
-                    np.array([known[each.name] for each in self._search.computed]),
-                    np.array(about["intervals"]),
-                    np.array(about["packings"]),
-                    trial.constraints["missing"],
-                    about["warnings"],
-                    about["reason"],
-                    None if about["curves"] is None else Curves(*map(np.array, about["curves"])),
-                )
-                return about[ADDED_MASS], found
-        return self._search.evaluate(values)
+                return _stored(self._search, trial)
+        candidate, found = self._begun.get(_key(values)) or self._begin(values)
+        del self._begun[_key(values)]
+        for count in self._search.stages[1:]:
+            if found.missing or self._search.is_precise(found):
+                break
+            if self._search.drop and (rival := self._better(candidate.mass, found)) is not None:
+                reason = f"dropped after {candidate.ran} of {self._search.count} packings: worse than trial {rival}"
+                return candidate, replace(found, dropped=True, reason=reason)
+            found = self._search.evaluate(candidate, count)
+        return candidate, found
+
+    def _better(self, mass: float, found: Evaluation) -> int | None:
+        """Return the first complete trial that is certainly better than a design, within the intervals of both."""
+        rivals = {
+            number: _result(self._search, trial)
+            for number, trial in enumerate(self._stored)
+            if trial.values is not None and not trial.user_attrs[DROPPED]
+        }
+        dropped = [_result(self._search, each)[1] for each in self._stored if each.user_attrs[DROPPED]]
+        begun = [each for _, each in self._begun.values() if not each.missing]
+        scatter = pooled([found, *(each for _, each in rivals.values()), *dropped, *begun])
+        signs = np.array([each.sign for each in self._search.objectives])
+        values, half = self._search.objective_values(mass, found.widened(scatter))
+        for number, (other, rival) in rivals.items():
+            best, width = self._search.objective_values(other, rival.widened(scatter))
+            if certainly_worse((signs * values - half)[None], (signs * best + width)[None]).item():
+                return number
+        return None
+
+
+def _key(values: Values) -> str:
+    """Return the values of the parameters as text."""
+    return json.dumps(values, sort_keys=True)
+
+
+def _result(search: DesignSearch, trial: Any) -> tuple[float, Evaluation]:
+    """Return the mass and the result of a finished trial."""
+    about = trial.user_attrs
+    names = [each.name for each in search.objectives]
+    known = dict(zip(names, trial.values or [np.nan] * len(names), strict=True))
+    return about[ADDED_MASS], Evaluation(
+        np.array([known[each.name] for each in search.computed]),
+        np.array(about["intervals"]),
+        padded([about["packings"]], search.count, len(search.computed))[0],
+        trial.constraints["missing"],
+        about["warnings"],
+        about["reason"],
+        None if about["curves"] is None else Curves(*map(np.array, about["curves"])),
+        about[DROPPED],
+    )
+
+
+def _stored(search: DesignSearch, trial: Any) -> tuple[Candidate, Evaluation]:
+    """Return the design of a finished trial, which needs no time, and its result."""
+    mass, found = _result(search, trial)
+    return Candidate(None, mass, ran=trial.user_attrs["ran"]), found
 
 
 def _fixed(samplers: Any, values: Values) -> Any:

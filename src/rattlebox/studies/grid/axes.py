@@ -378,13 +378,16 @@ def robust_axes(case: Case, levels: object = None, starts: int | Sequence[Any] |
     return axes
 
 
-def packing_axis(case: Case, count: int) -> dict[str, Any]:
-    """Return an axis "packing" along which the random packings of all particle dampers vary together."""
+def packing_axis(case: Case, count: int, first: int = 0) -> dict[str, Any]:
+    """Return an axis "packing" along which the random packings of all particle dampers vary together.
+
+    `first`: number of packings that are left out at the beginning.
+    """
     seeds: dict[str, list[int]] = {}
     for index, damper in enumerate(case.dampers):
         packing: Any = getattr(damper, "packing", None)
         if packing is not None and packing.is_random:
-            seeds[f"dampers[{index}].packing.seed"] = list(range(packing.seed, packing.seed + count))
+            seeds[f"dampers[{index}].packing.seed"] = list(range(packing.seed + first, packing.seed + count))
     if not seeds:
         raise no_random_packing()
     return {"packing": seeds}

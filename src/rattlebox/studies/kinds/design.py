@@ -17,7 +17,7 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import announce, progress_bar
 from rattlebox.model.errors import Hint
 from rattlebox.studies.damping_curve import Way, mode_of, read_amplitudes
-from rattlebox.studies.design.search import Curve, DesignSearch, Robust
+from rattlebox.studies.design.search import FIRST, Curve, DesignSearch, Robust
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
 from rattlebox.studies.design.trials import LAYOUT, Trials, load_study, number_of_trials, quiet, trial_storage
 from rattlebox.studies.grid.axes import ParsedAxes, packing_axis, parse_axes, robust_axes
@@ -30,6 +30,7 @@ from rattlebox.studies.run.study import (
     Bounds,
     Count,
     Cycles,
+    Fraction,
     Kilograms,
     Samples,
     Seconds,
@@ -77,6 +78,11 @@ class Design(Study):
     packings
         Number of random initial states: packings of particles, and positions of balls for a damping ratio. Default 3 with
         random packings, otherwise 1.
+    drop
+        Whether a trial ends before all its packings as soon as it is certainly worse than a complete trial; see Notes.
+    precision
+        Half width of the 95 % interval over the mean, such as 0.05, below which a trial ends before all its packings, in all
+        objectives; default none.
     robust
         Reduction over levels, start positions and amplitudes: "worst", "mean" or "median". An objective is the mean of the
         reduced values of all packings.
@@ -111,7 +117,8 @@ class Design(Study):
         its limit, otherwise the `reason`; `warnings`, the exceeded validity limits of all runs (`flag_meanings`);
         `may_be_best`, whether it is on the front or cannot be excluded from it within the 95 % intervals. With a damping
         ratio, over `amplitude`, too (and `level`): `damping_curve`, its `..._interval` and `..._packings`; `bare`, of the
-        structure alone; and, for the worst amplitude, `bare_decides`, whether the damper adds nothing there. Over
+        structure alone; and, for the worst amplitude, `bare_decides`, whether the damper adds nothing there. With `drop` or
+        `precision`: `dropped`, and `packings_run`, the number of packings that a trial has; the others are NaN. Over
         `front`: the numbers of the Pareto-optimal trials (of the best trial for one objective) and their case files; if no
         trial is feasible it is empty, and a warning, also in the attribute `warnings`, lists the reasons.
         Attributes: `predicted_wall_time` and `predicted_cpu_time` [s] of all trials before the first one, `wall_time`
@@ -138,6 +145,14 @@ class Design(Study):
     A trial with the objectives f dominates another one, g, if all f_k <= g_k and one f_k < g_k (of objectives to minimise).
     The front is the feasible trials that no other one dominates. A trial is excluded from it with certainty if one on the
     front dominates it even with f_k + its half width and g_k - its half width.
+
+    With `drop` or `precision`, the first three packings of a trial run, then half as many again as it has, until all have
+    run. After each step it is dropped if a complete trial (with all packings, or as precise as asked) excludes it from the
+    front with certainty as above. Since three packings may agree by chance, intervals are here at least as wide as for the
+    root mean square of the standard deviations of all trials. If all combinations are
+    tried, the first packings of all run first, and those that are then best are completed first: this is the order of the
+    trials. Decisions depend on results only, and are the same for any number of workers and after a stop. Predicted times
+    are those of all packings.
 
     `bare_decides`: at the amplitude with the least damping ratio the damper adds less than a tenth of the ratio of the
     structure alone, or less than the half width of the interval. A warning is issued if this holds for the best trial.
@@ -167,6 +182,8 @@ class Design(Study):
     levels: Axes | None = None
     starts: Any = None
     packings: Count | None = None
+    drop: bool = False
+    precision: Fraction | None = None
     robust: Robust = "worst"
     amplitudes: Values | None = None
     way: Way = "decay"
@@ -201,6 +218,12 @@ class Design(Study):
             )
         levels = robust_axes(self.case, self.levels, self.starts)
         count, packings = self._packings(bool(measured))
+        if (self.drop or self.precision is not None) and count <= FIRST:
+            name = "drop" if self.drop else "precision"
+            raise Hint(
+                f"{name} decides after {FIRST} packings, and packings = {count} has no more of them",
+                f"packings = 12, or no {name}",
+            )
         return DesignSearch(
             case=self.case,
             variables=[DesignVariable.read(self.case, key, each, log) for key, each in parameters.items()],
@@ -208,6 +231,8 @@ class Design(Study):
             levels=parse_axes(self.case, levels, source="levels") if levels else None,
             packings=packings,
             count=count,
+            drop=self.drop,
+            precision=self.precision,
             robust=self.robust,
             limit=None if self.max_added_mass is None else float(self.max_added_mass),
             curve=curve,

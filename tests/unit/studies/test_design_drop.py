@@ -1,0 +1,238 @@
+"""Designs whose packings run in stages: trials that are dropped early, and those that are precise enough."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.stats import t
+
+import rattlebox as rb
+from rattlebox._util.exceptions import CaseError
+from rattlebox.report.kinds.design import KIND
+from rattlebox.studies.design.search import Candidate, DesignSearch, Evaluation, pooled
+from rattlebox.studies.run import runner
+from rattlebox.studies.run.estimate import Estimate
+from rattlebox.studies.run.runner import Stopped
+
+FILL, COUNT, GAP = "damper.particles.fill_ratio", "damper.particles.count", "damper.gap"
+
+
+def with_bed(**particles: Any) -> rb.Case:
+    """Return a structure with a box of balls."""
+    return rb.Case(
+        structure=rb.SDOF(mass="0.06 kg", frequency="90 Hz", damping_ratio=0.02, velocity="0.6 m/s"),
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="5 mm", **particles),
+            cavity=rb.Box(size=("16 mm", "16 mm", "22 mm")),
+            contact=rb.Tsuji(restitution=0.6),
+            friction=0.3,
+            direction="z",
+            packing=rb.Settled(seed=4),
+            softening=100,
+        ),
+        duration="0.1 s",
+    )
+
+
+def with_ball() -> rb.Case:
+    """Return a structure with a ball between two walls."""
+    ball = rb.ImpactDamper(
+        ball=rb.Sphere(diameter="30 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.5)
+    )
+    return rb.Case(structure=rb.SDOF(mass="5 kg", frequency="30 Hz", damping_ratio=0.004), damper=ball, duration="1 s")
+
+
+def shaken(case: rb.Case, parameters: Any, objective: Any = "damping_ratio", **options: Any) -> xr.Dataset:
+    """Return a search by shaking."""
+    usual: dict[str, Any] = {"way": "shaking", "cycles": (5, 5), "packings": 12, "progress": False}
+    return rb.design(case, parameters, objective, **usual | options)
+
+
+@pytest.fixture
+def runs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Return a list to which the number of cases of each call is added that simulates cases."""
+    counted: list[int] = []
+    usual = runner._Cases.run
+
+    def run(self: Any, numbers: range, **options: Any) -> Any:
+        counted.append(len(numbers))
+        return usual(self, numbers, **options)
+
+    monkeypatch.setattr(runner._Cases, "run", run)
+    return counted
+
+
+GAPS9 = [float(gap) / 1e4 for gap in range(2, 11)]
+GAPS = ["0.2 mm", "0.4 mm", "0.6 mm", "0.8 mm", "1 mm", "1.2 mm", "1.4 mm", "2.5 mm", "3.5 mm", "5 mm"]
+FILLS = [0.04, 0.08, 0.12, 0.16, 0.2, 0.24, 0.28, 0.36, 0.44]
+COUNTS = [2, 3, 5, 8, 12, 16, 20, 30, 40]
+PLANTED: dict[str, Any] = {
+    "clearance of a ball": (with_ball(), GAP, GAPS, ["0.5 mm", "0.6 mm"], 1.4e-3),
+    "fill of a bed": (with_bed(fill_ratio=0.2), FILL, FILLS, ["2 mm", "3 mm"], 0.36),
+    "number of balls": (with_bed(count=4), COUNT, COUNTS, ["2 mm", "3 mm"], 30),
+}
+
+
+@pytest.mark.parametrize("name", PLANTED)
+def test_the_answer_is_the_same_at_a_third_of_the_runs(name: str, runs: list[int]) -> None:
+    """The best design is that without dropping, with the same bits, and needs about a third of the runs."""
+    case, path, choices, amplitudes, best = PLANTED[name]
+    full = shaken(case, {path: choices}, amplitudes=amplitudes)
+    needed = sum(runs)
+    runs.clear()
+    short = shaken(case, {path: choices}, amplitudes=amplitudes, drop=True)
+    assert 0.25 * needed < sum(runs) < 0.36 * needed
+    assert short[path].values[short.front.item()] == full[path].values[full.front.item()] == best
+    assert short.case.item() == full.case.item()
+    check_parts(short, full, path)
+    assert short.dropped.sum() >= short.feasible.sum() - 2
+    assert not (short.dropped & short.may_be_best).any()
+
+
+def check_parts(short: xr.Dataset, full: xr.Dataset, path: str, name: str = "damping_ratio", rel: float = 0.0) -> None:
+    """Check that trials have the values of their first packings without dropping, and complete ones all values.
+
+    `rel`: relative tolerance of dropped ones.
+    """
+    for trial, count in enumerate(short.packings_run.values):
+        one = short.isel(trial=trial)
+        other = full.isel(trial=int(np.flatnonzero(full[path].values == one[path].item())[0]))
+        assert bool(one.feasible) == bool(other.feasible)
+        if not one.feasible:
+            continue
+        parts = [f"{name}_packings"] + ["damping_curve_packings"] * ("damping_curve" in short)
+        for part in parts:
+            mine, all_of_them = one[part].values[..., :count], other[part].values[..., :count]
+            assert np.allclose(mine, all_of_them, rtol=rel * float(one.dropped), atol=0)
+            assert np.isnan(one[part].values[..., count:]).all()
+        assert float(one[name]) == pytest.approx(float(one[f"{name}_packings"].mean("packing")), rel=1e-12)
+        assert bool(one.dropped) == (count < full.sizes["packing"]) == ("dropped after" in str(one.reason.values))
+        if not one.dropped:
+            for same in [name, f"{name}_interval"] + ["damping_curve", "damping_curve_interval"] * (len(parts) - 1):
+                assert np.array_equal(one[same].values, other[same].values, equal_nan=True)
+
+
+def test_measures_of_a_sweep_are_dropped() -> None:
+    """A measure of a strike has the values of the same packings, although those of a trial run in several sweeps."""
+    options: dict[str, Any] = {
+        "levels": {"structure.velocity": ["0.4 m/s", "0.6 m/s"]},
+        "packings": 8,
+        "progress": False,
+    }
+    case, counts = with_bed(count=4), {COUNT: [4, 8, 12, 16]}
+    full = rb.design(case, counts, "rms", **options)
+    short = rb.design(case, counts, "rms", drop=True, **options)
+    assert short.dropped.any() and not short.dropped.all()
+    check_parts(short, full, COUNT, "rms")
+    assert short.case.item() == full.case.item()
+
+
+def test_decays_are_dropped() -> None:
+    """Decays of complete trials are those without dropping: the initial amplitude is that for all packings.
+
+    It may be smaller for those of a dropped trial, which changes its values little.
+    """
+    options: dict[str, Any] = {"way": "decay", "cycles": None, "amplitudes": ["0.1 mm", "0.2 mm"], "packings": 6}
+    case, gaps = with_ball().replaced({"duration": "4 s"}), {GAP: ["0.2 mm", "0.5 mm", "1.4 mm", "4 mm"]}
+    full, short = shaken(case, gaps, **options), shaken(case, gaps, drop=True, **options)
+    assert short.dropped.any()
+    check_parts(short, full, GAP, rel=1e-6)
+
+
+def test_the_front_of_several_objectives_is_the_same() -> None:
+    """A trial is dropped only if a complete one is certainly better in all objectives: the front is the same."""
+    case, counts = with_bed(count=4), {COUNT: [3, 8, 12, 20, 30], "damper.number": [1, 2]}
+    options: dict[str, Any] = {"amplitudes": ["2 mm", "3 mm"], "packings": 6}
+    goals = ["added_mass", "damping_ratio"]
+    full, short = shaken(case, counts, goals, **options), shaken(case, counts, goals, drop=True, **options)
+    assert list(short.case.values) == list(full.case.values) and short.sizes["front"] > 2
+    assert short.dropped.any()
+
+
+def stopped_after(count: int) -> Any:
+    """Return a progress function that stops a study after a number of trials."""
+    return lambda done, total: done < count
+
+
+@pytest.mark.parametrize("gaps", [GAPS[2:], ("0.2 mm", "4 mm")], ids=["all combinations", "between bounds"])
+def test_results_do_not_depend_on_workers_and_stops(gaps: Any, tmp_path: Path) -> None:
+    """A search with one worker, with two, and after a stop gives the same trials: decisions depend on earlier trials."""
+    options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "cycles": (10, 10), "packings": 8, "drop": True}
+    options |= {} if isinstance(gaps, list) else {"trials": 12}
+    one = shaken(with_ball(), {GAP: gaps}, workers=1, **options)
+    store = tmp_path / "design"
+    for count in (1, 5):
+        with pytest.raises(Stopped):
+            shaken(with_ball(), {GAP: gaps}, store=store, **options | {"progress": stopped_after(count)})
+    again = shaken(with_ball(), {GAP: gaps}, store=store, workers=2, **options)
+    assert 0 < one.dropped.sum() < one.sizes["trial"]
+    xr.testing.assert_identical(one.drop_attrs(), again.drop_attrs())
+    assert any("were dropped early" in line for line in KIND.answer(one))
+    assert KIND.call(one).arguments["drop"] is True
+
+
+def test_trials_end_when_they_are_precise() -> None:
+    """Packings are added until the interval is as narrow as asked; before, each trial had all of them."""
+    options: dict[str, Any] = {"amplitudes": ["2 mm", "3 mm"], "packings": 8}
+    case, counts = with_bed(count=4), {COUNT: [4, 12, 30]}
+    full, short = shaken(case, counts, **options), shaken(case, counts, precision=0.05, **options)
+    width = short.damping_ratio_interval / short.damping_ratio
+    assert not short.dropped.any()
+    for trial, count in enumerate(short.packings_run.values):
+        assert count in (3, 5, 8) and (count == 8 or float(width[trial]) <= 0.05)
+        mine, all_of_them = (each.damping_ratio_packings.values[trial] for each in (short, full))
+        assert np.array_equal(mine[:count], all_of_them[:count])
+        for fewer in (number for number in (3, 5) if number < count):
+            part = all_of_them[:fewer]
+            assert {3: 4.302653, 5: 2.776445}[fewer] * part.std(ddof=1) / fewer**0.5 > 0.05 * part.mean()
+    assert 3 in short.packings_run and short.packings_run.max() > 3
+    assert KIND.call(short).arguments["precision"] == 0.05
+
+
+@pytest.mark.parametrize("motions", [False, True], ids=["normal", "two motions"])
+def test_the_answer_of_planted_searches_is_that_without_dropping(
+    motions: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In 100 searches of nine designs, up to one standard deviation apart, the answer is that without dropping."""
+    generator = np.random.default_rng(3)
+
+    def evaluate(self: DesignSearch, candidate: Candidate, count: int) -> Evaluation:
+        assert candidate.case is not None
+        candidate.ran = count
+        some = planted[GAPS9.index(candidate.case.dampers[0].gap)][None, :count]
+        half = t.ppf(0.975, count - 1) * some.std(axis=1, ddof=1) / np.sqrt(count)
+        return Evaluation(some.mean(axis=1), half, some)
+
+    monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
+    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
+    ran = []
+    for repetition in range(100):
+        scatter = generator.normal(size=(9, 12))
+        if motions:
+            scatter = np.where(generator.random((9, 12)) < 0.6, 1.0, -1.5)
+        planted = scatter + (0.5, 1.0)[repetition % 2] * generator.permutation(9)[:, None]
+        found = shaken(with_ball(), {GAP: GAPS9}, amplitudes=["0.5 mm", "0.6 mm"], drop=True, robust="mean")
+        assert found[GAP].values[found.front.item()] == GAPS9[int(planted.mean(axis=1).argmax())]
+        ran.append(found.packings_run.values.mean() / 12)
+    assert 0.4 < np.mean(ran) < 0.65  # designs half a standard deviation apart cannot be told apart early
+
+
+def test_packings_that_agree_by_chance_do_not_decide() -> None:
+    """A trial with three equal packings has the scatter of the others: alone, its interval would have no width."""
+    equal = Evaluation(np.ones(1), np.zeros(1), np.array([[1.0, 1.0, 1.0, np.nan]]))
+    other = Evaluation(np.ones(1), np.full(1, 1.6), np.array([[0.0, 2.0, 0.0, 2.0]]))
+    scatter = pooled([equal, other])
+    assert scatter == pytest.approx(2.570582 * np.sqrt((0 + 4 / 3) / 2))
+    assert equal.widened(scatter).intervals == pytest.approx(scatter / np.sqrt(3))
+    assert other.widened(scatter).intervals == 1.6
+
+
+@pytest.mark.parametrize("option", [{"drop": True}, {"precision": 0.1}])
+def test_too_few_packings_are_refused(option: Any) -> None:
+    """With three packings there is nothing to leave out: the option is refused and does not pass silently."""
+    with pytest.raises(CaseError, match="decides after 3 packings"):
+        shaken(with_bed(count=4), {COUNT: [4, 8]}, amplitudes=["1 mm", "2 mm"], packings=3, **option)
