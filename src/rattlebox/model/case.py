@@ -358,7 +358,6 @@ class Case(Part):
 
     def _check_stops(self, names: set[str]) -> None:
         """Raise if a stop cannot be computed; `names` are those of the dampers."""
-        places: set[tuple[object, ...]] = set()
         for index, stop in enumerate(self.stops):
             with at("stops", index):
                 if self.particle_dampers:
@@ -383,13 +382,6 @@ class Case(Part):
                     )
                 self._check_stop_law(stop)
                 for each in stop.each(index):
-                    where = (point, stop.other, each.side, stop.gap, stop.direction)
-                    if isinstance(self.method, Newton) and where in places:
-                        raise Hint(
-                            "this stop has the place and the gap of another; with hard impacts only one of them can act",
-                            "one of them, or the EventDriven method, whose contacts share the force",
-                        )
-                    places.add(where)
                     if each.name in names:
                         raise Hint(f"two dampers or stops are called {each.name!r}", "different names", ["name"])
                     names.add(each.name)

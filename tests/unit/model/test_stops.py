@@ -128,20 +128,6 @@ def test_computations_without_stops_refuse_them_by_name() -> None:
             call()
 
 
-def test_hard_stops_at_one_place_are_refused() -> None:
-    """Two hard stops with one place and gap are refused; soft ones share the force, and other gaps or sides are allowed.
-
-    Hard stops that repeat each other released and pressed without end on a beam; random stops hardly ever have one gap.
-    """
-    stops = [rb.Stop(gap="2 mm", contact=SOFT), rb.Stop(gap="2 mm", side="both", contact=SOFT)]
-    with pytest.raises(rb.CaseError, match="place and the gap of another") as error:
-        case(stop=stops, method=rb.Newton())
-    assert "EventDriven" in str(error.value)
-    assert rb.simulate(case(stop=stops)).ok
-    apart = [stops[0], rb.Stop(gap="3 mm", contact=SOFT), rb.Stop(gap="2 mm", side="trailing", contact=SOFT)]
-    assert rb.simulate(case(stop=apart, method=rb.Newton())).ok
-
-
 def test_point_beside_a_point_that_moves_alike_is_refused() -> None:
     """Two points of a structure that always move together cannot meet."""
     structure = rb.Modal(frequencies=[9.0], damping_ratios=[0.01], shapes={"a": [1.0], "b": [1.0]})

@@ -56,7 +56,7 @@ def test_words_and_files_of_a_striker() -> None:
     one = case(rb.Striker(mass="12 t"))
     assert rb.Case.from_toml(one.to_toml()) == one
     assert rb.Case.from_toml(one.to_toml().replace('radius = "', "")) == one
-    assert one.dampers[0].words() == "a striker of 12 t with 0.12 m of clearance"
+    assert one.dampers[0].words() == "a striker of 12 t with 120 mm of clearance"
     row = rb.ImpactDamper(
         balls=[rb.Sphere(diameter="20 mm", material="steel"), rb.Striker(mass="1 kg")], gap="1 mm", contact=PADS
     )
