@@ -8,18 +8,8 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from .style import (
-    ABOVE,
-    FAINT,
-    SERIES_MARKERS,
-    SERIES_STYLES,
-    StyledFigure,
-    figure_style,
-    label,
-    pen,
-    scaled,
-    series_colour,
-)
+from .damping_curve import draw_with_interval
+from .style import ABOVE, FAINT, StyledFigure, figure_style, label, pen, scaled
 from .types import Size
 
 if TYPE_CHECKING:
@@ -57,13 +47,8 @@ def plot_backbone(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *, size
         quantities = (("frequency", 1, "mode_frequency"), ("damping_ratio", 100, "mode_damping_ratio"))
         for axes, (quantity, factor, alone) in zip(panels, quantities, strict=True):
             for number, (name, curve) in enumerate(named.items()):
-                colour, x = series_colour(number), curve.amplitude / divisor
-                limits = (factor * curve[f"{quantity}_{end}"] for end in ("lower", "upper"))
-                axes.fill_between(x, *limits, color=colour, alpha=0.25, lw=0)
-                style = SERIES_STYLES[number % len(SERIES_STYLES)]
-                marker = SERIES_MARKERS[number % len(SERIES_MARKERS)]
-                text = name or "with damper"
-                axes.plot(x, factor * curve[quantity], color=colour, ls=style, marker=marker, ms=pen(3), label=text)
+                limits = factor * curve[f"{quantity}_lower"], factor * curve[f"{quantity}_upper"]
+                draw_with_interval(axes, curve.amplitude / divisor, factor * curve[quantity], limits, name, number)
             for number, curve in enumerate(named.values()):
                 alone_text = None if number else "structure alone"
                 axes.axhline(factor * curve.attrs[alone], color=FAINT, lw=pen(0.8), zorder=0, label=alone_text)

@@ -59,7 +59,8 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
         amplitudes = xarray.concat([curve.amplitude.reset_coords(drop=True) for curve in named.values()], "amplitude")
         divisor, unit = scaled(amplitudes.assign_attrs(units="m"), "m")
         for number, (name, curve) in enumerate(named.items()):
-            _draw(axes, curve, name, number, divisor)
+            x, limits = curve.amplitude / divisor, (100 * curve.lower, 100 * curve.upper)
+            draw_with_interval(axes, x, 100 * curve.damping_ratio, limits, name, number)
         first = next(iter(named.values()))
         for curve in named.values():
             text = "structure alone" if curve is first else None
@@ -78,13 +79,20 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
     return figure
 
 
-def _draw(axes: Axes, curve: xarray.Dataset, name: str, number: int, divisor: float) -> None:
+def draw_with_interval(
+    axes: Axes,
+    x: xarray.DataArray,
+    values: xarray.DataArray,
+    limits: tuple[xarray.DataArray, xarray.DataArray],
+    name: str,
+    number: int,
+) -> None:
+    """Draw a curve with its 95 % interval in the style of a series, counted from 0."""
     colour = series_colour(number)
-    x = curve.amplitude / divisor
-    axes.fill_between(x, 100 * curve.lower, 100 * curve.upper, color=colour, alpha=0.25, lw=0)
+    axes.fill_between(x, *limits, color=colour, alpha=0.25, lw=0)
     axes.plot(
         x,
-        100 * curve.damping_ratio,
+        values,
         color=colour,
         ls=SERIES_STYLES[number % len(SERIES_STYLES)],
         marker=SERIES_MARKERS[number % len(SERIES_MARKERS)],

@@ -17,9 +17,10 @@ from rattlebox.analysis.signals import first_harmonic, trapezoid_weights
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
-from rattlebox.model.structures import Modal, Shaker
+from rattlebox.model.stops import refuse_stops
+from rattlebox.model.structures import Modal
 from rattlebox.model.units import whole_number
-from rattlebox.studies.damping_curve import merged_warnings, random_starts, read_amplitudes, warnings_of
+from rattlebox.studies.damping_curve import merged_warnings, on_shaker, random_starts, read_amplitudes, warnings_of
 from rattlebox.studies.grid.sampling import Spaced
 from rattlebox.studies.run.runner import evaluate_cases
 
@@ -94,8 +95,8 @@ def backbone(
     Raises
     ------
     CaseError
-        If the case has not exactly one load, a harmonic force, or a base motion; if it has no such mode, the load does not
-        excite it, the initial state has no random part, the amplitudes do not rise, or a run fails.
+        If the case has not exactly one load, a harmonic force; if it has a base motion or stops; if it has no such mode, the
+        load does not excite it, the initial state has no random part, the amplitudes do not rise, or a run fails.
 
     See Also
     --------
@@ -106,7 +107,7 @@ def backbone(
     -----
     With the complex amplitudes X of the displacement and F of the force at the frequency f, omega = 2 pi f, the dynamic
     stiffness F / X of the structure with dampers is that of the structure alone, D, less omega^2 m, where the effective mass
-    m of the dampers depends on the amplitude and hardly on the frequency. Each run gives m, and the next one has
+    m of the dampers depends on the amplitude and little on the frequency. Each run gives m, and the next one has
 
     .. math:: \operatorname{Re} [D(f) - \omega^2 m] = 0, \qquad F = X \operatorname{Im} [D(f) - \omega^2 m].
 
@@ -191,6 +192,7 @@ class _Target:
                 f"the case has loads and base motions: {kinds}; a backbone needs one harmonic force and no base motion",
                 'load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")',
             )
+        refuse_stops(case.stops, "a search starts on the motion without them", "rb.frequency_response")
         modes = case.structure.modes()
         index = whole_number(mode, "mode", 1) - 1
         if index >= modes.stiffness.size or modes.stiffness[index] <= 0:
@@ -258,7 +260,7 @@ class _Search:
         """Return the effective mass at the wanted amplitude X from those of the runs so far.
 
         The force of the dampers, m X, is interpolated between the last run and one on the other side of X: that of a ball
-        hardly depends on X, so that m falls as 1 / X, and a force for the present m would overshoot more and more.
+        depends little on X, so that m falls as 1 / X, and a force for the present m would overshoot more and more.
         """
         last, mass = self.masses[-1]
         beyond = [each for each in self.masses if (each[0] > self.amplitude) != (last > self.amplitude)]
@@ -350,18 +352,7 @@ def _guess(
         for damper in search.case.dampers:
             shape = np.atleast_1d(modes.shapes[modes.point(damper.point)][target.number]) / target.shape
             if size := float(np.linalg.norm(shape)):
-                motion: dict[str, Any] = {"amplitude": size * search.amplitude * target.omega**2, "unit": "m/s^2"}
-                if shape.size == 3:
-                    motion["direction"] = (shape / size).tolist()
-                shaken = {
-                    "structure": Shaker(motion=Harmonic(frequency=frequency, **motion)),
-                    "dampers": (damper.model_copy(update={"point": None}),),
-                    "tuned_masses": (),
-                    "loads": (),
-                    "duration": sum(window) / frequency,
-                    "output": Output(rate=_SAMPLES * frequency),
-                }
-                variants.append(search.case.model_copy(update=shaken))
+                variants.append(on_shaker(search.case, damper, frequency, shape * search.amplitude, sum(window)))
                 owners.append((search, size))
     masses = evaluate(variants, partial(_effective_mass, frequency=frequency, kept=window[1])) if variants else []
     for (search, size), mass in zip(owners, masses, strict=True):

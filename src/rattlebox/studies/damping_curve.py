@@ -495,7 +495,7 @@ def _shaken_variants(
                 size = float(np.linalg.norm(moved))
                 if size == 0:
                     continue
-                variants.append(_on_shaker(case, damper, mode, moved, (skip + kept) / mode.frequency))
+                variants.append(on_shaker(case, damper, mode.frequency, moved, skip + kept))
                 owners.append((number, k))
     return variants, owners
 
@@ -511,9 +511,14 @@ def _work_in_cycles(run: Run, frequency: float, kept: int) -> _Row:
     return row._replace(values=np.array([loss.work]))
 
 
-def _on_shaker(case: Case, damper: Any, mode: CurveMode, moved: FloatArray, duration: float) -> Case:
+def on_shaker(case: Case, damper: Any, frequency: float, moved: FloatArray, cycles: int) -> Case:
+    """Return a damper alone whose cavity moves harmonically; `moved`: displacement amplitude [m], (1,) or (3,)."""
     size = float(np.linalg.norm(moved))
-    motion: dict[str, Any] = {"amplitude": size * mode.omega**2, "frequency": mode.frequency, "unit": "m/s^2"}
+    motion: dict[str, Any] = {
+        "amplitude": size * (2 * math.pi * frequency) ** 2,
+        "frequency": frequency,
+        "unit": "m/s^2",
+    }
     if moved.size == 3:
         motion["direction"] = (moved / size).tolist()
     return case.model_copy(
@@ -521,8 +526,9 @@ def _on_shaker(case: Case, damper: Any, mode: CurveMode, moved: FloatArray, dura
             "structure": Shaker(motion=Harmonic(**motion)),
             "dampers": (damper.model_copy(update={"point": None}),),
             "tuned_masses": (),
-            "duration": duration,
-            "output": Output(rate=_SAMPLES * mode.frequency),
+            "loads": (),
+            "duration": cycles / frequency,
+            "output": Output(rate=_SAMPLES * frequency),
         }
     )
 
