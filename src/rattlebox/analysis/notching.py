@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rattlebox.model.errors import Hint, at
 from rattlebox.model.signals import Signal
 from rattlebox.model.space import unit_vector
+from rattlebox.model.stops import refuse_stops
 from rattlebox.model.units import parse, parse_density
 
 from .signals import FloatArray, finite, labelled
@@ -75,6 +76,7 @@ def apparent_mass(case: Case, frequencies: ArrayLike, direction: Any = None) -> 
             "the same case without it, or analysis.transfer_function of a run, base_acceleration and interface_force",
             ["dampers"],
         )
+    refuse_stops(case.stops, "the force of a stop is not proportional to the motion", "the same case without stops")
     modes = case.modes
     if modes.participation is None or not modes.decay.size:
         raise Hint("the apparent mass needs the participation of the modes", "participation = [...] of the structure")

@@ -128,6 +128,19 @@ def test_computations_without_stops_refuse_them_by_name() -> None:
             call()
 
 
+def test_linear_analyses_refuse_stops() -> None:
+    """Stability lobes and apparent masses of a case with stops are refused: they left the stops out without a word."""
+    held = rb.Case(
+        structure=rb.SDOF(mass="3 kg", frequency="90 Hz", damping_ratio=0.02),
+        stop=rb.Stop(gap="1 mm", contact=SOFT),
+        duration="1 s",
+    )
+    with pytest.raises(rb.CaseError, match="but the case has 1 stop"):
+        rb.stability_lobes(held, cutting_coefficient="1500 N/mm^2", directional_factor=0.6)
+    with pytest.raises(rb.CaseError, match="but the case has 1 stop"):
+        rb.analysis.apparent_mass(held, [10.0, 90.0])
+
+
 def test_point_beside_a_point_that_moves_alike_is_refused() -> None:
     """Two points of a structure that always move together cannot meet."""
     structure = rb.Modal(frequencies=[9.0], damping_ratios=[0.01], shapes={"a": [1.0], "b": [1.0]})

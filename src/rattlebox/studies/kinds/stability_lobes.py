@@ -25,6 +25,7 @@ from rattlebox.model.damper_base import Damper
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.modes import ModalModel
+from rattlebox.model.stops import refuse_stops
 from rattlebox.model.structures import Shaker, StructurePart
 from rattlebox.model.tuned_mass import TunedMass
 from rattlebox.model.units import Number, parse
@@ -186,6 +187,7 @@ class StabilityLobes(Study):
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
+        refuse_stops(self.case.stops, "the lobes are those of a tool that moves freely", "the case without stops")
         _ = self._coefficient, self._speeds, self._bare, self._damper
         if self.directional_factor == 0:
             raise Hint("directional_factor = 0: the tool does not feel the force", "a factor, such as 0.7")
