@@ -68,12 +68,14 @@ def simulate_dem(
         return _simulate(case, threads, progress, file, snapshots, keeps_end=keeps_end)
 
 
-def simulate_from(case: Case, before: Case, end: RunEnd, origin: str, progress: Progress | None = None) -> Run:
+def simulate_from(
+    case: Case, before: Case, end: RunEnd, origin: str, progress: Progress | None = None, threads: int | None = None
+) -> Run:
     """Run a case from the end of a run of the case `before`; `origin` names that run."""
     method = instance(case.method, Dem)
     prepared, packed, state, is_same = pack_continued(case, before, end)
     dem = _core.Dem(packed)
-    dem.threads = method.threads or default_threads(packed)
+    dem.threads = threads or method.threads or default_threads(packed)
     active = DemRun(dem, packed, None, method)
     active.continue_from(state, end.time, is_same=is_same)
     status = active.run(progress)

@@ -131,23 +131,30 @@ def _continue(
         raise Hint("a run that continues another one writes no checkpoints and no snapshots", "leave them out")
     run, time = read_start(start)
     if time is not None:
-        run = _repeated(run.case, time, progress)
+        run = repeat_up_to(run.case, time, progress)
         if not run.ok:  # stopped by the user
             return run
+    return continue_run(case, run, progress=progress)
+
+
+def continue_run(
+    case: Case, run: Run, *, threads: int | None = None, progress: bool | Callable[[int, int], object] = False
+) -> Run:
+    """Run a case from the end of another run; `threads` is for particles."""
     end = checked_end(case, run)
     origin = continues(run, end)
     if case.particle_dampers:
         from rattlebox.engines.dem import simulate_from
 
         with progress_bar(progress, "steps") as report, reading_state():
-            return simulate_from(case, run.case, end, origin, report)
+            return simulate_from(case, run.case, end, origin, report, threads=threads)
     packed = pack_continued(case, run, end)
     with progress_bar(progress, "runs") as report, reading_state():
         (raw,) = _core.simulate([packed], 1, lambda done: report(done, 1))
     return run_from_core(case, from_start(raw, end.time, len(case.each_stop)), packed, origin)
 
 
-def _repeated(case: Case, time: float, progress: bool | Callable[[int, int], object]) -> Run:
+def repeat_up_to(case: Case, time: float, progress: bool | Callable[[int, int], object]) -> Run:
     """Run a case up to a time of it [s]."""
     if case.particle_dampers:
         from rattlebox.engines.dem import repeat_until

@@ -20,6 +20,7 @@ from rattlebox.model.materials import Material
 from rattlebox.model.record_sets import record_set
 from rattlebox.model.units import Whole
 from rattlebox.studies.grid import sampling
+from rattlebox.studies.grid.starts import PATH as STARTS
 from rattlebox.studies.kinds import study_kind, study_kinds
 from rattlebox.studies.run.study import Axes, SpacedTable, Study, Table, make_study, table_shape
 
@@ -76,6 +77,8 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
         if "case" in given:
             given["case"], own = _case(given["case"], source, folder or Path())
             given = {name: _with_materials(value, own) if name in _NESTED else value for name, value in given.items()}
+        if isinstance(given.get("axes"), dict):
+            given["axes"] = _with_starts(given["axes"], folder or Path())
         given = _with_samples(cls, given, source)
         for name in cls.files:
             if isinstance(given.get(name), str):
@@ -193,6 +196,22 @@ def _with_materials(table: object, own: Mapping[str, Material]) -> Any:
         return _with_materials(values, own)
 
     return {path: read(path, values) for path, values in table.items()}
+
+
+def _with_starts(axes: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return axes in which the files of runs that variants continue are relative to the folder of the study."""
+
+    def moved(start: object) -> Any:
+        if isinstance(start, list) and start:
+            return (moved(start[0]), *start[1:])
+        return os.path.join(folder, start) if isinstance(start, str) else start
+
+    def read(path: str, values: object) -> Any:
+        if path == STARTS and isinstance(values, list):
+            return [moved(start) for start in values]
+        return {name: read(name, inner) for name, inner in values.items()} if isinstance(values, dict) else values
+
+    return {path: read(path, values) for path, values in axes.items()}
 
 
 def _with_records(table: object, folder: Path) -> Any:

@@ -24,6 +24,8 @@ from rattlebox.model.signals import Signal
 from rattlebox.model.units import whole_number
 from rattlebox.studies.grid.grid import Column, Grid, Parameter, Values, labels, objects
 from rattlebox.studies.grid.sampling import RandomDesign, Replicas, number_of_variants
+from rattlebox.studies.grid.starts import PATH as STARTS
+from rattlebox.studies.grid.starts import Starts, read_starts
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -39,21 +41,22 @@ _SAMPLED = 8
 _EXAMPLE = '{"damper.gap": rb.linspace("0.1 mm", "2 mm", 20)}'
 
 
-def read_axes(case: Case, axes: Axes, *, source: str = "axes") -> Grid:
+def read_axes(case: Case, axes: Axes, *, source: str = "axes", allow_starts: bool = False) -> Grid:
     """Return the grid of variants that axes describe, and check its extreme variants."""
-    return parse_axes(case, axes, source=source).grid(case)
+    return parse_axes(case, axes, source=source, allow_starts=allow_starts).grid(case)
 
 
-def parse_axes(case: Case, axes: Axes, *, source: str = "axes") -> ParsedAxes:
+def parse_axes(case: Case, axes: Axes, *, source: str = "axes", allow_starts: bool = False) -> ParsedAxes:
     """Parse the values of axes.
 
     `axes`: a mapping, a random design, replicas, parsed axes, or a list of these, whose dimensions form the grid. A mapping
     has one dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
     together; or `name: {path: values, ...}` for the same with a name of the dimension. Values are a list or an array of
-    numbers in SI units, text with units, names or parts; or `linspace`, `geomspace`.
+    numbers in SI units, text with units, names or parts; or `linspace`, `geomspace`. With `allow_starts` the path "start"
+    has runs as values, from which variants continue.
     """
     try:
-        return ParsedAxes(source, _Reader(case, source).directions(axes))
+        return ParsedAxes(source, _Reader(case, source, allow_starts=allow_starts).directions(axes))
     except Hint as hint:
         raise CaseError(f"{source}: {hint}") from None
 
@@ -66,6 +69,7 @@ class _Direction:
     size: int
     values: list[Values]
     offsets: list[Values] = field(default_factory=list)
+    starts: Starts | None = None
 
     def of(self, case: Case) -> _Direction:
         """Return the same dimension of another case."""
@@ -111,12 +115,21 @@ class ParsedAxes:
                 tuple(direction.size for direction in directions),
                 columns,
                 {name: coord for direction in directions for name, coord in _coordinates(direction)},
+                self._starts(directions),
             )
         except Hint as hint:
             raise CaseError(f"{self.source}: {hint}") from None
         _check_variants(case, grid, self.source)
         _warn_about_files(case, grid)
         return grid
+
+    @staticmethod
+    def _starts(directions: list[_Direction]) -> tuple[str, Starts] | None:
+        """Return the dimension along which the starts vary, and these."""
+        found = [(direction.name, direction.starts) for direction in directions if direction.starts is not None]
+        if len(found) > 1:
+            raise Hint(f"{STARTS} varies twice")
+        return found[0] if found else None
 
 
 def _warn_about_files(case: Case, grid: Grid) -> None:
@@ -151,8 +164,8 @@ def materials_in(case: Case) -> dict[str, Material]:
 class _Reader:
     """Reader of the axes of one case."""
 
-    def __init__(self, case: Case, source: str) -> None:
-        self.case, self.source = case, source
+    def __init__(self, case: Case, source: str, *, allow_starts: bool = False) -> None:
+        self.case, self.source, self.allow_starts = case, source, allow_starts
         self.materials = materials_in(case)
 
     def directions(self, axes: object) -> list[_Direction]:
@@ -191,12 +204,21 @@ class _Reader:
         name = key[0] if isinstance(key, tuple) and key else key
         if not isinstance(name, str) or not name or not linked:
             raise Hint(f"{key!r} is not a path", _EXAMPLE)
+        starts = self.starts(linked.pop(STARTS)) if STARTS in linked else None
         read = [self.parameter(path).values(given) for path, given in linked.items()]
         sizes = {one.parameter.path: one.array.size for one in read}
+        if starts is not None:
+            sizes[STARTS] = len(starts.points)
         if len(set(sizes.values())) > 1:
             counts = ", ".join(f"{path} has {size}" for path, size in sizes.items())
             raise Hint(f"parameters that vary together must have the same number of values, but {counts}")
-        return _Direction(name, read[0].array.size, read)
+        return _Direction(name, next(iter(sizes.values())), read, starts=starts)
+
+    def starts(self, given: object) -> Starts:
+        """Return the runs from which variants continue."""
+        if not self.allow_starts:
+            raise Hint(f"{STARTS}: variants of this study cannot continue runs", "an axis of rb.sweep")
+        return read_starts(given)
 
     def sample(self, design: RandomDesign) -> _Direction:
         """Return the dimension of a random design."""
@@ -349,7 +371,15 @@ class _Columns:
 def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column, dict[str, str]]]]:
     """Yield the coordinates along one dimension."""
     name = direction.name
-    if name not in [values.parameter.path for values in direction.values]:
+    if direction.starts is not None:
+        yield STARTS, (name, direction.starts.labels, {"long_name": "start"})
+        yield (
+            f"{STARTS}.time",
+            (name, direction.starts.times, {"units": "s", "long_name": "time at which the variant starts"}),
+        )
+    if name not in [values.parameter.path for values in direction.values] and (
+        name != STARTS or direction.starts is None
+    ):
         yield name, (name, np.arange(direction.size), {"units": "1", "long_name": f"number of {name}"})
     for values in direction.values:
         path = values.parameter.path

@@ -26,6 +26,7 @@ from rattlebox.model.restitutions import Restitution
 from rattlebox.model.signals import Signal
 from rattlebox.model.units import parse, plain
 from rattlebox.studies.grid.sampling import Spaced
+from rattlebox.studies.grid.starts import StartPoint, Starts
 
 Column = NDArray[Any]
 """Values of a parameter: float64, or objects."""
@@ -42,6 +43,8 @@ class Grid:
     shape: tuple[int, ...]
     columns: dict[str, Column]
     _coords: dict[str, tuple[str, Column, dict[str, str]]] = field(repr=False)
+    # Dimension along which the starts vary, and these; None if all variants start as their case says
+    starts: tuple[str, Starts] | None = None
 
     @property
     def size(self) -> int:
@@ -67,13 +70,24 @@ class Grid:
         """Return the case of one variant."""
         return replaced(case, self.values_at(index))
 
+    def start_at(self, index: int) -> StartPoint | None:
+        """Return the run, or time of a run, from which a variant continues; None if it starts as its case says."""
+        if self.starts is None:
+            return None
+        dim, starts = self.starts
+        return starts.points[np.unravel_index(index, self.shape)[self.dims.index(dim)]]
+
     def describe_variant(self, case: Case, index: int) -> str:
         """Return the values of one variant with units in one line; for the parameters see `case_at`."""
         units = {path: unit_of(case, path) for path in self.columns}
-        return ", ".join(
+        parts = [
             f"{path} = {_label(value)}" + (f" {units[path]}" if units[path] not in (None, "1") else "")
             for path, value in self.values_at(index).items()
-        )
+        ]
+        if self.starts is not None:
+            dim, starts = self.starts
+            parts.append(f"start = {starts.labels[np.unravel_index(index, self.shape)[self.dims.index(dim)]]}")
+        return ", ".join(parts)
 
     def describe(self) -> dict[str, Any]:
         """Return a description in JSON types; equal grids have equal descriptions."""
@@ -89,7 +103,14 @@ class Grid:
                 for name, (dim, values, attrs) in sorted(self._coords.items())
                 if name not in self.columns and values.dtype.kind == "f"
             },
+            **self._describe_starts(),
         }
+
+    def _describe_starts(self) -> dict[str, Any]:
+        if self.starts is None:
+            return {}
+        dim, starts = self.starts
+        return {"starts": {"varies_along": dim, "points": [point.describe() for point in starts.points]}}
 
 
 def _summary(values: Column) -> dict[str, Any]:

@@ -54,14 +54,17 @@ class Sweep(Study):
         variants run as with `rb.simulate`, one per thread.
     axes
         Values by path, {"damper.gap": rb.linspace("0.1 mm", "2 mm", 200), "load.amplitude": ["1 kN", "5 kN"]}, which form
-        a grid; a tuple of paths as key for parameters that vary together; `rb.random_design` or `rb.replicas`.
+        a grid; a tuple of paths as key for parameters that vary together; `rb.random_design` or `rb.replicas`. The values of
+        "start" are runs, files of runs, or pairs of one of these and a time, from which variants continue as with
+        `rb.simulate(case, start=...)`.
     measure
         Names of measures (`rb.MEASURES`) and functions of a Run. A function gets the run of which the named measures are
         evaluated, with its transient; each variant runs once. Measures of single impacts do not exist for particle dampers.
     skip
-        Time from which measures are evaluated [s].
+        Time from which measures are evaluated [s]; default the start of the run.
     cycles
-        Numbers of cycles of the harmonic load to skip and to evaluate, in place of `skip` and the duration of the case.
+        Numbers of cycles of the harmonic load to skip and to evaluate, in place of `skip` and the duration of the case. With
+        an axis of starts they count from each start, but `skip` and the duration from the start of the first run.
     samples
         Number of equally spaced samples of the evaluated motion, both ends included. Default: 64 per cycle with `cycles`;
         else those of the case's output for particle dampers, and 2001 for impact dampers, or 20 per cycle if that is more
@@ -117,7 +120,7 @@ class Sweep(Study):
         """Runs of all variants."""
         variants = Variants(
             self.case,
-            read_axes(self.case, self.axes),
+            read_axes(self.case, self.axes, allow_starts=True),
             list(self.measure),  # type: ignore[arg-type]
             skip=float(self.skip),
             cycles=self.cycles,

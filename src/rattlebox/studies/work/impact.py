@@ -6,29 +6,43 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis.shaken import MIN_SAMPLES
 from rattlebox.core import _core
 from rattlebox.engines.batch import BlockOutput, run_block
+from rattlebox.engines.continued import checked_end, from_start, pack_continued, reading_state
 from rattlebox.engines.simulate import run_from_core
 from rattlebox.model.errors import Hint
 from rattlebox.prepare.pack import Batch, contact_samples, pack_parts
 from rattlebox.studies.work import continuation
 from rattlebox.studies.work.measures import CONTACTS, MEASURES, parts_needed, shortest_windows, with_intervals
-from rattlebox.studies.work.variants import FREQUENCY, Observed, Variants
+from rattlebox.studies.work.starting import check_starts, refused_row, window_start
+from rattlebox.studies.work.variants import FREQUENCY, Observed, Variants, gather_values
 from rattlebox.studies.work.window import cut_before
 from rattlebox.studies.work.work import Cancelled, Outputs, Reduction, Signals, Values, proceed_unless
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
+    from rattlebox.results.run import Run
     from rattlebox.studies.grid.grid import Grid
 
 _NUMBERS = 2**23
 """Largest number of samples of the motions of a block."""
+
+
+class _Alone(NamedTuple):
+    """A variant by itself: its case, its batch with the outputs, its number in the batch, and the time of its start [s]."""
+
+    case: Case
+    part: Batch
+    output: BlockOutput
+    number: int
+    begin: float = 0.0
 
 
 @dataclass
@@ -99,14 +113,16 @@ class ImpactEngine:
         """Return the coordinates of the further dimensions."""
         found: dict[str, tuple[NDArray[Any], str, str]] = {}
         durations = np.unique(np.concatenate([np.ravel(p.packed.settings.duration) for p, *_ in self._parts]))
+        starts = None if self.grid.starts is None or self.variants.skip else self.grid.starts[1]
+        begins = {self.variants.skip} if starts is None else set(starts.times.tolist())
         lengths = {name: length for extra, _, _ in self.outputs.values() for name, length in extra}
         if self.motion:
             found["ball"] = np.arange(1, lengths["ball"] + 1), "1", "number of the ball"
             first, last, unit, text = 0.0, 1.0, "1", "fraction of the evaluated time"
             if self.variants.cycles is not None:
                 last, text = self.variants.cycles[1], "evaluated cycles"
-            elif len(durations) == 1:
-                first, last, unit, text = self.variants.skip, durations.item(), "s", "time"
+            elif len(durations) == len(begins) == 1:
+                first, last, unit, text = *begins, durations.item(), "s", "time"
             found["instant"] = np.linspace(first, last, self.output.samples), unit, text
         if self.last:
             found["last"] = np.arange(-self.last, 0), "1", "number of the impact, from the end"
@@ -123,6 +139,7 @@ class ImpactEngine:
     def validate(self) -> None:
         """Raise if a variant is not valid, before anything runs."""
         _ = self._parts
+        check_starts(self.grid, lambda index, run: self._continued(index, run))
 
     def require_alike(self) -> None:
         """Raise if the variants differ in more than numbers, before anything runs."""
@@ -134,7 +151,17 @@ class ImpactEngine:
         continuation.require_periodic(self.packed, self.output.period)
 
     def refusal_reason(self, index: int) -> str:
-        """Return the reason why a variant cannot run: none, since invalid variants are refused before any runs."""
+        """Return the reason why a variant cannot continue its start; "" if it can, or has none.
+
+        Other invalid variants are refused before any runs.
+        """
+        start = self.grid.start_at(index)
+        run = None if start is None else start.reached()
+        try:
+            if run is not None:
+                self._continued(index, run)
+        except RattleboxError as error:
+            return str(error)
         return ""
 
     def timed_case(self, number: int) -> Case | None:
@@ -142,9 +169,12 @@ class ImpactEngine:
         return None
 
     def variant(self, index: int) -> Case:
-        """Return the case of a variant, with the duration of its run."""
+        """Return the case of a variant, with the time at which its run ends."""
         part, _, number = self._part_of(index)
         duration = np.broadcast_to(part.packed.settings.duration, part.shape).flat[number]
+        start = self.grid.start_at(index)
+        if start is not None and self.variants.cycles is not None:  # which count from the start
+            duration = start.begin + duration
         return self.grid.case_at(self.case, index).model_copy(update={"duration": float(duration)})
 
     def _part_of(self, index: int) -> tuple[Batch, BlockOutput, int]:
@@ -163,10 +193,10 @@ class ImpactEngine:
     ) -> Values | None:
         """Run variants; see `Engine.run`."""
         proceed = proceed_unless(cancelled)
-        if self.variants.needs_run:
+        if self.variants.needs_run or self.grid.starts is not None:
             rows = []
             for index in numbers:
-                row = self._run_with_functions(index, proceed)
+                row = self._run_alone(index, proceed)
                 if row is None:
                     return None
                 rows.append(row)
@@ -230,26 +260,65 @@ class ImpactEngine:
             return None
         return with_intervals(values, output, shortest_windows(part.packed, part.shape, output)[first:last])
 
-    def _run_with_functions(self, index: int, proceed: Callable[..., bool]) -> dict[str, Any] | None:
-        """Return the outputs of one variant with the values of functions of its run; None if the work was cancelled.
+    def _run_alone(self, index: int, proceed: Callable[..., bool]) -> dict[str, Any] | None:
+        """Return the outputs of one variant, which may continue a run; None if the work was cancelled."""
+        start = self.grid.start_at(index)
+        if start is None:
+            return self._outputs_of(_Alone(self.variant(index), *self._part_of(index)), index, proceed)
+        run = start.reached(proceed)
+        if run is None:
+            return None
+        try:
+            one = self._continued(index, run)
+        except RattleboxError:  # the variant gets the status "refused"; see `refusal_reason`
+            return refused_row(self.outputs)
+        with reading_state():
+            return self._outputs_of(one, index, proceed)
+
+    def _outputs_of(self, one: _Alone, index: int, proceed: Callable[..., bool]) -> dict[str, Any] | None:
+        """Return the outputs of a variant, with the values of functions of its run; None if the work was cancelled.
 
         The variant runs once: the core takes the samples of the window and those of the run at the same time.
         """
-        part, output, number = self._part_of(index)
-        case = self.variant(index)
-        settings = part.packed.settings.replace(contact_samples=contact_samples(case))
-        sampled = replace(part, packed=part.packed.replace(settings=settings))
-        output = replace(output, times=case.sample_times())
-        values = self._run_part(sampled, output, number, number + 1, 1, proceed)
+        if not self.variants.needs_run:
+            return self._run_part(one.part, one.output, one.number, one.number + 1, 1, proceed)
+        settings = one.part.packed.settings.replace(contact_samples=contact_samples(one.case))
+        sampled = replace(one.part, packed=one.part.packed.replace(settings=settings))
+        output = replace(one.output, times=one.case.sample_times(one.begin))
+        values = self._run_part(sampled, output, one.number, one.number + 1, 1, proceed)
         if values is None:
             return None
-        (run,) = (run_from_core(case, raw) for raw in values.pop("runs"))
+        (raw,) = values.pop("runs")
+        run = run_from_core(one.case, from_start(raw, one.begin, len(one.case.each_stop)) if one.begin else raw)
         own = {}
         if run.ok:
-            start = float(np.broadcast_to(output.start, part.shape).flat[number])
+            start = float(np.broadcast_to(output.start, one.part.shape).flat[one.number])
             own = self.variants.call_functions(run, cut_before(run, start), index)
         names = (*self.variants.names_of_run, *self.variants.functions)
         return values | {name: np.array([own.get(name, np.nan)]) for name in names}
+
+    def _continued(self, index: int, run: Run) -> _Alone:
+        """Return a variant that continues a run; raise if it cannot."""
+        case = self.variant(index)
+        end = checked_end(case, run)
+        packed = pack_continued(case, run, end)
+        settings = packed.settings.replace(contact_samples=0, keep_end=False)
+        part, output, number = self._part_of(index)
+
+        def own(values: Any) -> Any:
+            return gather_values(values, part.shape, np.array([number])) if np.size(values) else values
+
+        names = ("shape", "participation", "residual_mass", "period")
+        first = end.time + float(np.ravel(own(output.start))[0])
+        if self.variants.cycles is None:
+            first = window_start(self.variants.skip, end.time)
+        return _Alone(
+            case,
+            Batch(packed.replace(settings=settings), (np.arange(1),)),
+            replace(output, start=first, **{name: own(getattr(output, name)) for name in names}),
+            0,
+            end.time,
+        )
 
     # ---- input of the core
 

@@ -16,9 +16,11 @@ from rattlebox._util.flags import flag_masks
 from rattlebox.analysis.cycle_loss import UNSTEADY, cycle_loss
 from rattlebox.analysis.shaken import MIN_SAMPLES
 from rattlebox.core._core import Status
+from rattlebox.engines.continued import checked_end
 from rattlebox.engines.dem import continue_dem, simulate_dem
+from rattlebox.engines.dem_continued import pack_continued
 from rattlebox.engines.end_state import EndState
-from rattlebox.engines.simulate import simulate_many
+from rattlebox.engines.simulate import continue_run, simulate_many
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Output
 from rattlebox.model.particle_case import direction_of_base
@@ -27,6 +29,7 @@ from rattlebox.prepare.time_step import WARNINGS, exceeded_limits
 from rattlebox.results import Run
 from rattlebox.studies.work.impact import ImpactEngine
 from rattlebox.studies.work.measures import MEASURES
+from rattlebox.studies.work.starting import check_starts, missing_value, window_start
 from rattlebox.studies.work.variants import Variants
 from rattlebox.studies.work.window import Window
 from rattlebox.studies.work.work import Cancelled, Outputs, Reduction, Signals, Values, proceed_unless
@@ -101,6 +104,7 @@ class ParticleEngine:
         if variants.cycles is not None and math.isnan(frequency):
             raise Hint("cycles require a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
         self._check_ends()
+        check_starts(self.grid, self._check_continuation)
         if variants.cycles is None:
             self._check_window(frequency)
         variants.require_structure()
@@ -127,6 +131,11 @@ class ParticleEngine:
                 refused = error
         raise refused
 
+    def _check_continuation(self, index: int, run: Run) -> None:
+        """Raise if a variant cannot continue a run."""
+        case = self.variant(index)
+        pack_continued(case, run.case, checked_end(case, run))
+
     def require_continuous(self) -> None:
         """Raise if the loads do not continue from one variant to the next."""
         self.validate()
@@ -141,7 +150,12 @@ class ParticleEngine:
 
     def refusal_reason(self, index: int) -> str:
         """Return the reason why a variant cannot run; "" if it can."""
+        start = self.grid.start_at(index)
+        run = None if start is None else start.reached()
         try:
+            if run is not None:
+                self._check_continuation(index, run)
+                return ""
             return refusal_reason(self.variant(index))
         except RattleboxError as error:
             return str(error)
@@ -153,15 +167,16 @@ class ParticleEngine:
         case = self.grid.case_at(self.case, index)
         if not case.particle_dampers:
             raise Hint("a variant has no particle damper", "one sweep for each kind of damper")
-        return self._set_window(case)
+        start = self.grid.start_at(index)
+        return self._set_window(case, 0.0 if start is None else start.begin)
 
-    def _set_window(self, case: Case) -> Case:
-        """Return a case with the duration and the samples of the study."""
+    def _set_window(self, case: Case, begin: float) -> Case:
+        """Return a case with the duration and the samples of the study, for a run from a time on [s]."""
         cycles, samples = self.variants.cycles, self.variants.samples
-        duration, skip = case.duration, self.variants.skip
+        duration, skip = case.duration, window_start(self.variants.skip, begin)
         if cycles is not None:
             period = 1 / _frequency(case)
-            duration, skip = sum(cycles) * period, cycles[0] * period
+            duration, skip = begin + sum(cycles) * period, begin + cycles[0] * period
             _check_start(case, skip)
             each = 64 if samples is None else max(1, math.ceil((samples - 1) / cycles[1]))
             samples = 1 + each * cycles[1]
@@ -175,14 +190,16 @@ class ParticleEngine:
 
     def window(self, run: Run, case: Case) -> Window:
         """Return the part of the run of a variant over which measures are evaluated."""
-        cycles = self.variants.cycles
-        start = self.variants.skip if cycles is None else cycles[0] / _frequency(case)
+        cycles, begin = self.variants.cycles, float(run.arrays.time[0])
+        start = window_start(self.variants.skip, begin) if cycles is None else begin + cycles[0] / _frequency(case)
         return Window.of(run, case, start, self.variants.observed)
 
     def timed_case(self, number: int) -> Case | None:
         """Return the case of a variant, or None if it cannot run; see `Engine.timed_case`."""
+        start = self.grid.start_at(number)
         try:
-            return self.variant(number)
+            case = self.variant(number)
+            return case if start is None else case.model_copy(update={"duration": case.duration - start.begin})
         except RattleboxError:  # the variant gets the status "refused"
             return None
 
@@ -247,7 +264,15 @@ class ParticleEngine:
         self, index: int, threads: int, proceed: Callable[..., bool], reduction: Reduction | None
     ) -> dict[str, Any] | None:
         """Run a variant, repeatedly until its motion is steady if allowed; return its outputs, None if it was stopped."""
-        case, cycles = self.variant(index), self.variants.cycles
+        start, cycles = self.grid.start_at(index), self.variants.cycles
+        if start is not None:
+            before = start.reached(proceed)
+            if before is None:
+                return None
+            case = self.variant(index)
+            run = continue_run(case, before, threads=threads, progress=proceed)
+            return None if run.status == "interrupted" else self._row(case, run, index, reduction)
+        case = self.variant(index)
         if not settle_all(case, proceed):
             return None
         if not self.extensions or cycles is None:
@@ -312,10 +337,8 @@ class ParticleEngine:
         outputs = self.outputs if reduction is None else {**self.outputs, **reduction.outputs}
 
         def column(name: str) -> NDArray[Any]:
-            extra, kind, _ = outputs[name]
-            missing = Status.refused if name == "status" else 0 if np.dtype(kind).kind == "i" else np.nan
-            empty = np.full([length for _, length in extra], missing)
-            return np.array([rows.get(index, {}).get(name, empty) for index in sorted(numbers)], kind)
+            empty = missing_value(outputs[name], name)
+            return np.array([rows.get(index, {}).get(name, empty) for index in sorted(numbers)], outputs[name][1])
 
         return {name: column(name) for name in outputs}
 
