@@ -2,14 +2,10 @@
 #pragma once
 
 #include "bindings/impact.hpp"
+#include "bindings/solids.hpp"
 #include "dem/records.hpp"
 
 namespace rattlebox::bindings {
-
-template <int axes>
-using Input = nb::ndarray<nb::numpy, const double, nb::ndim<axes>, nb::c_contig, nb::device::cpu>;
-template <int axes>
-using Indices = nb::ndarray<nb::numpy, const std::int64_t, nb::ndim<axes>, nb::c_contig, nb::device::cpu>;
 
 struct WallShape : Node {
     dem::Wall::Form form{};
@@ -21,6 +17,7 @@ struct WallShape : Node {
 struct CavityContents : Node {
     Input<2> shape;
     std::vector<WallShape> walls;
+    std::vector<SolidShape> solids; // after the walls
     Input<2> position, velocity, spin;
     Input<1> radius, mass, inertia;
     Indices<1> species;
@@ -45,10 +42,6 @@ struct DemNumbers : Node {
     std::vector<CavityContents> cavities;
     std::vector<PairLaws> pairs;
 };
-
-inline void require(bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(what);
-}
 
 inline Row one_row(const Input<1>& v) {
     require(v.shape(0) == 3, "a direction has three components");
@@ -89,6 +82,13 @@ inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::s
         dem::Wall wall{one_row(one.axis), one.form, one.material};
         wall.axis[3] = one.offset;
         target.walls.push_back(wall);
+    }
+    const int plain = static_cast<int>(target.walls.size());
+    for (const SolidShape& one : given.solids) {
+        require(one.material >= 0 && one.material < static_cast<int>(wall_material_count),
+                "a body has no laws");
+        target.solids.add(solid_of(one, static_cast<int>(target.walls.size())), plain, one.encloses);
+        target.walls.push_back({Row{}, dem::Wall::solid, one.material});
     }
     target.position = rows(given.position, n, "positions have three components");
     target.velocity = rows(given.velocity, n, "each particle needs a velocity");
@@ -206,6 +206,7 @@ inline void add_dem_problem(nb::module_& module) {
     nb::enum_<dem::Partner>(module, "Partner", nb::is_arithmetic(), "Body that a particle touches.")
         .value("particle", dem::Partner::particle)
         .value("wall", dem::Partner::wall);
+    add_solids(module);
     nb::enum_<dem::Wall::Form>(module, "WallForm")
         .value("plane", dem::Wall::plane)
         .value("cylinder", dem::Wall::cylinder)
@@ -222,7 +223,8 @@ inline void add_dem_problem(nb::module_& module) {
         module, "Cavity",
         "A cavity and its particles. `particle_pair` and `wall_pair` are the indices of the laws of two "
         "species, and of a species and a wall material.",
-        field("shape", &C::shape), field("walls", &C::walls), field("position", &C::position),
+        field("shape", &C::shape), field("walls", &C::walls),
+        field("solids", &C::solids, std::vector<SolidShape>{}), field("position", &C::position),
         field("velocity", &C::velocity), field("spin", &C::spin), field("radius", &C::radius),
         field("mass", &C::mass), field("inertia", &C::inertia), field("species", &C::species),
         field("particle_pair", &C::particle_pair), field("wall_pair", &C::wall_pair));

@@ -99,6 +99,11 @@ struct WallView {
 
     RATTLEBOX_INLINE void nearest_point(const int* k, const Columns& a, Vector<Group>& normal,
                                         Group& distance) const {
+        if (!list.near.empty()) { // computed before (dem/solid_contacts.hpp)
+            const auto near = columns([&](int l) { return &at(list.near, k[l]); });
+            normal = near.vector(), distance = near.w;
+            return;
+        }
         const Vector<Group> place = a.vector() - broadcast(bed.motion.displacement);
         const auto axis = columns([&](int l) { return &wall(k[l]).axis; });
         const Group along = dot(axis.vector(), place);

@@ -97,6 +97,7 @@ struct ContactList {
     std::vector<int> first, second; // particles; at walls the second is a wall
     std::vector<int> origin;        // index in the neighbour list
     std::vector<int> slot;          // of its history, or none
+    std::vector<Row> near;          // outward normal and distance of a wall, where there are solids
     int candidate_count = 0;
     std::vector<int> touching; // candidates that touch, ascending
     int touching_count = 0;

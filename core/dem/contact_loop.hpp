@@ -9,6 +9,7 @@
 #include "dem/neighbour_list.hpp"
 #include "dem/partition.hpp"
 #include "dem/prefetch.hpp"
+#include "dem/solid_contacts.hpp"
 
 namespace rattlebox::dem {
 
@@ -31,12 +32,17 @@ class ContactLoop {
     }
     Body body(int i) const { return {at(bed_.position, i), at(bed_.velocity, i), at(bed_.spin, i)}; }
 
+    WallPoint wall_point(const ContactList& list, int k) const {
+        if (!list.near.empty()) return {at(list.near, k) * row(1, 1, 1, 0), at(list.near, k)[3]};
+        return nearest_wall_point(at(bed_.cavity->walls, at(list.second, k)),
+                                  at(bed_.position, at(list.first, k)) - bed_.motion.displacement);
+    }
+
     NewContact new_contact_of(const ContactList& list, int k, Partner partner) const {
         const int i = at(list.first, k), j = at(list.second, k);
         const Body a = body(i);
         if (partner == particle) return new_contact(pair_law(i, j), a, body(j));
-        const WallPoint near =
-            nearest_wall_point(at(bed_.cavity->walls, j), a.position - bed_.motion.displacement);
+        const WallPoint near = wall_point(list, k);
         real mobility = a.velocity[3];
         for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, near.normal));
         return new_contact(wall_law(i, j), a, near, bed_.motion.velocity, mobility);
@@ -178,6 +184,7 @@ public:
             });
         };
         change(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, pair_, particle);
+        if (!bed_.cavity->solids.empty()) find_wall_points(chunk.walls, bed_, false);
         change(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall);
     }
 
@@ -205,6 +212,7 @@ public:
             at(bed_.chunk_motion, chunk.begin / Bed::chunk_size).moved + bed_.cavity_moved;
         ++chunk.walls.steps_since_scan, ++chunk.walls.steps;
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
+        if (!bed_.cavity->solids.empty()) find_wall_points(chunk.walls, bed_, true);
         compute(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall, sampled, chunk,
                 Prefetch());
         // The reaction on the cavity; its moment is a result only, and is computed for samples.
@@ -216,8 +224,7 @@ public:
             total -= f;
             if (sampled) {
                 const Row position = at(bed_.position, i) - bed_.motion.displacement;
-                const WallPoint near =
-                    nearest_wall_point(at(bed_.cavity->walls, at(list.second, k)), position);
+                const WallPoint near = wall_point(list, k);
                 moment -= cross(position + near.normal * near.distance, f);
                 if (wall_.rolls) moment -= at(list.contact_forces.torque, a);
             }

@@ -12,6 +12,7 @@
 // L. Verlet, Phys. Rev. 159 (1967) 98, doi:10.1103/PhysRev.159.98.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "dem/bed.hpp"
@@ -26,7 +27,7 @@ class NeighbourList {
 
     // A contact that changes its chunk in a sort, with indices from before the sort.
     struct MovedContact {
-        int first, second, wall, slot;
+        int first, second, leaf, slot; // particle and none, or none and a leaf of the walls
     };
     // The contacts of a chunk before the sort, their histories, and the bounding box of its particles.
     struct OutgoingContacts {
@@ -87,7 +88,9 @@ public:
             for (int a = 0; a < list->touching_count; ++a) {
                 const int k = at(list->touching, a), i = at(list->first, k), j = at(list->second, k);
                 const bool at_wall = list == &chunk.walls;
-                outgoing.moving.push_back({i, at_wall ? none : j, at_wall ? j : none, at(list->slot, k)});
+                // At walls the leaf identifies the contact, of which a surface may have many.
+                const int leaf = at(list->origin, k) - (i - chunk.begin) * bed.cavity->leaves();
+                outgoing.moving.push_back({i, at_wall ? none : j, at_wall ? leaf : none, at(list->slot, k)});
             }
         chunk.pairs.move_history(outgoing.pairs), chunk.walls.move_history(outgoing.walls);
     }
@@ -221,19 +224,19 @@ public:
 
     // Moves contacts to the chunks of their first partners, if these are from `first` to `until`.
     void distribute_contacts(Bed& bed, int first, int until) const {
-        const int walls = static_cast<int>(bed.cavity->walls.size());
+        const int leaves = bed.cavity->leaves();
         for (const OutgoingContacts& from : outgoing_)
             for (const MovedContact& m : from.moving) {
                 // The sort may have exchanged which partner has the lower index, and with it the owner of the
                 // contact and the sign of its springs.
-                int i = cells_.new_index(m.first), j = m.wall == none ? cells_.new_index(m.second) : i;
+                int i = cells_.new_index(m.first), j = m.leaf == none ? cells_.new_index(m.second) : i;
                 const bool swapped = i > j;
                 if (swapped) std::swap(i, j);
                 if (i < first || i >= until) continue;
                 Chunk& chunk = at(bed.chunks, i / Bed::chunk_size);
                 const auto own = static_cast<std::uint8_t>(i - chunk.begin);
-                if (m.wall != none) {
-                    chunk.walls.add_contact(i, m.wall, own * walls + m.wall,
+                if (m.leaf != none) {
+                    chunk.walls.add_contact(i, bed.cavity->wall_of(m.leaf), own * leaves + m.leaf,
                                             chunk.walls.history.add(from.walls, m.slot, 1));
                     continue;
                 }
@@ -305,7 +308,9 @@ public:
         choose_skin(chunk.walls, bed.smallest, 0.5 * bed.smallest);
         const real skin = chunk.walls.skin;
         const auto& all_walls = bed.cavity->walls;
-        const int walls = static_cast<int>(all_walls.size()), last = bed.particles() - 1;
+        const Solids& solids = bed.cavity->solids;
+        const int walls = solids.empty() ? static_cast<int>(all_walls.size()) : solids.plain_walls();
+        const int last = bed.particles() - 1;
         const Row c = bed.motion.displacement;
         thread_local std::vector<std::uint32_t> masks;
         masks.assign(static_cast<std::size_t>(chunk.end - chunk.begin) + group, 0);
@@ -326,6 +331,7 @@ public:
             }
             for (int l = 0; l < used; ++l) count += __builtin_popcount(mask[l]);
         }
+        if (!solids.empty()) return scan_solids(bed, chunk, masks.data());
         ContactList& list = chunk.walls;
         const std::vector<int>& slot = slots_by_origin(list, (chunk.end - chunk.begin) * walls);
         list.resize(count);
@@ -334,6 +340,42 @@ public:
                 const int w = __builtin_ctz(rest), own = i - chunk.begin, origin = own * walls + w;
                 list.set_candidate(k, i, w, origin, at(slot, origin));
             }
+        list.pad(chunk.begin, 0);
+    }
+
+    // The same where there are solids, whose leaves follow the plain walls; `masks` has the plain walls of
+    // each particle.
+    static void scan_solids(const Bed& bed, Chunk& chunk, const std::uint32_t* masks) {
+        const Solids& solids = bed.cavity->solids;
+        const int leaves = solids.leaves();
+        ContactList& list = chunk.walls;
+        thread_local std::vector<int> origins;
+        thread_local std::vector<std::pair<int, int>> touching; // origin and slot
+        origins.clear(), touching.clear();
+        for (int a = 0; a < list.touching_count; ++a) {
+            const int k = at(list.touching, a);
+            touching.emplace_back(at(list.origin, k), at(list.slot, k));
+        }
+        std::sort(touching.begin(), touching.end());
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            const int from = (i - chunk.begin) * leaves;
+            for (std::uint32_t rest = masks[i - chunk.begin]; rest != 0; rest &= rest - 1)
+                origins.push_back(from + __builtin_ctz(rest));
+            const Row place = (at(bed.position, i) - bed.motion.displacement) * row(1, 1, 1, 0);
+            const int outside = solids.near(place, at(bed.position, i)[3] + list.skin,
+                                            [&](int leaf) { origins.push_back(from + leaf); });
+            if (outside >= 0) chunk.stop_reason = {Status::escaped, i, outside, 0};
+        }
+        const int count = static_cast<int>(origins.size());
+        list.resize(count);
+        auto old = touching.begin();
+        for (int k = 0; k < count; ++k) {
+            const int origin = at(origins, k), own = origin / leaves;
+            while (old != touching.end() && old->first < origin) ++old;
+            const bool has_slot = old != touching.end() && old->first == origin;
+            list.set_candidate(k, chunk.begin + own, solids.wall_of(origin - own * leaves), origin,
+                               has_slot ? old->second : none);
+        }
         list.pad(chunk.begin, 0);
     }
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem/pair_laws.hpp"
+#include "dem/solids.hpp"
 #include "dem/walls.hpp"
 #include "structure/loads.hpp"
 #include "structure/mode.hpp"
@@ -16,8 +17,9 @@
 namespace rattlebox::dem {
 
 struct Cavity {
-    std::vector<Row> shape; // displacement of the centre per unit of each mode
-    std::vector<Wall> walls;
+    std::vector<Row> shape;  // displacement of the centre per unit of each mode
+    std::vector<Wall> walls; // those of solids come last
+    Solids solids;
     std::vector<Row> position, velocity, spin; // by particle; the fourth number of a position is the radius
     std::vector<real> mass, inertia;
     std::vector<int> species;
@@ -26,6 +28,9 @@ struct Cavity {
     int species_count = 0, wall_material_count = 0;
 
     int particles() const { return static_cast<int>(position.size()); }
+    // What a particle can touch: plain walls, bodies, and triangles.
+    int leaves() const { return solids.empty() ? static_cast<int>(walls.size()) : solids.leaves(); }
+    int wall_of(int leaf) const { return solids.empty() ? leaf : solids.wall_of(leaf); }
 };
 
 struct Problem {

@@ -71,6 +71,7 @@ class RestartCheck {
 
     static void check(const Bed& bed, const Chunk& chunk, bool has_forces) {
         const int n = bed.particles(), walls = static_cast<int>(bed.cavity->walls.size());
+        const int leaves = bed.cavity->leaves();
         const int near = static_cast<int>(chunk.neighbour_second.size());
         require(chunk.neighbour_first.size() == chunk.neighbour_second.size());
         require(is_within(chunk.highest_neighbour, 0, n));
@@ -84,9 +85,9 @@ class RestartCheck {
             return chunk.begin + at(chunk.neighbour_first, p) == at(pairs.first, k) &&
                    at(chunk.neighbour_second, p) == at(pairs.second, k);
         });
-        check(at_walls, chunk, walls, (chunk.end - chunk.begin) * walls, has_forces, [&](int k) {
-            return at(at_walls.origin, k) ==
-                   (at(at_walls.first, k) - chunk.begin) * walls + at(at_walls.second, k);
+        check(at_walls, chunk, walls, (chunk.end - chunk.begin) * leaves, has_forces, [&](int k) {
+            const int leaf = at(at_walls.origin, k) - (at(at_walls.first, k) - chunk.begin) * leaves;
+            return is_within(leaf, 0, leaves) && bed.cavity->wall_of(leaf) == at(at_walls.second, k);
         });
     }
 

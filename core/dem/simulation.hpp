@@ -97,6 +97,12 @@ class Simulation {
             bed.spin.push_back(w);
             bed.id.push_back(i);
         }
+        if (!cavity.solids.empty()) {
+            real largest = 0;
+            for (const Row& p : cavity.position) largest = larger(largest, p[3]);
+            // A scan lists walls within half of the smallest radius.
+            cavity.solids.build(bed.smallest, largest, 0.5 * bed.smallest);
+        }
         bed.position.assign(cavity.position.begin(), cavity.position.end());
         bed.species.assign(cavity.species.begin(), cavity.species.end());
         for (auto* rows : {&cavity.position, &cavity.velocity, &cavity.spin}) std::vector<Row>().swap(*rows);

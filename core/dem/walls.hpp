@@ -7,7 +7,7 @@ namespace rattlebox::dem {
 
 // A wall in coordinates relative to the centre of its cavity.
 struct Wall {
-    enum Form : int { plane = 0, cylinder = 1, sphere = 2 };
+    enum Form : int { plane = 0, cylinder = 1, sphere = 2, solid = 3 }; // the last: dem/solids.hpp
     // Outward normal of a plane or axis of a cylinder; the fourth number is the distance or the radius.
     Row axis{};
     Form form = plane;

@@ -1045,6 +1045,90 @@ class Partner(enum.IntEnum):
 
     wall = 1
 
+class SolidForm(enum.Enum):
+    rod = 0
+
+    plate = 1
+
+    ball = 2
+
+    mesh = 3
+
+class Solid(Node):
+    """
+    A body in a cavity, or a closed surface of triangles with normals out of the space of the particles. `size` is half of the edges of a plate, radius and half of the length of a rod, or the radius of a ball [m]; the third of the axes is along a rod.
+    """
+
+    def __init__(self, *, form: SolidForm, material: int, encloses: bool, smooth: float, centre: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], size: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], axes: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], faces: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+
+    @property
+    def form(self) -> SolidForm: ...
+
+    @property
+    def material(self) -> int: ...
+
+    @property
+    def encloses(self) -> bool: ...
+
+    @property
+    def smooth(self) -> float: ...
+
+    @property
+    def centre(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def size(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def axes(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def vertices(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def faces(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class SurfaceContacts(Node):
+    """
+    Contacts of spheres with solids: number of the sphere and of the solid, outward normal, and distance of the centre [m].
+    """
+
+    def __init__(self, *, point: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], solid: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], normal: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None: ...
+
+    @property
+    def point(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def solid(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def normal(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def distance(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def crossing_triangles(vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], faces: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu')]:
+    """Return pairs of triangles that cross each other, a hundred at most."""
+
+class Surfaces:
+    """The solids of a cavity."""
+
+    def __init__(self, solids: Sequence[Solid]) -> None: ...
+
+    def distances(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]:
+        """
+        Return the distance of each point from each solid, positive where particles may be.
+        """
+
+    def contacts(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> SurfaceContacts:
+        """Return the contacts of spheres, as a run has them."""
+
 class WallForm(enum.Enum):
     plane = 0
 
@@ -1079,13 +1163,16 @@ class Cavity(Node):
     A cavity and its particles. `particle_pair` and `wall_pair` are the indices of the laws of two species, and of a species and a wall material.
     """
 
-    def __init__(self, *, shape: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], walls: Sequence[Wall], position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], spin: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radius: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], particle_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wall_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, *, shape: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], walls: Sequence[Wall], solids: Sequence[Solid] = [], position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], spin: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radius: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], particle_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wall_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
 
     @property
     def shape(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
 
     @property
     def walls(self) -> list[Wall]: ...
+
+    @property
+    def solids(self) -> list[Solid]: ...
 
     @property
     def position(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
