@@ -95,6 +95,7 @@ from rattlebox.plots.loss_map import plot_loss_map as plot_loss_map
 from rattlebox.plots.lyapunov import plot_lyapunov as plot_lyapunov
 from rattlebox.plots.map_response import plot_response_from_map as plot_response_from_map
 from rattlebox.plots.maps import plot_map as plot_map
+from rattlebox.plots.orbits import plot_orbit as plot_orbit
 from rattlebox.plots.particles import film_particles as film_particles
 from rattlebox.plots.particles import plot_particles as plot_particles
 from rattlebox.plots.response import plot_frequency_response as plot_frequency_response
@@ -132,6 +133,8 @@ from rattlebox.studies.kinds.sweep import check_step as check_step
 from rattlebox.studies.kinds.sweep import compare as compare
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.maps.response_from_map import response_from_map as response_from_map
+from rattlebox.studies.orbits.find import find_orbit as find_orbit
+from rattlebox.studies.orbits.orbit import Orbit as Orbit
 from rattlebox.studies.run.stored import open_study as open_study
 from rattlebox.studies.run.stored import study_remarks as study_remarks
 from rattlebox.studies.run.stored import to_mat as to_mat

@@ -15,6 +15,7 @@ from .lyapunov import plot_lyapunov
 from .map_response import plot_response_from_map
 from .maps import plot_map
 from .motion import plot_motion
+from .orbits import plot_orbit
 from .particles import film_particles, plot_particles
 from .phase import plot_phase_portrait
 from .response import plot_frequency_response
@@ -65,6 +66,7 @@ __all__ = [
     "plot_lyapunov",
     "plot_map",
     "plot_motion",
+    "plot_orbit",
     "plot_particles",
     "plot_phase_portrait",
     "plot_psd",

@@ -1,0 +1,1 @@
+"""Periodic motions: search, stability, continuation in a parameter, and their bifurcations."""

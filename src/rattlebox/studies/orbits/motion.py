@@ -1,0 +1,137 @@
+"""One period of a motion in detail: amplitudes, contacts, and the smallest gaps without a contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.core import _core
+from rattlebox.core._core import Status
+from rattlebox.prepare.pack import pack
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+Vector = NDArray[np.float64]
+
+SAMPLES = 512
+"""Number of samples of a period, between which positions are cubic polynomials with an error of about 1e-11."""
+MOST_EVENTS = 20_000
+"""Largest number of flights and contacts in a stretch; a search may pass through states that no motion has."""
+_TOUCHING = 1e-9
+"""Gap over the clearance, below which the end of an interval belongs to a contact."""
+
+
+class NearMiss(NamedTuple):
+    """Smallest gap between two bodies that do not touch then: a minimum of the gap over time."""
+
+    contact: int
+    time: float  # [s]
+    gap: float  # [m]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Samples of a motion, with both sides of each hard impact, and its impacts."""
+
+    time: Vector  # (T,) [s]
+    state: Vector  # (T, n), as the core orders it
+    impacts: _core.Impacts
+    dampers: tuple[_core.Damper, ...]
+    modes: int
+
+    def extremes(self, shape: Vector) -> tuple[float, float]:
+        """Return the smallest and the largest displacement of a point with mode shapes (m,) [m]."""
+        x, v = self.state[:, 0 : 2 * self.modes : 2] @ shape, self.state[:, 1 : 2 * self.modes : 2] @ shape
+        values = np.concatenate([x, _turning_points(self.time, x, v)[1]])
+        return float(values.min()), float(values.max())
+
+    def gaps(self) -> tuple[Vector, Vector]:
+        """Return the gaps of all contacts and their rates, (T, contacts), in the order of the contacts of the core."""
+        q, p = self.state[:, 0 : 2 * self.modes : 2], self.state[:, 1 : 2 * self.modes : 2]
+        balls = sum(np.size(damper.mass) for damper in self.dampers)
+        places, speeds = np.split(self.state[:, 2 * self.modes : 2 * (self.modes + balls)], 2, axis=1)
+        first, gap, rate = 0, list[Vector](), list[Vector]()
+        for damper in self.dampers:
+            half = 0.5 * float(damper.clearance)
+            own = slice(first, first := first + int(np.size(damper.mass)))
+            for row, motion, part, edge in ((gap, q, places, half), (rate, p, speeds, 0.0)):
+                centre = motion @ damper.shape
+                if own.start == own.stop:  # a stop
+                    row.append((edge - centre)[:, None])
+                else:
+                    inside = np.column_stack([centre - edge, part[:, own], centre + edge])
+                    row.append(np.diff(inside, axis=1))
+        return np.hstack(gap), np.hstack(rate)
+
+    def near_misses(self) -> list[NearMiss]:
+        """Return the minima of all gaps over time at which there is no contact."""
+        gap, rate = self.gaps()
+        found = []
+        size = max((float(damper.clearance) for damper in self.dampers), default=1.0)
+        for contact in range(gap.shape[1]):
+            times, values = _turning_points(self.time, gap[:, contact], rate[:, contact], rising=True)
+            found += [
+                NearMiss(contact, float(t), float(g))
+                for t, g in zip(times, values, strict=True)
+                if g > _TOUCHING * size
+            ]
+        return sorted(found, key=lambda miss: miss.gap)
+
+
+def started(case: Case, state: Vector, duration: float, times: Vector, *, contacts: int = 0) -> _core.Problem:
+    """Return the packed case that starts from a state of the core and ends after some time [s]."""
+    problem = start_at(pack(case), state, duration, times)
+    return problem.replace(settings=problem.settings.replace(contact_samples=contacts))
+
+
+def start_at(problem: _core.Problem, state: Vector, duration: float, times: Vector) -> _core.Problem:
+    """Return a problem that starts from a state and ends after some time [s], with samples at some times."""
+    m = 2 * int(problem.mode_decay.size)
+    n = sum(int(np.size(damper.mass)) for damper in problem.dampers)
+    dampers, first = [], m
+    for damper in problem.dampers:
+        own = slice(first, first := first + int(np.size(damper.mass)))
+        place, speed = (np.ascontiguousarray(part) for part in (state[own], state[own.start + n : own.stop + n]))
+        dampers.append(damper.replace(position=place, velocity=speed))
+    return problem.replace(
+        mode_displacement=np.ascontiguousarray(state[0:m:2]),
+        mode_velocity=np.ascontiguousarray(state[1:m:2]),
+        dampers=dampers,
+        sample_times=times,
+        settings=problem.settings.replace(duration=duration),
+    )
+
+
+def motion_of(case: Case, state: Vector, duration: float) -> Motion | None:
+    """Return a motion with its samples; None if it cannot be computed."""
+    problem = started(case, state, duration, np.linspace(0, duration, SAMPLES + 1), contacts=MOST_EVENTS)
+    most = min(problem.settings.max_events, MOST_EVENTS)
+    problem = problem.replace(settings=problem.settings.replace(max_events=most))
+    (raw,) = _core.simulate([problem], 1)
+    if raw.status != Status.finished:
+        return None
+    size = 2 * (int(problem.mode_decay.size) + sum(int(np.size(damper.mass)) for damper in problem.dampers))
+    return Motion(raw.time, raw.state[:, :size], raw.impacts, tuple(problem.dampers), int(problem.mode_decay.size))
+
+
+def _turning_points(time: Vector, x: Vector, v: Vector, *, rising: bool = False) -> tuple[Vector, Vector]:
+    """Return times and values of the extremes inside the intervals; only minima if `rising`.
+
+    Between two samples x is the cubic polynomial with the values and slopes at both.
+    """
+    h = np.diff(time)
+    inside = (h > 0) & ((v[:-1] < 0) & (v[1:] > 0) if rising else v[:-1] * v[1:] < 0)
+    k = np.flatnonzero(inside)
+    h, a, b = h[k], v[k], v[k + 1]
+    slope = (x[k + 1] - x[k]) / h
+    # v(s) = a + 2 c s + 3 d s^2 on 0 <= s <= 1, in units of the interval
+    c, d = 3 * slope - 2 * a - b, a + b - 2 * slope
+    # The root between both samples, without cancellation if d is small.
+    root = np.sqrt(np.maximum(c * c - 3 * a * d, 0.0))
+    sign = np.where(b > a, 1.0, -1.0)
+    s = np.clip(-a / (c + sign * root), 0.0, 1.0)
+    return time[k] + s * h, x[k] + h * (a * s + c * s**2 + d * s**3)

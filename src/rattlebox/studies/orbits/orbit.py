@@ -1,0 +1,337 @@
+"""A periodic motion with its stability, its impacts and its distance to grazing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox._util.html import code_block
+from rattlebox._util.quantities import amount, digits, quantity
+from rattlebox.core import _core
+from rattlebox.engines.simulate import run_from_core
+from rattlebox.engines.status import contact_name
+from rattlebox.model.units import whole_number
+from rattlebox.prepare.pack import pack
+from rattlebox.studies.orbits.forcing import Forcing
+from rattlebox.studies.orbits.motion import Motion, motion_of, started
+from rattlebox.studies.orbits.stability import ON_CIRCLE, stability_words
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rattlebox.model.case import Case
+    from rattlebox.results.run import Run
+    from rattlebox.studies.orbits.shooting import ReturnMap, Shot
+
+Vector = NDArray[np.float64]
+
+
+_MOST_LINES = 8
+"""Number of impacts that are printed."""
+
+
+class OrbitImpact(NamedTuple):
+    """An impact of a periodic motion.
+
+    Attributes
+    ----------
+    place : str
+        Damper and wall, pair of balls, or stop.
+    phase : float
+        Time in the period of the motion over the period, from 0 to 1, where the loads have their phase at t = 0.
+    approach_speed : float
+        Approach speed [m/s].
+    restitution : float
+        Separation speed over approach speed.
+    contact : int
+        Number of the contact, counted over all dampers and stops from 0.
+    """
+
+    place: str
+    phase: float
+    approach_speed: float
+    restitution: float
+    contact: int
+
+
+class Approach(NamedTuple):
+    """The smallest gap of a periodic motion between bodies that turn back before they touch.
+
+    Attributes
+    ----------
+    place : str
+        Damper and wall, pair of balls, or stop.
+    phase : float
+        Time in the period of the motion over the period.
+    gap : float
+        Smallest gap [m].
+    contact : int
+        Number of the contact, counted over all dampers and stops from 0.
+    """
+
+    place: str
+    phase: float
+    gap: float
+    contact: int
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """A periodic motion of a case, from `rattlebox.find_orbit` or a point of `rattlebox.continue_orbit`.
+
+    Attributes
+    ----------
+    case : Case
+        Case with the values of the parameters.
+    cycles : int
+        Number of periods of the loads in a period of the motion.
+    period : float
+        Period of the motion [s].
+    state : (n,) ndarray
+        State at the beginning: displacement and velocity of each mode, then positions and velocities of all balls.
+    phase : float
+        Part of the period of the loads at which the state is taken; 0 unless a contact is near then.
+    residual : float
+        Difference of the state after a period, over the largest values of its components.
+    multipliers : (n,) ndarray
+        Floquet multipliers, the largest first, complex.
+    impacts : tuple of OrbitImpact
+        Impacts of one period in their order.
+    nearest_miss : Approach or None
+        Smallest gap of a contact at a time at which the bodies turn back; None if they touch at each approach.
+    is_symmetric : bool
+        Whether the motion repeats with the opposite sign after half a period.
+    amplitudes : dict of str to float
+        Half the peak-to-peak displacement of each point [m].
+    determinant_error : float
+        Difference of the product of the multipliers from that of the loss of the impacts and the damping, over its value;
+        NaN if a contact is not a hard impact with a constant restitution.
+    sticks : bool
+        Whether bodies stick together for a part of the period.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.Case(
+    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    ...     ),
+    ...     load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
+    ...     method=rb.Newton(),
+    ...     duration="3 s",
+    ... )
+    >>> orbit = rb.find_orbit(case)
+    >>> orbit.is_stable, orbit.cycles, len(orbit.impacts)
+    (True, 1, 2)
+    """
+
+    case: Case
+    cycles: int
+    period: float
+    state: Vector
+    phase: float
+    residual: float
+    multipliers: NDArray[np.complex128]
+    impacts: tuple[OrbitImpact, ...]
+    nearest_miss: Approach | None
+    is_symmetric: bool
+    amplitudes: Mapping[str, float]
+    determinant_error: float
+    sticks: bool
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether all multipliers are inside of the unit circle."""
+        return bool((np.abs(self.multipliers) < 1).all())
+
+    @property
+    def stability(self) -> str:
+        """Kind of stability in words."""
+        return stability_words(self.multipliers)
+
+    @property
+    def slowest_impact(self) -> OrbitImpact | None:
+        """Impact with the smallest approach speed; None without impacts."""
+        return min(self.impacts, key=lambda impact: impact.approach_speed, default=None)
+
+    def run(self, periods: int = 1) -> Run:
+        """Simulate the motion.
+
+        Parameters
+        ----------
+        periods
+            Number of periods of the motion.
+
+        Returns
+        -------
+        Run
+            Run that starts on the motion. Its time begins at the phase of the state; its case has the loads with the phases
+            that they have then. An unstable motion departs from it after some periods.
+
+        Raises
+        ------
+        CaseError
+            If `periods` is not a positive whole number.
+        """
+        duration = whole_number(periods, "periods", 1) * self.period
+        case = self._shifted().replaced({"duration": duration})
+        packed = pack(case)
+        problem = started(case, self.state, duration, packed.sample_times, contacts=packed.settings.contact_samples)
+        problem = problem.replace(settings=problem.settings.replace(keep_end=True))
+        (raw,) = _core.simulate([problem], 1)
+        return run_from_core(case, raw, problem, f"a periodic motion of {quantity(self.period, 's', 6)}")
+
+    def _shifted(self) -> Case:
+        """Return the case whose time begins at the phase of the state."""
+        return Forcing.of(self.case).shifted(self.phase)
+
+    def plot(self, **options: Any) -> Figure:
+        """Draw the motion over a period and its multipliers in the complex plane.
+
+        Parameters
+        ----------
+        **options
+            Those of `rattlebox.plots.plot_orbit`.
+
+        Returns
+        -------
+        Figure
+            Figure with two panels.
+        """
+        # studies must not import the figures statically, which are above them
+        figure: Figure = import_module("rattlebox.plots.orbits").plot_orbit(self, **options)
+        return figure
+
+    def __str__(self) -> str:
+        return "\n".join(self._lines())
+
+    def _repr_html_(self) -> str:
+        return code_block(str(self))
+
+    def _lines(self) -> Iterator[str]:
+        several = f"{self.cycles} cycles" if self.cycles > 1 else "1 cycle"
+        symmetric = "symmetric" if self.is_symmetric else "not symmetric"
+        yield f"periodic motion of {several} of the loads, {quantity(self.period, 's', 6)}, {symmetric}"
+        yield f"stability      {self.stability}"
+        yield f"multipliers    {', '.join(_multiplier_words(self.multipliers))}"
+        for point, size in self.amplitudes.items():
+            yield f"amplitude      {quantity(size, 'm', 6)} of {point}"
+        for impact in self.impacts[:_MOST_LINES]:
+            speed = quantity(impact.approach_speed, "m/s")
+            yield f"impact         {impact.place} at {impact.phase:.4f} of the period, {speed}"
+        if len(self.impacts) > _MOST_LINES or not self.impacts:
+            yield f"impacts        {len(self.impacts) or 'none'}"
+        if self.nearest_miss is not None:
+            miss = self.nearest_miss
+            yield f"nearest miss   {miss.place} at {miss.phase:.4f} of the period, {quantity(miss.gap, 'm')}"
+        if self.sticks:
+            yield "sticking       bodies stick together for a part of the period"
+        yield f"residual       {self.residual:.1e}"
+        if math.isfinite(self.determinant_error):
+            yield f"determinant    agrees with the losses to {self.determinant_error:.1e}"
+
+
+def _multiplier_words(multipliers: NDArray[np.complex128]) -> Iterator[str]:
+    """Yield real multipliers, and each conjugate pair once with its angle."""
+    for value in multipliers:
+        if abs(value.imag) <= 1e-12 * abs(value):
+            yield digits(float(value.real))
+        elif value.imag > 0:
+            yield f"{digits(abs(value))} (pair at {amount(math.degrees(np.angle(value)), '', 4)} deg)"
+
+
+def orbit_of(
+    returns: ReturnMap, shot: Shot, state: Vector, scale: Vector, values: Sequence[float] = ()
+) -> Orbit | None:
+    """Return the periodic motion of a fixed point; None if its motion cannot be computed."""
+    case = returns.forcing.case
+    if len(returns.parameters):
+        case = case.replaced(dict(zip(returns.parameters, map(float, values), strict=True)))
+    period = returns.cycles * returns.forcing.period_of(returns.parameters, values)[0]
+    motion = motion_of(Forcing.of(case).shifted(returns.phase), state, period)
+    if motion is None:
+        return None
+    matrix = shot.monodromy()
+    multipliers = np.linalg.eigvals(matrix).astype(complex)
+    if returns.mirrored:
+        multipliers = multipliers**2
+        matrix = matrix @ matrix
+    order = np.lexsort((-multipliers.imag, -np.abs(multipliers).round(12)))
+    names, counts = _names(case)
+    shift = returns.phase / returns.cycles
+    offsets = np.concatenate([[0], np.cumsum([count + 1 for count in counts])])
+    impacts = [
+        _impact(names, counts, int(offsets[damper] + contact), (time / period + shift) % 1.0, speed, ratio)
+        for damper, contact, time, speed, ratio in zip(
+            motion.impacts.damper,
+            motion.impacts.contact,
+            motion.impacts.time,
+            motion.impacts.approach_speed,
+            motion.impacts.restitution,
+            strict=True,
+        )
+    ]
+    misses = motion.near_misses()
+    nearest = None
+    if misses:
+        miss = misses[0]
+        phase = (miss.time / period + shift) % 1.0
+        nearest = Approach(contact_name(names, counts, miss.contact), phase, miss.gap, miss.contact)
+    return Orbit(
+        case=case,
+        cycles=returns.cycles,
+        period=period,
+        state=state,
+        phase=returns.phase,
+        residual=float(np.abs(shot.residual / scale).max()),
+        multipliers=multipliers[order],
+        impacts=tuple(sorted(impacts, key=lambda impact: impact.phase)),
+        nearest_miss=nearest,
+        is_symmetric=returns.mirrored,
+        amplitudes=_amplitudes(case, motion),
+        determinant_error=_determinant_error(case, motion, matrix, period) if not shot.has_rest else math.nan,
+        sticks=shot.has_rest,
+    )
+
+
+def _impact(
+    names: Sequence[str], counts: Sequence[int], contact: int, phase: float, speed: float, ratio: float
+) -> OrbitImpact:
+    return OrbitImpact(contact_name(names, counts, contact), phase, float(speed), float(ratio), contact)
+
+
+def _names(case: Case) -> tuple[list[str], list[int]]:
+    """Return the names of dampers and stops, and their numbers of balls."""
+    dampers = case.impact_dampers
+    names = [damper.label(index) for index, damper in enumerate(dampers)] + [stop.name for stop in case.each_stop]
+    return names, [len(damper.balls) for damper in dampers] + [0] * len(case.each_stop)
+
+
+def _amplitudes(case: Case, motion: Motion) -> dict[str, float]:
+    """Return half the peak-to-peak displacement of each point [m]."""
+    sizes = {}
+    for point, shape in case.modes.lines().items():
+        low, high = motion.extremes(np.asarray(shape))
+        sizes[point] = 0.5 * (high - low)
+    return sizes
+
+
+def _determinant_error(case: Case, motion: Motion, matrix: Vector, period: float) -> float:
+    r"""Return the relative difference of the determinant from its rule; NaN if the rule does not apply.
+
+    .. math:: \det M = e^{-2 T \sum_i \zeta_i \omega_i} \prod_k e_k^2
+    """
+    problem = pack(case)
+    if problem.settings.method is not _core.Method.newton:
+        return math.nan
+    if not all(isinstance(contact.restitution, _core.ConstantRestitution) for contact in problem.contacts):
+        return math.nan
+    rule = math.exp(-2 * period * float(np.sum(problem.mode_decay))) * float(np.prod(motion.impacts.restitution**2))
+    return abs(float(np.linalg.det(matrix)) / rule - 1) if rule > ON_CIRCLE**2 else math.nan
