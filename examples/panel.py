@@ -50,11 +50,10 @@ damper = rb.ParticleDamper(
 run = {"base": rb.Random("gevs_acceptance", LENGTH, seed=1), "duration": LENGTH, "output": rb.Output(rate="10 kHz")}
 levels, (figure, axes) = {}, plt.subplots(figsize=(7, 3), layout="constrained")
 for name, dampers in {"bare": {}, "with particles": {"damper": damper}}.items():
-    motion = rb.simulate(rb.Case(structure=panel, **run, **dampers)).motion
-    along_z = motion.sel(axis="z") if "axis" in motion.dims else motion
+    along_z = rb.simulate(rb.Case(structure=panel, **run, **dampers)).along("z")
     velocity = along_z.velocity.sel(point="middle") + along_z.base_velocity
     absolute = velocity.differentiate("time").assign_attrs(units="m/s^2")
-    density = power_spectral_density(motion.time, absolute, resolution=2).density
+    density = power_spectral_density(along_z.time, absolute, resolution=2).density
     level = band_levels(density.sel(frequency=slice(20, 2000))) / G
     place, colour = np.arange(level.size) + 0.4 * len(levels), rb.plots.SERIES_COLOURS[len(levels)]
     axes.bar(place, level, width=0.4, color=colour, label=name)

@@ -27,11 +27,10 @@ def levels(bands=("200",), seed=1, table="gevs_acceptance", **changed):
     """Return RMS accelerations of the middle in third octaves [g], RMS force on the base [N] and RMS displacement [m]."""
     dampers = {"damper": DAMPER.model_copy(update=changed)} if changed else {}
     run = PANEL["run"] | {"base": rb.Random(table, PANEL["LENGTH"], seed=seed)}
-    motion = rb.simulate(rb.Case(structure=PANEL["panel"], **run, **dampers), progress=False).motion
-    along_z = motion.sel(axis="z") if "axis" in motion.dims else motion
+    along_z = rb.simulate(rb.Case(structure=PANEL["panel"], **run, **dampers), progress=False).along("z")
     velocity = along_z.velocity.sel(point="middle") + along_z.base_velocity
     absolute = velocity.differentiate("time").assign_attrs(units="m/s^2")
-    density = power_spectral_density(motion.time, absolute, resolution=2).density
+    density = power_spectral_density(along_z.time, absolute, resolution=2).density
     level = band_levels(density.sel(frequency=slice(20, 2000))) / G
     moved = along_z.displacement.sel(point="middle")
     return [

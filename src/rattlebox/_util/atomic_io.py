@@ -10,7 +10,7 @@ import errno
 import glob
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
@@ -62,9 +62,9 @@ def require_readable(path: Path) -> None:
         raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
 
 
-def check_format(path: Path, version: object, supported: int) -> None:
-    """Raise if a file has a different version of its format."""
-    if version != supported:
+def check_format(path: Path, version: object, supported: int, older: Collection[int] = ()) -> None:
+    """Raise if a file has a version of its format other than the supported one and the older ones that are read, too."""
+    if version != supported and version not in older:
         raise DataError(
             f"{path} has format {version}, and this version of Rattlebox reads format {supported}",
             "the version of Rattlebox that wrote it, or run the case again",

@@ -42,14 +42,13 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     time = motion.time.values
     rows = _rows(time.size)
     arrays: Arrays = {"time": time[rows]}
-    along = _along(run)
     points = (
         [str(point) for point in motion.point.values] if "displacement" in motion and run.case.modes.decay.size else []
     )
     for k, point in enumerate(points):
-        arrays[f"displacement {point}"] = 1e3 * _component(motion.displacement.values[:, k], along)[rows]
+        arrays[f"displacement {point}"] = 1e3 * motion.displacement.values[rows, k]
     if not points:
-        arrays["displacement base"] = 1e3 * _component(motion.base_displacement.values, along)[rows]
+        arrays["displacement base"] = 1e3 * _base(run)[rows]
         points = ["base"]
     energies = {name: _total(energy[name])[rows] for name in _ENERGIES if name in energy}
     unit, scale = prefixed("J", energies.values())
@@ -104,9 +103,9 @@ def comparison(runs: Mapping[str, rb.Run]) -> bytes:
     for number, (name, run) in enumerate(runs.items()):
         motion, rows = run.motion, _rows(run.motion.time.size)
         moves = "displacement" in motion and run.case.modes.decay.size
-        x = motion.displacement.values[:, 0] if moves else motion.base_displacement.values
+        x = motion.displacement.values[:, 0] if moves else _base(run)
         arrays[f"time {name}"] = motion.time.values[rows]
-        arrays[f"motion {name}"] = 1e3 * _component(x, _along(run))[rows]
+        arrays[f"motion {name}"] = 1e3 * x[rows]
         arrays[f"loss {name}"] = scale * losses[name][rows]
         for chart, kind in zip(charts, ("motion", "loss"), strict=True):
             line = {"name": name, "x": f"time {name}", "y": f"{kind} {name}", "colour": number, "dash": number > 5}
@@ -177,18 +176,10 @@ def _rows(count: int) -> slice:
     return slice(0, None, max(1, -(-count // MOST_SAMPLES)))
 
 
-def _along(run: rb.Run) -> Array | None:
-    """Return the direction of the first damper; None if the motion is along one line."""
-    if "axis" not in run.motion.dims:
-        return None
-    directions = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
-    direction = run.case.particle_dampers[0].direction
-    vector = np.asarray(directions[direction] if isinstance(direction, str) else direction, float)
-    return np.asarray(vector / np.linalg.norm(vector))
-
-
-def _component(values: Array, along: Array | None) -> Array:
-    return values if values.ndim == 1 or along is None else np.asarray(values @ along)
+def _base(run: rb.Run) -> Array:
+    """Return the displacement of the base in the direction of the first damper, or along the line of a 1-D run."""
+    dampers = run.case.particle_dampers
+    return np.asarray(run.along(dampers[0].direction if dampers else None).base_displacement.values)
 
 
 def _total(values: xr.DataArray) -> Array:
@@ -208,7 +199,7 @@ def _balls(run: rb.Run, rows: slice) -> Arrays:
         point = run.case.impact_dampers[0].point if run.case.impact_dampers else None
         moved = motion.displacement.values[:, names.index(point) if point in names else 0]
     else:
-        moved = motion.base_displacement.values
+        moved = _base(run)
     arrays["frame displacement"] = 1e3 * np.interp(frames, time, moved)
     if motion.sizes.get("ball"):
         position = 1e3 * (motion.relative_position - motion.ball_centre).values

@@ -31,12 +31,14 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Output
 from rattlebox.model.plausibility import plausibility_notes
+from rattlebox.model.space import axis_of
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.pack import MAX_EVENTS, pack
 from rattlebox.results.arrays import RunArrays
 from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
+from rattlebox.results.schema import LINE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -330,6 +332,7 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
         balls=tuple(f"{name}/{k + 1}" for name, count in zip(names, counts, strict=True) for k in range(count)),
         dampers=(*names, *(stop.name for stop in stops)),
         stops=tuple(stop.name for stop in stops),
+        line=_line_of(case),
         stop_gap=np.array([stop.gap for stop in stops]) - signs * (q @ stop_shapes.T),
         stop_impulse=-signs * impulse,
         ball_damper=ball_damper,
@@ -349,3 +352,13 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
 def _base_motion(case: Case, time: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return displacement, velocity and acceleration of the base, (3, T); only a harmonic starts in motion."""
     return sum((signal.motion(time) for signal in case.base_acceleration()), np.zeros((3, time.size)))
+
+
+def _line_of(case: Case) -> str:
+    """Return the name of the axis of a 1-D run: the direction of the base motion, which is the same for all signals."""
+    for signal in (*case.base, *case.shaker_motion):
+        if isinstance(signal.direction, str):
+            return signal.direction
+        if signal.direction is not None and (axis := axis_of(signal.direction)):
+            return axis
+    return LINE

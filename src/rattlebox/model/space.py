@@ -80,6 +80,15 @@ def unit_vector(direction: str | Triple) -> Vector:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
+def axis_of(direction: str | Triple) -> str:
+    """Return x, y, z, or one of them with a minus, if a direction is along an axis; else an empty text."""
+    vector = unit_vector(direction)
+    number = int(np.argmax(np.abs(vector)))
+    if abs(vector[number]) < 1 - 1e-12:
+        return ""
+    return ("-" if vector[number] < 0 else "") + AXES[number]
+
+
 def components_along(vectors: Vector, axis: Vector) -> Vector:
     """Return the components of vectors along an axis, (n,).
 

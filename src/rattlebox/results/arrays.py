@@ -18,6 +18,7 @@ from rattlebox._util.exceptions import message
 from .schema import (
     AXES,
     BOTH,
+    LINE,
     PARTNERS,
     Engine,
     Kind,
@@ -174,6 +175,8 @@ class RunArrays(_Frozen):
     ----------
     time : (T,) array_like
         Output times, strictly increasing [s].
+    line : str
+        Name of the axis of a 1-D run: the direction of the base motion, or "line".
     """
 
     engine: Engine
@@ -183,6 +186,7 @@ class RunArrays(_Frozen):
     dampers: tuple[str, ...]
     loads: tuple[str, ...]
     stops: tuple[str, ...]
+    line: str
     impacts: Table
     particles: Table
     # For editors and type checkers; a run has the variables of its engine.
@@ -239,12 +243,13 @@ class RunArrays(_Frozen):
         dampers: tuple[str, ...] = (),
         loads: tuple[str, ...] = (),
         stops: tuple[str, ...] = (),
+        line: str = LINE,
         **values: Any,
     ) -> None:
         if engine not in BOTH:
             raise ValueError(f"there is no engine {engine!r}; there are {', '.join(BOTH)}")
         fields = vars(self)
-        fields.update(engine=engine, time=_as_time(time))
+        fields.update(engine=engine, time=_as_time(time), line=line)
         names = {"points": points, "balls": balls, "dampers": dampers, "loads": loads, "stops": stops}
         for name, labels in names.items():
             fields[name] = _as_labels(name, labels)

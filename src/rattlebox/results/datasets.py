@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .schema import Dimension, Variable, dimensions, groups, variables
+from .schema import ANY, DIMENSIONS, Dimension, Variable, dimensions, full_dims, groups, variables
 
 if TYPE_CHECKING:
     import xarray
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 Labels = tuple[str, ...] | NDArray[Any]
 """Labels along a dimension: names, or numbers."""
+
+
+_DIMENSIONS = {dim.name: dim for dim in DIMENSIONS}
 
 
 class Part(NamedTuple):
@@ -44,13 +47,29 @@ def parts(run: Record, group: str, *, empty: bool = True) -> Iterator[Part]:
             yield Part(v, values, [(dimensions(engine)[dim], labels[dim]) for dim in new])
 
 
+def labelled_parts(run: Record, group: str, *, empty: bool = True) -> Iterator[Part]:
+    """Yield the variables of a group with the dimensions that they have in all runs.
+
+    In a 1-D run `axis` and `partner` have one entry.
+    """
+    single = {"axis": (run.arrays.line,), "partner": (ANY,)}
+    seen: set[str] = set()
+    for v, values, labels in parts(run, group, empty=empty):
+        dims = full_dims(group)[v.name]
+        missing = [dim for dim in dims if dim not in v.dims]
+        places = tuple(dims.index(dim) for dim in missing)
+        new: list[tuple[Dimension, Labels]] = [(_DIMENSIONS[dim], single[dim]) for dim in missing if dim not in seen]
+        seen.update(missing)
+        yield Part(replace(v, dims=dims), np.expand_dims(values, places), labels + new)
+
+
 def dataset(run: Record, group: str) -> xarray.Dataset:
     """Return the labelled dataset of a group; every variable has `units` and `long_name`."""
     import xarray
 
     data: dict[str, Any] = {}
     coords: dict[str, Any] = {}
-    for v, values, labels in parts(run, group):
+    for v, values, labels in labelled_parts(run, group):
         for dim, names in labels:
             meaning = {"long_name": dim.long_name} | ({"units": dim.units} if dim.units else {})
             # NumPy would convert an empty tuple to an array of floats.

@@ -25,7 +25,7 @@ from rattlebox.exchange.write.universal import (
     write_universal,
 )
 
-from .datasets import parts
+from .datasets import labelled_parts, parts
 from .schema import AXES, groups
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def to_mat(run: Record, path: Path) -> Path:
     units: dict[str, dict[str, str]] = {}
     for group in run.groups:
         struct, unit = content.setdefault(group, {}), units.setdefault(group, {})
-        for v, values, labels in parts(run, group):
+        for v, values, labels in labelled_parts(run, group):
             for dim, names in labels:
                 struct[dim.name] = as_cells(names) if isinstance(names, tuple) else as_column(names)
                 unit[dim.name] = dim.units

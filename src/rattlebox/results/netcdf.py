@@ -35,7 +35,7 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import register_format
 
 from .arrays import RunArrays
-from .datasets import Labels, parts
+from .datasets import Labels, labelled_parts
 from .provenance import Provenance
 from .run_end import RunEnd, arrays_from
 from .schema import COUNTS, DIAGNOSTICS, Engine, Kind, groups, variables
@@ -48,8 +48,10 @@ Read = TypeVar("Read")
 Node = Any
 """File or group of h5netcdf or h5py, which have no types."""
 
-FORMAT = 2
-"""Version of the layout; files of other versions are rejected."""
+FORMAT = 3
+"""Version of the layout; files of other versions are rejected, but for the older ones that are read, too."""
+OLDER = (2,)
+"""Versions in which variables of 1-D runs lacked the dimensions `axis` and `partner`."""
 
 _DAMAGE_HINT = "a copy of the file, or run the case again"
 _DISK_HINT = "free disk space and save the run again"
@@ -129,7 +131,7 @@ def _write_group(file: Node, run: Record, name: str) -> None:
     target = file.create_group(name)
     _describe(target, title=group.title)
     # A dimension of length zero would be an unlimited one in netCDF.
-    for v, values, labels in parts(run, name, empty=False):
+    for v, values, labels in labelled_parts(run, name, empty=False):
         for dim, names in labels:
             _write_coordinate(target, dim.name, names, dim.units, dim.long_name)
         grows = group.along not in run.arrays.labels
@@ -259,7 +261,7 @@ def _check(file: Node, path: Path, blocks: Collection[str] | None) -> None:
         raise DataError(f"{path} is a netCDF-4 file, but not a run written by Rattlebox")
     if SNAPSHOTS in file:
         raise DataError(f"{path} holds snapshots of particles, not a run; rattlebox.Snapshots reads them")
-    check_format(path, np.asarray(layout).item(), FORMAT)
+    check_format(path, np.asarray(layout).item(), FORMAT, OLDER)
     for name, group in _groups(file).items():
         if blocks is not None and name not in blocks:
             continue
@@ -305,10 +307,19 @@ def _read_arrays(file: Node) -> RunArrays:
     arguments: dict[str, Any] = {"engine": engine, "time": file.groups["motion"].variables["time"][...]}
     for name, group in groups(engine).items():
         stored = file.groups[name].variables
-        values = {v.name: stored[v.name][...] for v in variables(engine, name) if v.name in stored and not v.derived}
+        read = [v for v in variables(engine, name) if v.name in stored and not v.derived]
+        values = {v.name: _without(stored[v.name], v.dims) for v in read}
         if group.along == "time":
             arguments |= values
+            if engine == "impact" and "axis" in stored:
+                (arguments["line"],) = _texts(stored["axis"][...])
             arguments |= {names: _texts(stored[dim][...]) for dim, names in _NAMES.items() if dim in stored}
         else:
             arguments[name] = values
     return RunArrays(**arguments)
+
+
+def _without(stored: Node, dims: Collection[str]) -> NDArray[Any]:
+    """Return the values of a stored variable without the dimensions, of length one, that the arrays of a run lack."""
+    single = tuple(place for place, dim in enumerate(stored.dimensions) if dim not in dims)
+    return np.asarray(np.squeeze(stored[...], axis=single))

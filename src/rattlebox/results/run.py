@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -14,6 +14,7 @@ from rattlebox._util.html import paragraph
 from rattlebox.exchange.write.universal import universal_nodes
 
 from . import datasets, export, netcdf
+from .along import motion_along
 from .arrays import raise_absent
 from .figures import Plots
 from .record import Record
@@ -34,8 +35,41 @@ class Run(Record):
 
     @cached_property
     def motion(self) -> xarray.Dataset:
-        """Positions, velocities and forces at the output times, relative to the base; SI units."""
+        """Positions, velocities and forces at the output times, relative to the base; SI units.
+
+        Forces and motion of the base have the dimension `axis`: x, y and z in a 3-D run; in a 1-D run one entry, the
+        direction of the base motion, or "line". `along` gives the components in one direction.
+        """
         return self._dataset("motion")
+
+    def along(self, direction: str | Sequence[float] | None = None) -> xarray.Dataset:
+        """Return the motion along one direction, with the same names and dimensions for 1-D and 3-D runs.
+
+        Parameters
+        ----------
+        direction
+            "x", "-z", or three numbers. Default: the line of a 1-D run, and the direction of the dampers of a 3-D run.
+
+        Returns
+        -------
+        xarray.Dataset
+            The dataset `motion` without the dimension `axis`. Vectors have their components along the direction, and a point
+            with the lines "tip x", "tip y" and "tip z" is one point, "tip".
+
+        Raises
+        ------
+        CaseError
+            If the run is 1-D and its base moves in another direction, or the dampers have different directions and none is
+            given.
+
+        Examples
+        --------
+        >>> import rattlebox as rb
+        >>> run = rb.simulate(rb.reference_case(duration="0.1 s"))
+        >>> run.motion.interface_force.dims, run.along().interface_force.dims
+        (('time', 'axis'), ('time',))
+        """
+        return motion_along(self, direction)
 
     @cached_property
     def energy(self) -> xarray.Dataset:

@@ -1,7 +1,8 @@
 """Schema of a run: every output variable with its group, dimensions, unit and meaning.
 
 The arrays are checked against these tables, and datasets, netCDF, MATLAB and CSV files are derived from them. Runs of the
-impact engine are 1-D and have neither the dimension `axis` nor `partner`; `variables` removes these from their variables.
+impact engine are 1-D: their arrays have neither the dimension `axis` nor `partner`, which `variables` removes from their
+variables. In datasets and netCDF files both have one entry, so that variables have the same dimensions in all runs.
 """
 
 from __future__ import annotations
@@ -20,6 +21,12 @@ _DEM: tuple[Engine, ...] = ("dem",)
 AXES: tuple[str, ...] = ("x", "y", "z")
 PARTNERS: tuple[str, ...] = ("particle", "wall")
 """Contact partners of a particle."""
+
+
+LINE = "line"
+"""Name of the axis of a 1-D run whose case states no direction of the base motion."""
+ANY = "any"
+"""Partner of the balls of a 1-D run, whose losses are not divided between walls and balls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,6 +222,12 @@ def variables(engine: Engine, group: str | None = None) -> tuple[Variable, ...]:
         for v in VARIABLES
         if engine in v.engines and group in (None, v.group)
     )
+
+
+@cache
+def full_dims(group: str) -> dict[str, tuple[str, ...]]:
+    """Return the dimensions of the variables of a group as datasets have them, the same for both engines."""
+    return {v.name: v.dims for v in VARIABLES if v.group == group}
 
 
 @cache

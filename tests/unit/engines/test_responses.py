@@ -23,10 +23,10 @@ def test_forced_oscillator_on_a_moving_base() -> None:
     run = rb.simulate(case)
     motion = run.motion.sel(point="mass")
     force = K * motion.displacement + C * motion.velocity
-    np.testing.assert_allclose(run.motion.interface_force, force, atol=1e-12)
+    np.testing.assert_allclose(run.along().interface_force, force, atol=1e-12)
     np.testing.assert_allclose(M * motion.absolute_acceleration, run.motion["load"].sum("source") - force, atol=1e-11)
     np.testing.assert_allclose(
-        motion.absolute_acceleration - motion.acceleration, run.motion.base_acceleration, atol=1e-14
+        motion.absolute_acceleration - motion.acceleration, run.along().base_acceleration, atol=1e-14
     )
     derivative = np.gradient(motion.velocity, motion.time)
     np.testing.assert_allclose(motion.acceleration[1:-1], derivative[1:-1], atol=1e-3 * np.abs(derivative).max())
@@ -52,9 +52,9 @@ def test_the_interface_force_of_a_building_balances_all_inertia() -> None:
     assert len(run.arrays.impacts) > 5
     masses = {"first": 2.0, "second": 1.0, "tuned mass": 0.1}
     inertia = sum(m * run.motion.absolute_acceleration.sel(point=name) for name, m in masses.items())
-    contact = run.motion.cavity_force.sum("damper")
+    contact = run.along().cavity_force.sum("damper")
     expected = contact - inertia
-    np.testing.assert_allclose(run.motion.interface_force, expected, atol=1e-9 * float(abs(contact).max()))
+    np.testing.assert_allclose(run.along().interface_force, expected, atol=1e-9 * float(abs(contact).max()))
 
 
 @pytest.mark.parametrize("base", [(), rb.Harmonic(amplitude=3.0, frequency=20.0, direction="z")])
