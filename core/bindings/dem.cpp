@@ -75,7 +75,10 @@ public:
 
     RecordArrays records() {
         const dem::Problem& p = simulation_->problem();
-        return {std::move(simulation_->records()), p.modes.size(), p.loads.size(), p.cavities.size()};
+        std::size_t walls = 0;
+        for (const Cavity& cavity : p.cavities)
+            walls += static_cast<std::size_t>(p.each_wall ? cavity.wall_labels() : 0);
+        return {std::move(simulation_->records()), p.modes.size(), p.loads.size(), p.cavities.size(), walls};
     }
 
     DemState state() const {

@@ -11,13 +11,14 @@ struct WallShape : Node {
     dem::Wall::Form form{};
     Input<1> axis;
     double offset = 0;
-    int material = 0;
+    int material = 0, label = 0;
 };
 
 struct CavityContents : Node {
     Input<2> shape;
     std::vector<WallShape> walls;
     std::vector<SolidShape> solids; // after the walls
+    Input<1> period;
     Input<2> position, velocity, spin;
     Input<1> radius, mass, inertia;
     Indices<1> species;
@@ -35,6 +36,7 @@ struct PairLaws : Node {
 struct DemNumbers : Node {
     double dt = 0, enduring = 0, origin = 0;
     long steps = 0, every = 0, first_step = 0;
+    bool each_wall = false;
     Input<1> gravity;
     Vector mode_decay, mode_stiffness, mode_coupling, mode_displacement, mode_velocity;
     std::vector<LoadNumbers> loads;
@@ -79,7 +81,9 @@ inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::s
     for (const WallShape& one : given.walls) {
         require(one.material >= 0 && one.material < static_cast<int>(wall_material_count),
                 "a wall has no laws");
-        dem::Wall wall{one_row(one.axis), one.form, one.material};
+        require(one.label >= 0 && one.label < static_cast<int>(given.walls.size()),
+                "the label of a wall is less than the number of walls");
+        dem::Wall wall{one_row(one.axis), one.form, one.material, one.label};
         wall.axis[3] = one.offset;
         target.walls.push_back(wall);
     }
@@ -88,7 +92,12 @@ inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::s
         require(one.material >= 0 && one.material < static_cast<int>(wall_material_count),
                 "a body has no laws");
         target.solids.add(solid_of(one, static_cast<int>(target.walls.size())), plain, one.encloses);
-        target.walls.push_back({Row{}, dem::Wall::solid, one.material});
+        target.walls.push_back({Row{}, dem::Wall::solid, one.material, target.wall_labels()});
+    }
+    target.period = one_row(given.period);
+    for (int a = 0; a < 3; ++a) {
+        require(target.period[a] >= 0 && target.period[a] < infinity, "a period is a length, or 0 for none");
+        require(target.period[a] == 0 || given.solids.empty(), "a periodic cavity cannot hold bodies");
     }
     target.position = rows(given.position, n, "positions have three components");
     target.velocity = rows(given.velocity, n, "each particle needs a velocity");
@@ -110,7 +119,7 @@ inline dem::Problem dem_problem(const DemNumbers& given) {
     Filler fill;
     dem::Problem p;
     p.dt = given.dt, p.enduring = given.enduring, p.steps = given.steps, p.sample_interval = given.every;
-    p.origin = given.origin, p.first_step = given.first_step;
+    p.origin = given.origin, p.first_step = given.first_step, p.each_wall = given.each_wall;
     p.gravity = one_row(given.gravity);
     const std::size_t modes = fill_structure(fill, p, given);
     p.load_direction = rows(given.load_directions, given.loads.size(), "each load needs a direction");
@@ -136,10 +145,16 @@ struct RecordArrays : Node {
     Doubles<2> q, p, load_work, base_work, viscous_loss, kinetic, rotation, potential, elastic;
     Doubles<3> centre, momentum, force, moment, normal_loss, plastic_loss, sliding_loss, rolling_loss;
     Integers<3> contacts;
+    // by sample and name of a wall
+    Doubles<3> wall_force, wall_moment, wall_impulse;
+    Doubles<2> wall_normal_force, wall_normal_impulse;
+    Doubles<2> wall_normal_loss, wall_plastic_loss, wall_sliding_loss, wall_rolling_loss;
+    Integers<2> wall_impacts;
 
     RecordArrays() = default;
     // Moves the records into arrays.
-    RecordArrays(dem::Records&& r, std::size_t modes, std::size_t loads, std::size_t cavities) {
+    RecordArrays(dem::Records&& r, std::size_t modes, std::size_t loads, std::size_t cavities,
+                 std::size_t walls) {
         const std::size_t s = r.time.size();
         const auto each = [&](std::vector<real>& values, std::size_t n) {
             return owned<Doubles<2>>(std::move(values), {s, n});
@@ -157,6 +172,16 @@ struct RecordArrays : Node {
         normal_loss = three(r.normal, 2), plastic_loss = three(r.plastic, 2);
         sliding_loss = three(r.sliding, 2), rolling_loss = three(r.rolling, 2);
         contacts = owned<Integers<3>>(std::move(r.contacts), {s, cavities, 2});
+        const auto of_walls = [&](std::vector<real>& values) {
+            return owned<Doubles<3>>(std::move(values), {s, walls, 3});
+        };
+        wall_force = of_walls(r.wall_force), wall_moment = of_walls(r.wall_moment);
+        wall_impulse = of_walls(r.wall_impulse);
+        wall_normal_force = each(r.wall_normal_force, walls);
+        wall_normal_impulse = each(r.wall_normal_impulse, walls);
+        wall_normal_loss = each(r.wall_normal, walls), wall_plastic_loss = each(r.wall_plastic, walls);
+        wall_sliding_loss = each(r.wall_sliding, walls), wall_rolling_loss = each(r.wall_rolling, walls);
+        wall_impacts = owned<Integers<2>>(std::move(r.wall_impacts), {s, walls});
         r = dem::Records{};
     }
 };
@@ -214,20 +239,22 @@ inline void add_dem_problem(nb::module_& module) {
     using W = WallShape;
     define<W>(module, "Wall",
               "A wall around the centre of a cavity: outward normal of a plane or axis of a cylinder, and "
-              "distance or "
-              "radius [m].",
+              "distance or radius [m]. `label` is the number of its name; walls of one name are summed in "
+              "results.",
               field("form", &W::form), field("axis", &W::axis), field("offset", &W::offset),
-              field("material", &W::material));
+              field("material", &W::material), field("label", &W::label, 0));
     using C = CavityContents;
     define<C>(
         module, "Cavity",
         "A cavity and its particles. `particle_pair` and `wall_pair` are the indices of the laws of two "
-        "species, and of a species and a wall material.",
+        "species, and of a species and a wall material. `period` is the distance of the images of a particle "
+        "along each axis, 0 if it is not periodic.",
         field("shape", &C::shape), field("walls", &C::walls),
-        field("solids", &C::solids, std::vector<SolidShape>{}), field("position", &C::position),
-        field("velocity", &C::velocity), field("spin", &C::spin), field("radius", &C::radius),
-        field("mass", &C::mass), field("inertia", &C::inertia), field("species", &C::species),
-        field("particle_pair", &C::particle_pair), field("wall_pair", &C::wall_pair));
+        field("solids", &C::solids, std::vector<SolidShape>{}), field("period", &C::period),
+        field("position", &C::position), field("velocity", &C::velocity), field("spin", &C::spin),
+        field("radius", &C::radius), field("mass", &C::mass), field("inertia", &C::inertia),
+        field("species", &C::species), field("particle_pair", &C::particle_pair),
+        field("wall_pair", &C::wall_pair));
     using L = PairLaws;
     define<L>(
         module, "PairLaws",
@@ -240,15 +267,16 @@ inline void add_dem_problem(nb::module_& module) {
     define<P>(
         module, "DemProblem",
         "A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring. Step 0 is at the "
-        "time `origin` [s], and samples are taken `every` steps from `first_step` on.",
+        "time `origin` [s], and samples are taken `every` steps from `first_step` on. `each_wall` is whether "
+        "forces and losses are also summed for each wall.",
         field("dt", &P::dt), field("steps", &P::steps), field("every", &P::every),
         field("enduring", &P::enduring, infinity), field("origin", &P::origin, 0.0),
-        field("first_step", &P::first_step, 0L), field("gravity", &P::gravity),
-        field("mode_decay", &P::mode_decay), field("mode_stiffness", &P::mode_stiffness),
-        field("mode_coupling", &P::mode_coupling), field("mode_displacement", &P::mode_displacement),
-        field("mode_velocity", &P::mode_velocity), field("loads", &P::loads),
-        field("load_directions", &P::load_directions), field("cavities", &P::cavities),
-        field("pairs", &P::pairs));
+        field("first_step", &P::first_step, 0L), field("each_wall", &P::each_wall, false),
+        field("gravity", &P::gravity), field("mode_decay", &P::mode_decay),
+        field("mode_stiffness", &P::mode_stiffness), field("mode_coupling", &P::mode_coupling),
+        field("mode_displacement", &P::mode_displacement), field("mode_velocity", &P::mode_velocity),
+        field("loads", &P::loads), field("load_directions", &P::load_directions),
+        field("cavities", &P::cavities), field("pairs", &P::pairs));
     using R = RecordArrays;
     define<R>(
         module, "Records",
@@ -260,7 +288,13 @@ inline void add_dem_problem(nb::module_& module) {
         field("elastic", &R::elastic), field("centre", &R::centre), field("momentum", &R::momentum),
         field("force", &R::force), field("moment", &R::moment), field("normal_loss", &R::normal_loss),
         field("plastic_loss", &R::plastic_loss), field("sliding_loss", &R::sliding_loss),
-        field("rolling_loss", &R::rolling_loss), field("contacts", &R::contacts));
+        field("rolling_loss", &R::rolling_loss), field("contacts", &R::contacts),
+        field("wall_force", &R::wall_force), field("wall_moment", &R::wall_moment),
+        field("wall_impulse", &R::wall_impulse), field("wall_normal_force", &R::wall_normal_force),
+        field("wall_normal_impulse", &R::wall_normal_impulse),
+        field("wall_normal_loss", &R::wall_normal_loss), field("wall_plastic_loss", &R::wall_plastic_loss),
+        field("wall_sliding_loss", &R::wall_sliding_loss), field("wall_rolling_loss", &R::wall_rolling_loss),
+        field("wall_impacts", &R::wall_impacts));
     using B = CavityState;
     define<B>(module, "CavityState",
               "Particles of a cavity in the order of the case, and the displacement of the cavity.",

@@ -22,6 +22,7 @@ struct Chunk {
     std::vector<int> neighbour_second;
     ContactList pairs, walls;
     Diagnostics diagnostics;
+    std::vector<WallTotals> each_wall; // by label; empty if they are not computed
     StopReason stop_reason;
     std::vector<std::pair<int, FirstStepShare>>
         first_step; // by candidate, of contacts that begin in this step
@@ -34,7 +35,8 @@ struct Chunk {
     }
 
     template <class Archive> void serialize(Archive& a) {
-        a(highest_neighbour, approach, neighbour_first, neighbour_second, diagnostics, stop_reason);
+        a(highest_neighbour, approach, neighbour_first, neighbour_second, diagnostics, each_wall,
+          stop_reason);
         pairs.serialize(a);
         walls.serialize(a);
     }
@@ -58,6 +60,7 @@ struct Bed {
     static constexpr int cached = 20'000;  // beds of more particles exceed the caches
 
     const Cavity* cavity = nullptr;
+    Periods periods;
     std::vector<Row> position; // and radius
     std::vector<Row> velocity; // predicted for the end of the step, and 1 / mass
     std::vector<Row> spin;     // predicted for the end of the step, and radius / inertia

@@ -62,12 +62,13 @@ class CellList {
     std::vector<SizeClass> size_classes_; // smallest first
     std::vector<CellLevel> levels_;       // finest first
     std::vector<int> old_index_, new_index_, cell_, large_;
-    real low_[3] = {};
+    real low_[3] = {}, period_[3] = {}; // along the axes of the cells; the period is 0 if there is none
     // Axes along lines of cells, across lines in a plane, across planes. Short axes come first, so that
     // neighbours in other lines and planes are close in memory.
     int axis_[3] = {};
 
     int along(const CellLevel& level, real x, int a) const {
+        if (period_[a] > 0) x -= period_[a] * std::floor((x - low_[a]) / period_[a]);
         const int c = static_cast<int>((x - low_[a]) / level.size);
         return std::clamp(c, 0, level.cells[a] - 1);
     }
@@ -127,7 +128,10 @@ public:
     int old_index(int i) const { return at(old_index_, i); }
     int new_index(int i) const { return at(new_index_, i); }
 
-    void set_up(const Bed& bed, const Row& low, const Row& high) {
+    void set_up(const Bed& bed, Row low, Row high) {
+        for (int a = 0; a < 3; ++a)
+            if (const real length = bed.periods.length[a]; length > 0)
+                low[a] = -0.5 * length, high[a] = 0.5 * length;
         const Row span = high - low;
         const auto order = [&](int& inner, int& outer) {
             if (span[inner] > 1.5 * span[outer]) std::swap(inner, outer);
@@ -156,7 +160,11 @@ public:
             }
             for (int a = 0; a < 3; ++a) level.cells[a] = static_cast<int>(span[axis_[a]] / level.size) + 1;
         }
-        for (int a = 0; a < 3; ++a) low_[a] = low[axis_[a]];
+        for (int a = 0; a < 3; ++a) low_[a] = low[axis_[a]], period_[a] = bed.periods.length[axis_[a]];
+        // The cells of a periodic axis fill the period: the last one is larger than the others.
+        for (CellLevel& level : levels_)
+            for (int a = 0; a < 3; ++a)
+                if (period_[a] > 0) level.cells[a] = std::max(level.cells[a] - 1, 1);
         for (auto* v : {&old_index_, &new_index_, &cell_}) v->resize(bed.position.size());
     }
 
@@ -202,6 +210,27 @@ public:
         for (std::size_t a = 0; a < 3; ++a)
             box.low[a] = std::max(cell[a] - 1, 0), box.high[a] = std::min(cell[a] + 1, level.cells[a] - 1);
         return box;
+    }
+
+    // Cells that follow each other along an axis; behind the last one comes the first one.
+    struct CellRange {
+        int first, count;
+    };
+
+    // Returns the cells that cover the images of a cube of half width `distance` around a position.
+    std::array<CellRange, 3> cells_around(const CellLevel& level, const Row& p, real distance) const {
+        std::array<CellRange, 3> ranges;
+        for (int a = 0; a < 3; ++a) {
+            const int n = level.cells[a];
+            const real x = p[axis_[a]], rounding = 1e-9 * (distance + period_[a]);
+            const int low = along(level, x - distance - rounding, a),
+                      high = along(level, x + distance + rounding, a);
+            // A cube that reaches its own image covers all cells; the last one has nearly twice the size.
+            const bool is_covered = period_[a] > 0 && 2 * (distance + rounding + level.size) >= period_[a];
+            ranges[static_cast<std::size_t>(a)] =
+                is_covered ? CellRange{0, n} : CellRange{low, (high - low + n) % n + 1};
+        }
+        return ranges;
     }
 
     // Returns the cells that cover a cube of half width `distance` around a position.

@@ -21,10 +21,12 @@ template <class Entry> RATTLEBOX_INLINE Group by_species(const std::vector<real>
 }
 
 // Access to candidate pairs of particles; `k` points to as many candidates as a register holds.
-struct PairView {
+template <bool periodic> struct PairView {
     const Bed& bed;
     const ContactList& list;
     const std::vector<real>& mu; // friction coefficient by two species
+
+    RATTLEBOX_INLINE void add_loss(real WallTotals::*, const int*, const Group&) const {}
 
     RATTLEBOX_INLINE Group friction(const int* k) const {
         return by_species(mu, [&](int l) {
@@ -44,9 +46,13 @@ struct PairView {
 
     // Branch vector from the first centre to the second, and the sum of the radii.
     RATTLEBOX_INLINE Columns branch(const int* k) const {
-        return both(bed.position, k, [](Row a, Row b, int, int) __attribute__((always_inline)) {
-            return b + row(-1, -1, -1, 1) * a;
-        });
+        const Columns apart = both(bed.position, k,
+                                   [](Row a, Row b, int, int)
+                                       __attribute__((always_inline)) { return b + row(-1, -1, -1, 1) * a; });
+        if constexpr (periodic)
+            return bed.periods.nearest_image(apart);
+        else
+            return apart;
     }
 
     // Returns a number that is positive if the pair overlaps.
@@ -83,6 +89,15 @@ struct WallView {
     const ContactList& list;
     const std::vector<real>& mu;
     bool curved;
+    WallTotals* totals; // by label; null if they are not computed
+
+    // Adds the losses of contacts to those of their walls.
+    RATTLEBOX_INLINE void add_loss(real WallTotals::* sum, const int* k, const Group& lost) const {
+        if (!totals) return;
+        alignas(64) real of[group];
+        pack<group>(of) = lost;
+        for (int l = 0; l < group; ++l) totals[wall(k[l]).label].*sum += of[l];
+    }
 
     RATTLEBOX_INLINE Group friction(const int* k) const {
         return by_species(mu, [&](int l) {
@@ -251,6 +266,7 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
         // Each of the eight sums has its own contacts, whatever the width of the registers: sums are the same
         // on all machines.
         group_of(diagnostics.normal[partner], part) += lost;
+        view.add_loss(&WallTotals::normal, k, lost);
         diagnostics.largest_overlap.update(m.overlap, m.radius, part);
         Vector<Group> force = (zero - normal.total) * m.normal;
         if (sampled)
@@ -268,11 +284,14 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
             store(as_columns(h.spring), state(&ContactState::friction));
             const Group slid = weight * h.loss;
             group_of(diagnostics.sliding[partner], part) += slid, lost += slid;
+            view.add_loss(&WallTotals::sliding, k, slid);
             force = force + h.force;
             store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, contact_force(&ContactForce::couple));
             if (sampled) {
                 group_of(diagnostics.stored, part) += weight * h.stored;
-                group_of(diagnostics.sliding_correction[partner], part) += weight * h.excess;
+                const Group excess = weight * h.excess;
+                group_of(diagnostics.sliding_correction[partner], part) += excess;
+                view.add_loss(&WallTotals::sliding_correction, k, excess);
             }
             if constexpr (rolls) {
                 // Rolling resistance is a spring of its own, with a limit in torque, and uses the tangential
@@ -285,9 +304,12 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
                       [&](int l) { return &at(contact_forces.torque, a[l]); });
                 const Group rolled = weight * r.loss;
                 group_of(diagnostics.rolling[partner], part) += rolled, lost += rolled;
+                view.add_loss(&WallTotals::rolling, k, rolled);
                 if (sampled) {
                     group_of(diagnostics.stored, part) += weight * r.stored;
-                    group_of(diagnostics.rolling_correction[partner], part) += weight * r.excess;
+                    const Group excess = weight * r.excess;
+                    group_of(diagnostics.rolling_correction[partner], part) += excess;
+                    view.add_loss(&WallTotals::rolling_correction, k, excess);
                 }
             }
         } else
@@ -340,24 +362,28 @@ void change_step(const Law& normal_law, ContactList& list, const View& view, con
         auto normal = normal_force(normal_law, Coefficients<Group>{law.x, law.y}, depth, rate,
                                    History<Group>{yield_history.x, yield_history.y, yield_history.z});
         if (laws.repulsive_only) normal.total = larger(normal.total, zero);
-        group_of(diagnostics.normal[partner], part) += weight * more * (normal.total - normal.elastic) * rate;
+        const Group damped = weight * more * (normal.total - normal.elastic) * rate;
+        group_of(diagnostics.normal[partner], part) += damped;
+        view.add_loss(&WallTotals::normal, k, damped);
         const Group pushing = larger(normal.total, zero);
         const auto change = [&](const auto& place, const Group& coefficient, const Vector<Group>& velocity,
-                                const Group& friction, Lanes& lost) {
+                                const Group& friction, Lanes& lost, real WallTotals::* at_wall) {
             const auto spring = columns(place);
             const auto h = change_half_step(spring.vector(), spring.w,
                                             tangential_dashpot(laws.tangential, coefficient, depth), velocity,
                                             friction * pushing, before, dt);
             store(Columns{h.next_spring.x, h.next_spring.y, h.next_spring.z, spring.w}, place);
-            group_of(lost, part) += weight * h.loss;
+            const Group more_lost = weight * h.loss;
+            group_of(lost, part) += more_lost;
+            view.add_loss(at_wall, k, more_lost);
         };
         if constexpr (rough)
             change(state(&ContactState::friction), law.w, slip_velocity(m, rate), view.friction(k),
-                   diagnostics.sliding[partner]);
+                   diagnostics.sliding[partner], &WallTotals::sliding);
         if constexpr (rolls) {
             const auto own = columns(rolling(&RollingState::law));
             change(rolling(&RollingState::spring), own.z, rolling_velocity(m), own.x,
-                   diagnostics.rolling[partner]);
+                   diagnostics.rolling[partner], &WallTotals::rolling);
         }
     }
 }

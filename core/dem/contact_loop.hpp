@@ -32,28 +32,58 @@ class ContactLoop {
     }
     Body body(int i) const { return {at(bed_.position, i), at(bed_.velocity, i), at(bed_.spin, i)}; }
 
+    // Position of the first partner relative to the cavity, of its image inside.
+    Row place(const ContactList& list, int k) const {
+        Row place = at(bed_.position, at(list.first, k)) - bed_.motion.displacement;
+        if (bed_.periods.any) place += bed_.periods.to_nearest_image(place);
+        return place;
+    }
     WallPoint wall_point(const ContactList& list, int k) const {
         if (!list.near.empty()) return {at(list.near, k) * row(1, 1, 1, 0), at(list.near, k)[3]};
-        return nearest_wall_point(at(bed_.cavity->walls, at(list.second, k)),
-                                  at(bed_.position, at(list.first, k)) - bed_.motion.displacement);
+        return nearest_wall_point(at(bed_.cavity->walls, at(list.second, k)), place(list, k));
     }
 
     NewContact new_contact_of(const ContactList& list, int k, Partner partner) const {
         const int i = at(list.first, k), j = at(list.second, k);
         const Body a = body(i);
-        if (partner == particle) return new_contact(pair_law(i, j), a, body(j));
+        if (partner == particle) {
+            Body b = body(j);
+            if (bed_.periods.any) b.position += bed_.periods.to_nearest_image(b.position - a.position);
+            return new_contact(pair_law(i, j), a, b);
+        }
         const WallPoint near = wall_point(list, k);
         real mobility = a.velocity[3];
         for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, near.normal));
         return new_contact(wall_law(i, j), a, near, bed_.motion.velocity, mobility);
     }
 
+    // Returns the sums over the contacts of a chunk with the wall of a contact, or null if they are not
+    // computed.
+    WallTotals* totals_of(Chunk& chunk, const ContactList& list, int k, Partner partner) const {
+        if (partner == particle || chunk.each_wall.empty()) return nullptr;
+        return &at(chunk.each_wall, at(bed_.cavity->walls, at(list.second, k)).label);
+    }
+    // Calls f with the view of pairs in a periodic cavity or in another one, which has no images to choose
+    // from.
+    template <class F> void with_pairs(const ContactList& pairs, F&& f) const {
+        if (bed_.periods.any)
+            f(PairView<true>{bed_, pairs, pair_mu_});
+        else
+            f(PairView<false>{bed_, pairs, pair_mu_});
+    }
+    WallView wall_view(Chunk& chunk) const {
+        return {bed_, chunk.walls, wall_mu_, curved_,
+                chunk.each_wall.empty() ? nullptr : chunk.each_wall.data()};
+    }
+
     void update_unloading_curve(ContactList& list, int k, const ContactLaws& laws, Partner partner,
-                                Diagnostics& diagnostics) const {
+                                Chunk& chunk) const {
+        Diagnostics& diagnostics = chunk.diagnostics;
         const int s = at(list.slot, k);
         const real cost =
             dem::update_unloading_curve(at(list.history.yield_history, s), new_contact_of(list, k, partner));
         diagnostics.plastic[partner] += cost;
+        if (WallTotals* wall = totals_of(chunk, list, k, partner)) wall->plastic += cost;
         if (static_cast<real>(list.steps) - at(list.history.start_step, s) > laws.enduring)
             diagnostics.enduring[partner] += first_lane(cost);
     }
@@ -81,6 +111,8 @@ class ContactLoop {
             if (b.first_step.share != 0) chunk.first_step.push_back({k, b.first_step});
             if (b.lost != 0) diagnostics.normal[partner] += first_lane(b.lost);
             ++diagnostics.first_touches[partner];
+            if (WallTotals* wall = totals_of(chunk, list, k, partner))
+                wall->normal += b.lost, ++wall->impacts;
             diagnostics.extrapolated += b.extrapolated;
             diagnostics.largest_approach_speed = std::fmax(diagnostics.largest_approach_speed, t.speed);
             if (b.status != Status::finished && chunk.stop_reason.status == Status::finished)
@@ -90,12 +122,14 @@ class ContactLoop {
             const int s = at(list.slot, k);
             if (list.history.yields &&
                 at(list.history.yield_history, s)[3] != at(list.history.yield_history, s)[0])
-                update_unloading_curve(list, k, laws, partner, diagnostics);
+                update_unloading_curve(list, k, laws, partner, chunk);
             // The energy that remains in the springs is lost.
-            if (laws.rough)
-                diagnostics.sliding[partner] += first_lane(spring_energy(at(list.history.state, s).friction));
-            if (laws.rolls)
-                diagnostics.rolling[partner] += first_lane(spring_energy(at(list.history.rolling, s).spring));
+            const real slid = laws.rough ? spring_energy(at(list.history.state, s).friction) : 0;
+            const real rolled = laws.rolls ? spring_energy(at(list.history.rolling, s).spring) : 0;
+            if (laws.rough) diagnostics.sliding[partner] += first_lane(slid);
+            if (laws.rolls) diagnostics.rolling[partner] += first_lane(rolled);
+            if (WallTotals* wall = totals_of(chunk, list, k, partner))
+                wall->sliding += slid, wall->rolling += rolled;
             list.history.free.push_back(s);
             at(list.slot, k) = ContactList::none;
         };
@@ -103,7 +137,7 @@ class ContactLoop {
         find_touching(list, view, begun, ended, prefetch);
         prefetch.remaining(list.size(), list.touching_count);
         if (list.touching_count == 0) return list.contact_forces.all.clear();
-        const auto update_curve = [&](int k) { update_unloading_curve(list, k, laws, partner, diagnostics); };
+        const auto update_curve = [&](int k) { update_unloading_curve(list, k, laws, partner, chunk); };
         with_laws(laws, [&](const auto& law, auto rough, auto rolls) {
             compute_contact_forces<rough.value, rolls.value>(law, list, view, laws, sampled, partner,
                                                              diagnostics, update_curve, prefetch);
@@ -114,9 +148,11 @@ class ContactLoop {
             const auto touching = list.touching.begin();
             const auto a = std::lower_bound(touching, touching + list.touching_count, k) - touching;
             ContactForce& contact_force = at(list.contact_forces.all, static_cast<int>(a));
-            if (laws.rough)
-                diagnostics.sliding[partner] +=
-                    first_lane(-first_step.share * problem_.dt * dot(contact_force.force, first_step.slip));
+            if (laws.rough) {
+                const real slid = -first_step.share * problem_.dt * dot(contact_force.force, first_step.slip);
+                diagnostics.sliding[partner] += first_lane(slid);
+                if (WallTotals* wall = totals_of(chunk, list, k, partner)) wall->sliding += slid;
+            }
             contact_force.force *= row(1 + first_step.share);
             contact_force.couple *= row(1 + first_step.share);
             contact_force.couple[3] = first_step.share;
@@ -148,6 +184,20 @@ class ContactLoop {
             ChunkMotion& motion = at(bed_.chunk_motion, chunk.begin / Bed::chunk_size);
             for (int a = 0; a < 3; ++a) motion.force_on_cavity[a] -= force[a];
         });
+    }
+
+    // Half of the impulse on a wall in the last step belongs to the step that has changed; the corrections of
+    // first steps are impulses that do not depend on it.
+    void change_impulses(Chunk& chunk, real dt_before) {
+        const ContactList& list = chunk.walls;
+        for (int a = 0; a < list.touching_count; ++a) {
+            const ContactForce& all = at(list.contact_forces.all, a);
+            const int k = at(list.touching, a);
+            const Row change = all.force * row(0.5 * (problem_.dt - dt_before) / (1 + all.couple[3]));
+            WallTotals& of_wall = *totals_of(chunk, list, k, wall);
+            of_wall.normal_impulse -= dot(change, wall_point(list, k).normal);
+            for (int x = 0; x < 3; ++x) of_wall.impulse[x] -= change[x];
+        }
     }
 
     void add(ForceSums& sums, const ContactForces& contact_forces, int a, int i, real sign,
@@ -183,9 +233,10 @@ public:
                                                            chunk.diagnostics);
             });
         };
-        change(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, pair_, particle);
+        with_pairs(chunk.pairs, [&](const auto& view) { change(chunk.pairs, view, pair_, particle); });
         if (!bed_.cavity->solids.empty()) find_wall_points(chunk.walls, bed_, false);
-        change(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall);
+        change(chunk.walls, wall_view(chunk), wall_, wall);
+        if (has_forces && !chunk.each_wall.empty()) change_impulses(chunk, dt_before);
     }
 
     bool has_friction() const { return pair_.rough || wall_.rough; }
@@ -203,7 +254,9 @@ public:
         pairs.approach += moved, ++pairs.steps_since_scan, ++pairs.steps;
         chunk.approach += moved;
         if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.diagnostics.scans;
-        compute(pairs, PairView{bed_, pairs, pair_mu_}, pair_, particle, sampled, chunk, prefetch);
+        with_pairs(pairs, [&](const auto& view) {
+            compute(pairs, view, pair_, particle, sampled, chunk, prefetch);
+        });
     }
 
     // Computes the forces of the walls on the particles of the chunk.
@@ -213,20 +266,30 @@ public:
         ++chunk.walls.steps_since_scan, ++chunk.walls.steps;
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
         if (!bed_.cavity->solids.empty()) find_wall_points(chunk.walls, bed_, true);
-        compute(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall, sampled, chunk,
-                Prefetch());
+        compute(chunk.walls, wall_view(chunk), wall_, wall, sampled, chunk, Prefetch());
         // The reaction on the cavity; its moment is a result only, and is computed for samples.
         Row total{}, moment{};
         const ContactList& list = chunk.walls;
         for (int a = 0; a < list.touching_count; ++a) {
-            const int k = at(list.touching, a), i = at(list.first, k);
+            const int k = at(list.touching, a);
             const Row f = at(list.contact_forces.all, a).force;
             total -= f;
-            if (sampled) {
-                const Row position = at(bed_.position, i) - bed_.motion.displacement;
-                const WallPoint near = wall_point(list, k);
-                moment -= cross(position + near.normal * near.distance, f);
-                if (wall_.rolls) moment -= at(list.contact_forces.torque, a);
+            WallTotals* const of_wall = totals_of(chunk, list, k, wall);
+            if (!sampled && !of_wall) continue;
+            const WallPoint near = wall_point(list, k);
+            if (of_wall) {
+                of_wall->normal_impulse -= problem_.dt * dot(f, near.normal);
+                for (int x = 0; x < 3; ++x) of_wall->impulse[x] -= problem_.dt * f[x];
+            }
+            if (!sampled) continue;
+            const Row turn = cross(place(list, k) + near.normal * near.distance, f),
+                      twist = wall_.rolls ? at(list.contact_forces.torque, a) : Row{};
+            moment -= turn;
+            if (wall_.rolls) moment -= twist;
+            if (of_wall) {
+                of_wall->normal_force -= dot(f, near.normal);
+                for (int x = 0; x < 3; ++x)
+                    of_wall->force[x] -= f[x], of_wall->moment[x] -= turn[x] + twist[x];
             }
         }
         ChunkMotion& motion = at(bed_.chunk_motion, chunk.begin / Bed::chunk_size);

@@ -117,6 +117,10 @@ struct ContactStart {
     Status status = Status::finished;
 };
 
+// A contact without friction or rolling resistance, in a list of contacts that have them, gets a spring so
+// soft that the energy in it is zero: the law would otherwise lose the energy of half a step of sliding.
+inline constexpr real vanishing_stiffness = 1e-200;
+
 inline ContactStart begin(const NewContact& t, real dt) {
     const PairLaw& e = *t.law;
     // The restitution that the law asks for at this speed decides on the damping. Beyond the range of the law
@@ -141,7 +145,7 @@ inline ContactStart begin(const NewContact& t, real dt) {
         const Law law = reference.resized(e.size, size);
         tangential =
             e.tangential.visit([&](const auto& own) { return own.coefficient(size, law.stiffness); });
-        if (!(tangential > 0)) tangential = 1; // any value, because there is no friction
+        if (!(tangential > 0 && e.friction() > 0)) tangential = vanishing_stiffness;
         if constexpr (Law::hysteretic) {
             const Coefficients<real> k = law.coefficients(0, t.speed);
             const History<real> h = law.untouched();
@@ -171,6 +175,8 @@ inline ContactStart begin(const NewContact& t, real dt) {
         }
     });
     b.rolling = {Row{}, e.rolling.coefficients(size, t.inertia, tangential)}; // unloaded
+    if (!(e.rolling.coefficient > 0))
+        b.rolling.law[1] = vanishing_stiffness / tangential, b.rolling.law[2] = 0;
     // The spring holds its force half a step before; the time since first touch is `since`.
     const real stiffness =
         e.tangential.visit([&](const auto& own) { return own.stiffness(tangential, depth); });

@@ -65,4 +65,31 @@ struct alignas(64) Diagnostics {
     }
 };
 
+// Sums over the contacts of one chunk with the walls of one name.
+struct WallTotals {
+    // over the run
+    real impulse[3] = {}, normal_impulse = 0; // of the forces on the wall, and of their normal parts
+    real normal = 0, plastic = 0, sliding = 0, rolling = 0;
+    long impacts = 0;
+
+    // at a sample
+    real force[3] = {}, moment[3] = {}, normal_force = 0;
+    real sliding_correction = 0, rolling_correction = 0;
+
+    void begin_sample() {
+        for (int a = 0; a < 3; ++a) force[a] = moment[a] = 0;
+        normal_force = sliding_correction = rolling_correction = 0;
+    }
+
+    WallTotals& operator+=(const WallTotals& other) {
+        for (int a = 0; a < 3; ++a)
+            impulse[a] += other.impulse[a], force[a] += other.force[a], moment[a] += other.moment[a];
+        normal += other.normal, plastic += other.plastic, sliding += other.sliding, rolling += other.rolling;
+        sliding_correction += other.sliding_correction, rolling_correction += other.rolling_correction;
+        normal_impulse += other.normal_impulse, normal_force += other.normal_force;
+        impacts += other.impacts;
+        return *this;
+    }
+};
+
 } // namespace rattlebox::dem

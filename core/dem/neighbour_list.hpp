@@ -145,6 +145,36 @@ public:
         if (phase == 2) bed.spin.swap(rows_);
     }
 
+    // Calls found(j) for each neighbour j > i of a particle in a periodic cavity. The cells around a particle
+    // go on behind the last cell of a periodic axis with the first one.
+    template <class Found> void search_images(const Bed& bed, int i, Found&& found) const {
+        const Row& p = at(bed.position, i);
+        const real reach = p[3] + bed.reach;
+        const auto& levels = cells_.levels();
+        for (std::size_t k = 0; k < levels.size(); ++k) {
+            const CellLevel& level = levels[k];
+            const auto [x, y, z] = cells_.cells_around(level, p, reach + level.largest);
+            const auto visit = [&](int line, int from, int until) {
+                for (int m = at(level.begin, line + from); m < at(level.begin, line + until); ++m) {
+                    const int j = k == 0 ? m : at(level.member, m);
+                    const Row other = at(bed.position, j);
+                    if (j <= i || (k == 0 && other[3] > level.largest)) continue; // coarse levels hold them
+                    Row apart = other - p;
+                    apart += bed.periods.to_nearest_image(apart);
+                    if (square(reach + other[3]) > dot(apart, apart)) found(j);
+                }
+            };
+            for (int b = 0; b < z.count; ++b)
+                for (int a = 0; a < y.count; ++a) {
+                    const int line =
+                        level.line((y.first + a) % level.cells[1], (z.first + b) % level.cells[2]);
+                    const int until = x.first + x.count, over = until - level.cells[0];
+                    visit(line, x.first, std::min(until, level.cells[0]));
+                    if (over > 0) visit(line, 0, over);
+                }
+        }
+    }
+
     void search(const Bed& bed, Chunk& chunk) const {
         thread_local std::vector<int> firsts, seconds;
         int count = 0, *first = firsts.data(), *second = seconds.data();
@@ -179,6 +209,14 @@ public:
                     count += list_lanes(within & first_lanes(std::min(group, to - j)), j, second + count);
                 }
             };
+            if (bed.periods.any) {
+                search_images(bed, i, [&](int j) {
+                    make_room();
+                    first[count] = i - chunk.begin, second[count] = j;
+                    ++count;
+                });
+                continue;
+            }
             // Each pair is found once: by the particle with the lower index, in its own cell behind itself
             // and in cells that follow.
             const Cell own = cells_.cell(fine, p);
@@ -282,11 +320,12 @@ public:
         int* const candidate_pair = candidate_pairs.data();
         int candidates = 0;
         for (int p = 0; p < count; p += group) {
-            const auto apart = columns_of([&](int l) __attribute__((always_inline)) {
+            auto apart = columns_of([&](int l) __attribute__((always_inline)) {
                 const int q = std::min(p + l, count - 1);
                 const Row a = at(bed.position, chunk.begin + at(chunk.neighbour_first, q));
                 return at(bed.position, at(chunk.neighbour_second, q)) + row(-1, -1, -1, 1) * a;
             });
+            if (bed.periods.any) apart = bed.periods.nearest_image(apart);
             const Group limit = apart.w + Group::all(skin);
             const unsigned within = positive(limit * limit - dot(apart.vector(), apart.vector()));
             candidates +=

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem/pair_laws.hpp"
+#include "dem/periodic.hpp"
 #include "dem/solids.hpp"
 #include "dem/walls.hpp"
 #include "structure/loads.hpp"
@@ -20,6 +21,7 @@ struct Cavity {
     std::vector<Row> shape;  // displacement of the centre per unit of each mode
     std::vector<Wall> walls; // those of solids come last
     Solids solids;
+    Row period{}; // distance of the images of a particle along each axis; 0 if it is not periodic
     std::vector<Row> position, velocity, spin; // by particle; the fourth number of a position is the radius
     std::vector<real> mass, inertia;
     std::vector<int> species;
@@ -31,6 +33,11 @@ struct Cavity {
     // What a particle can touch: plain walls, bodies, and triangles.
     int leaves() const { return solids.empty() ? static_cast<int>(walls.size()) : solids.leaves(); }
     int wall_of(int leaf) const { return solids.empty() ? leaf : solids.wall_of(leaf); }
+    int wall_labels() const {
+        int count = 0;
+        for (const Wall& wall : walls) count = wall.label < count ? count : wall.label + 1;
+        return count;
+    }
 };
 
 struct Problem {
@@ -39,6 +46,7 @@ struct Problem {
     long first_step = 0;                 // that of the first sample, of a run that continues another
     real origin = 0;                     // time of step 0 [s]
     real enduring = infinity;            // age beyond which a contact counts as enduring
+    bool each_wall = false;              // whether forces and losses are also summed for each wall
     Row gravity{};
     std::vector<Mode> modes;
     std::vector<real> coupling; // modal damping without its diagonal (structure/coupled_modes.hpp), or empty

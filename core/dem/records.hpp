@@ -23,6 +23,19 @@ inline Losses losses(const Bed& bed) {
     return sum;
 }
 
+// Returns the sums of each wall over the chunks of its cavity, cavity after cavity.
+inline std::vector<WallTotals> each_wall(const std::vector<Bed>& beds) {
+    std::vector<WallTotals> sums;
+    for (const Bed& bed : beds) {
+        const std::size_t first = sums.size();
+        for (const Chunk& c : bed.chunks) {
+            sums.resize(first + c.each_wall.size());
+            for (std::size_t w = 0; w < c.each_wall.size(); ++w) sums[first + w] += c.each_wall[w];
+        }
+    }
+    return sums;
+}
+
 // Sums over a cavity at a sample.
 struct Totals {
     Losses before, now; // at the start and the end of the step
@@ -39,14 +52,23 @@ struct Records {
     std::vector<real> kinetic, rotation, potential, stored, centre, momentum, force, moment;
     std::vector<real> normal, plastic, sliding, rolling; // particles, walls
     std::vector<std::int64_t> contacts;
+    // by sample and name of a wall, cavity after cavity; empty unless they are computed
+    std::vector<real> wall_force, wall_moment, wall_impulse, wall_normal_force, wall_normal_impulse;
+    std::vector<real> wall_normal, wall_plastic, wall_sliding, wall_rolling;
+    std::vector<std::int64_t> wall_impacts;
 
     std::vector<Losses> losses_before_;
+    std::vector<WallTotals> walls_before_;
 
     void begin_sample(std::vector<Bed>& beds) {
         losses_before_.clear();
+        walls_before_ = each_wall(beds);
         for (Bed& bed : beds) {
             losses_before_.push_back(losses(bed));
-            for (Chunk& c : bed.chunks) c.diagnostics.begin_sample();
+            for (Chunk& c : bed.chunks) {
+                c.diagnostics.begin_sample();
+                for (WallTotals& wall : c.each_wall) wall.begin_sample();
+            }
         }
     }
 
@@ -75,6 +97,25 @@ struct Records {
             }
             sum.mass = bed.mass;
             add_sample(sum, gravity);
+        }
+        add_walls(each_wall(beds));
+    }
+
+    // Half of the loss and of the impulse of a step counts at the sample, as for the sums over all walls.
+    void add_walls(const std::vector<WallTotals>& walls) {
+        for (std::size_t w = 0; w < walls.size(); ++w) {
+            const WallTotals &then = walls_before_[w], &now = walls[w];
+            for (int a = 0; a < 3; ++a) {
+                wall_force.push_back(now.force[a]), wall_moment.push_back(now.moment[a]);
+                wall_impulse.push_back(0.5 * (then.impulse[a] + now.impulse[a]));
+            }
+            wall_normal_force.push_back(now.normal_force);
+            wall_normal_impulse.push_back(0.5 * (then.normal_impulse + now.normal_impulse));
+            wall_normal.push_back(0.5 * (then.normal + now.normal));
+            wall_plastic.push_back(now.plastic);
+            wall_sliding.push_back(0.5 * (then.sliding + now.sliding) + now.sliding_correction);
+            wall_rolling.push_back(0.5 * (then.rolling + now.rolling) + now.rolling_correction);
+            wall_impacts.push_back(now.impacts);
         }
     }
 

@@ -83,6 +83,7 @@ class Simulation {
     // Moves the particles from the cavity into the bed.
     void fill_bed(Bed& bed, Cavity& cavity, bool rolls) {
         bed.cavity = &cavity;
+        bed.periods = Periods(cavity.period);
         const int n = cavity.particles();
         const auto size = static_cast<std::size_t>(n);
         bed.velocity.reserve(size), bed.spin.reserve(size), bed.id.reserve(size);
@@ -164,6 +165,13 @@ class Simulation {
         for (auto* numbers : {&load_value_, &load_work_, &base_work_}) numbers->assign(signals_.size(), 0);
     }
 
+    // Sums for each wall begin at zero, unless a state with the same walls has been read.
+    void clear_wall_totals(Bed& bed) const {
+        const auto labels = static_cast<std::size_t>(problem_.each_wall ? bed.cavity->wall_labels() : 0);
+        for (Chunk& chunk : bed.chunks)
+            if (chunk.each_wall.size() != labels) chunk.each_wall.assign(labels, WallTotals{});
+    }
+
     void update_cavity_motion(Bed& bed) { bed.motion = structure().cavity_motion(bed.cavity->shape.data()); }
 
     Row force_on(const Bed& bed) const {
@@ -194,7 +202,7 @@ class Simulation {
     template <class Reader> void read(Reader& reader, const std::vector<RestartCheck>& fixed) {
         serialize(reader);
         check_state(reader, fixed);
-        for (Bed& bed : beds_) update_cavity_motion(bed);
+        for (Bed& bed : beds_) clear_wall_totals(bed), update_cavity_motion(bed);
     }
 
     template <class Reader>
@@ -509,6 +517,7 @@ public:
                 list.resize(0);
             };
             for (Chunk& chunk : bed.chunks) prepare(chunk.pairs, pair), prepare(chunk.walls, wall);
+            clear_wall_totals(bed);
             neighbours_[b].start(bed);
             const ContactLoop& loop = contact_loops_.emplace_back(bed, problem_, pair, wall);
             integrators_.emplace_back(bed, problem_, loop.has_friction(), loop.has_rolling());
@@ -608,7 +617,7 @@ public:
         for (auto* sums : {&load_work_, &base_work_}) sums->assign(signals_.size(), 0); // of other loads
         viscous_.assign(viscous_.size(), 0);
         check_state(reader, fixed);
-        for (Bed& bed : beds_) update_cavity_motion(bed);
+        for (Bed& bed : beds_) clear_wall_totals(bed), update_cavity_motion(bed);
         require(step_ > 0 && status_ == Status::finished && dt_before > 0 && dt_before < infinity);
         step_ = 1, forces_known_at_ = -1, rebuilds_ = 0;
         for (Bed& bed : beds_)

@@ -12,6 +12,7 @@ struct Wall {
     Row axis{};
     Form form = plane;
     int material = 0;
+    int label = 0; // number of its name; walls with the same name are summed in results
 };
 
 // Outward direction from a position to the nearest point of a wall, and the distance.

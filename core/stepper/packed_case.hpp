@@ -178,6 +178,7 @@ template <class Pack> void pack(Pack& p, dem::Problem& problem) {
             pack(p, wall.axis, 4);
             p.integer(wall.form), p.integer(wall.material);
         });
+        pack(p, cavity.period, 3);
         pack(p, cavity.position, 4);
         pack(p, cavity.velocity, 3);
         pack(p, cavity.spin, 3);
@@ -205,7 +206,7 @@ template <class Pack> void pack(Pack& p, Component& component) {
 // ---- header
 
 inline constexpr char pack_magic[9] = "RATTLEBX";
-inline constexpr std::int64_t pack_version = 1;
+inline constexpr std::int64_t pack_version = 2;
 inline constexpr std::size_t pack_header = 40;
 
 inline std::uint64_t pack_hash(const std::uint8_t* data, std::size_t size) {

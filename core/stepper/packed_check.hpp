@@ -135,6 +135,11 @@ inline void check(const dem::Cavity& cavity, const dem::Problem& problem) {
         check_row(wall.axis);
         check(wall.form == dem::Wall::sphere || std::fabs(dot(wall.axis, wall.axis) - 1) < 1e-6);
     }
+    // A pair of particles must not touch through two images.
+    real largest = 0;
+    for (const Row& p : cavity.position) largest = std::fmax(largest, p[3]);
+    check_row(cavity.period);
+    for (int a = 0; a < 3; ++a) check(cavity.period[a] == 0 || cavity.period[a] > 4 * largest);
     for (std::size_t i = 0; i < n; ++i) {
         for (const auto* rows : {&cavity.position, &cavity.velocity, &cavity.spin}) check_row((*rows)[i]);
         for (const real value : {cavity.position[i][3], cavity.mass[i], cavity.inertia[i]})

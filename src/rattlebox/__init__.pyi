@@ -83,6 +83,7 @@ from rattlebox.model.structures import Fixed as Fixed
 from rattlebox.model.structures import Modal as Modal
 from rattlebox.model.structures import Shaker as Shaker
 from rattlebox.model.tuned_mass import TunedMass as TunedMass
+from rattlebox.model.walls import Wall as Wall
 from rattlebox.plots.backbone import plot_backbone as plot_backbone
 from rattlebox.plots.basins import plot_basins as plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation as plot_bifurcation

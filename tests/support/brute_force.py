@@ -1,6 +1,7 @@
 """Contacts and forces of elastic, frictionless spheres, by a search through all pairs and walls."""
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,9 @@ class Contacts:
     moment: Array
 
 
-def find_contacts(positions: Array, radii: Array, walls: Any, inside: Array, wall: Array, tolerance: float) -> Contacts:
+def find_contacts(
+    positions: Array, radii: Array, walls: Any, inside: Array, wall: Array, tolerance: float, period: Any = (0, 0, 0)
+) -> Contacts:
     """Return contacts and forces at a moment.
 
     Parameters
@@ -37,19 +40,25 @@ def find_contacts(positions: Array, radii: Array, walls: Any, inside: Array, wal
         Factor of sqrt(R*) in the Hertz stiffness, (n, n) among particles and (n,) at walls.
     tolerance
         Size of the overlap below which rounding may decide on a contact [m].
+    period
+        Distance of the images of a sphere along each axis [m], 0 for none; a pair touches through any of its images.
     """
     n = len(radii)
     force, on_cavity, moment = np.zeros((n, 3)), np.zeros(3), np.zeros(3)
     pairs, doubtful = set(), set()
-    apart = positions[:, None] - positions[None]
-    distance = np.sqrt((apart**2).sum(axis=2))
-    overlap = radii[:, None] + radii[None] - distance
-    for i, j in zip(*np.nonzero(np.triu(overlap > -tolerance, 1)), strict=True):
-        (doubtful if overlap[i, j] < tolerance else pairs).add((int(i), int(j)))
-        stiff = inside[i, j] * np.sqrt(radii[i] * radii[j] / (radii[i] + radii[j]))
-        push = stiff * max(overlap[i, j], 0.0) ** 1.5 * apart[i, j] / distance[i, j]
-        force[i] += push
-        force[j] -= push
+    length = np.asarray(period, float)
+    positions = positions - length * np.floor(positions / np.where(length > 0, length, np.inf) + 0.5)
+    for image in product(*((-1, 0, 1) if each else (0,) for each in length)):
+        apart = positions[:, None] - positions[None] + np.array(image) * length
+        distance = np.sqrt((apart**2).sum(axis=2))
+        overlap = radii[:, None] + radii[None] - distance
+        for i, j in zip(*np.nonzero(np.triu(overlap > -tolerance, 1)), strict=True):
+            assert (int(i), int(j)) not in pairs  # no pair touches through two images
+            (doubtful if overlap[i, j] < tolerance else pairs).add((int(i), int(j)))
+            stiff = inside[i, j] * np.sqrt(radii[i] * radii[j] / (radii[i] + radii[j]))
+            push = stiff * max(overlap[i, j], 0.0) ** 1.5 * apart[i, j] / distance[i, j]
+            force[i] += push
+            force[j] -= push
     for k, (axis, offset, form) in enumerate(zip(walls.axis, walls.offset, walls.form, strict=True)):
         across = positions - np.outer(positions @ axis, axis) if form == "cylinder" else positions
         reach = np.linalg.norm(across, axis=1) if form != "plane" else positions @ axis

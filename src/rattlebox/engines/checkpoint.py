@@ -39,7 +39,7 @@ from rattlebox.results.provenance import Provenance, with_version
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
-FORMAT = 3
+FORMAT = 4
 """Version of the layout; files of other versions are rejected."""
 
 _FREE_FIELDS: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.dem_continued import end_of, pack_continued
 from rattlebox.engines.dem_run import DemRun
 from rattlebox.engines.dem_snapshots import plan_snapshots
-from rattlebox.engines.end_state import LOSSES, EndState, sums_from_zero
+from rattlebox.engines.end_state import LOSSES, WALL_SUMS, EndState, sums_from_zero
 from rattlebox.engines.responses import structure_arrays
 from rattlebox.engines.run_notes import extrapolation_notes, particle_notes, table_notes
 from rattlebox.engines.status import describe, final_status
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
+    from rattlebox.model.particle_damper import ParticleDamper
     from rattlebox.results.run_end import RunEnd
 
     Array = NDArray[np.float64]
@@ -244,14 +245,36 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
         base_work=raw.base_work.sum(axis=1),
         viscous_loss=raw.viscous_loss.sum(axis=1),
         **{name: getattr(raw, name) for name in LOSSES},
+        **(_wall_arrays(dampers, raw) if case.output.walls else {}),
         particles={
-            "position": np.concatenate([end.position - end.displacement for end in ends]),
+            "position": np.concatenate(
+                [
+                    damper.cavity.wrapped(end.position - end.displacement)
+                    for damper, end in zip(dampers, ends, strict=True)
+                ]
+            ),
             "velocity": np.concatenate([end.velocity for end in ends]),
             "spin": np.concatenate([end.spin for end in ends]),
             "damper": np.repeat(np.arange(len(dampers)), [part.radius.size for part in contents]),
             **fixed,
         },
     )
+
+
+def _wall_arrays(dampers: Sequence[ParticleDamper], raw: _core.Records) -> dict[str, Any]:
+    """Return the arrays of the walls of all cavities; impulses, losses and impacts count from the first sample."""
+    labels = [damper.cavity.walls().labels for damper in dampers]
+    names = [damper.label(index) for index, damper in enumerate(dampers)]
+    alone = len(dampers) == 1
+    arrays = {name: getattr(raw, name) for name in raw.fields() if name.startswith("wall_")}
+    arrays |= {name: arrays[name] - arrays[name][:1] for name in WALL_SUMS}
+    return arrays | {
+        "walls": tuple(
+            face if alone else f"{name} {face}" for name, faces in zip(names, labels, strict=True) for face in faces
+        ),
+        "wall_damper": np.repeat(np.arange(len(dampers)), [len(faces) for faces in labels]),
+        "wall_area": np.concatenate([damper.cavity.face_areas for damper in dampers]),
+    }
 
 
 def _status_and_message(

@@ -59,7 +59,7 @@ def end_of(case: Case, packed: _core.DemProblem, dem: _core.Dem, records: _core.
 
 def _numbers(packed: _core.DemProblem) -> str:
     """Return the digest of a packed case, without its time and its samples."""
-    return fingerprint(packed.replace(steps=0, every=0, first_step=0, origin=0.0, enduring=0.0))
+    return fingerprint(packed.replace(steps=0, every=0, first_step=0, origin=0.0, enduring=0.0, each_wall=False))
 
 
 def pack_continued(case: Case, before: Case, end: RunEnd) -> Continuation:
@@ -154,7 +154,7 @@ def _differences(cavity: _core.Cavity, other: _core.Cavity) -> Iterator[tuple[st
     for name in _PARTICLES:
         if not np.array_equal(getattr(cavity, name), getattr(other, name)):
             yield name, "the particles and their start"
-    if fingerprint({"walls": cavity.walls}) != fingerprint({"walls": other.walls}):
+    if fingerprint({"": [cavity.walls, cavity.period]}) != fingerprint({"": [other.walls, other.period]}):
         yield "walls", "the cavity"
     if not np.array_equal(cavity.shape, other.shape):
         yield "point and direction", "the place of the damper"

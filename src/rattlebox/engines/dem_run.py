@@ -61,7 +61,9 @@ class DemRun:
             self._dem.restart(end.state)
         else:
             self._dem.continue_from(end.state, end.dt)
-        self._pieces = [end.sample(time, len(self._packed.loads), keeps_sums=is_same)]
+        packed = self._packed
+        walls = sum(len({wall.label for wall in cavity.walls}) for cavity in packed.cavities if packed.each_wall)
+        self._pieces = [end.sample(time, len(packed.loads), walls, keeps_sums=is_same)]
 
     def add_snapshots(self, snapshots: SnapshotFile, steps: Sequence[int]) -> None:
         """Take snapshots at the given steps. Those before a resumed checkpoint must already be in the file."""

@@ -39,7 +39,10 @@ def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Sn
     }
     sampled = np.asarray(steps * dt, dtype=float)
     walls = [damper.cavity.surface() for damper in case.particle_dampers]
-    file = SnapshotFile(path, sampled, _drawing_positions(case), fixed, walls, case.to_toml(), fingerprint(packed))
+    periods = np.array([damper.cavity.period for damper in case.particle_dampers])
+    file = SnapshotFile(
+        path, sampled, _drawing_positions(case), fixed, walls, case.to_toml(), fingerprint(packed), periods
+    )
     return file, steps.tolist()
 
 

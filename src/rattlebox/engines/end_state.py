@@ -14,6 +14,17 @@ from rattlebox.core import _core
 _FROM_ZERO = ("load_work", "base_work", "viscous_loss")
 """Samples that the core counts from the beginning of a continued run, unless the case is the same."""
 
+WALL_SUMS = (
+    "wall_impulse",
+    "wall_normal_impulse",
+    "wall_normal_loss",
+    "wall_plastic_loss",
+    "wall_sliding_loss",
+    "wall_rolling_loss",
+    "wall_impacts",
+)
+"""Samples of each wall that count from the beginning of a run."""
+
 LOSSES = ("normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 """Samples that the core continues to count in any continued run."""
 
@@ -35,12 +46,18 @@ class EndState:
         positions = tuple(np.asarray(cavity.position) for cavity in packed.cavities)
         return cls(np.array(dem.save()), packed.dt, positions, samples)
 
-    def sample(self, time: float, loads: int, *, keeps_sums: bool) -> _core.Records:
-        """Return the last sample as the first one, at a time [s], of a run that continues with some number of loads."""
+    def sample(self, time: float, loads: int, walls: int, *, keeps_sums: bool) -> _core.Records:
+        """Return the last sample as the first one, at a time [s], of a run that continues with some number of loads.
+
+        `walls`: number of walls that the run records; their sums begin at zero if the run before did not record them.
+        """
         values = {**self.samples, "time": np.array([time])}
         if not keeps_sums:
             widths = {"load_work": loads, "base_work": loads, "viscous_loss": values["viscous_loss"].shape[1]}
             values |= {name: np.zeros((1, widths[name])) for name in _FROM_ZERO}
+        for name, value in values.items():
+            if name.startswith("wall_") and value.shape[1] != walls:
+                values[name] = np.zeros((1, walls, *value.shape[2:]), value.dtype)
         return _core.Records(**values)
 
     def in_gravity(self, packed: _core.DemProblem) -> Self:

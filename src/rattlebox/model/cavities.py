@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.phrases import sizes
 from rattlebox._util.quantities import amount
 
 from .base import Part
 from .elementwise import Vector
-from .errors import Hint
+from .errors import Hint, nearest
 from .kinds import AnyKind
-from .space import Direction, Lengths, components_along, to_global, unit_vector
+from .space import AXES, Direction, Lengths, components_along, to_global, unit_vector, wrapped
 from .surfaces import Surface, bands, circle, facing_inward
 from .units import PositiveLength, radius_of_diameter
 
@@ -38,6 +40,17 @@ class Walls:
     axis: Vector  # Outward normal of a plane, axis of a cylinder's side; zeros for a sphere, (w, 3)
     offset: Vector  # Distance of a plane from the centre, radius of a cylinder or a sphere [m], (w,)
     form: tuple[WallForm, ...]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the walls, each once: walls of the same name are one face."""
+        return tuple(dict.fromkeys(self.names))
+
+    @property
+    def label_numbers(self) -> NDArray[np.int64]:
+        """Index of the name of each wall in `labels`, (w,)."""
+        number = {name: k for k, name in enumerate(self.labels)}
+        return np.array([number[name] for name in self.names], np.int64)
 
     def distances(self, positions: Vector) -> Vector:
         """Return the distances of points from the walls, (n, w) [m], positive inside."""
@@ -90,6 +103,33 @@ class Cavity(Part):
         return self.surface().lines(view[2])
 
     @property
+    def face_areas(self) -> Vector:
+        """Area of each face, in the order of `walls().labels`, (f,) [m^2]; by default from the polygons of the surface."""
+        walls, surface = self.walls(), self.surface()
+        areas = np.zeros(len(walls.labels))
+        centres = np.array([surface.points[list(polygon)].mean(axis=0) for polygon in surface.polygons])
+        nearest = walls.label_numbers[np.abs(walls.distances(centres)).argmin(axis=1)]
+        np.add.at(areas, nearest, surface.areas)
+        return areas
+
+    @property
+    def period(self) -> Vector:
+        """Distance of the images of a particle along x, y and z, (3,) [m]; 0 along an axis that is not periodic."""
+        return np.zeros(3)
+
+    def wrapped(self, positions: Vector) -> Vector:
+        """Return positions with those of the images inside, (n, 3) [m]; only a periodic cavity has images."""
+        return positions
+
+    def check_faces(self, names: Iterable[str]) -> None:
+        """Raise unless the cavity has faces of these names."""
+        labels = self.walls().labels
+        for name in names:
+            if name not in labels:
+                what = f"a {self.kind} has no face {name!r}"
+                raise Hint(f"{what}; its faces are {', '.join(labels)}", nearest(name, labels), [name])
+
+    @property
     def frame(self) -> Vector:
         """Axes of the cavity, (3, 3), one in each row."""
         return np.eye(3)
@@ -102,6 +142,10 @@ class Cavity(Part):
     def depth(self, positions: Vector) -> Vector:
         """Return the distances of points from the nearest wall, (n,) [m], positive inside."""
         return np.asarray(self.walls().distances(positions).min(axis=1))
+
+    def nearest_wall(self, positions: Vector) -> NDArray[np.intp]:
+        """Return the index of the wall that is nearest to each point, (n,)."""
+        return self.walls().distances(positions).argmin(axis=1)
 
     def room(self, positions: Vector, radii: Vector) -> Vector:
         """Return the distances of the surfaces of spheres from the nearest wall, (n,) [m], positive inside."""
@@ -139,6 +183,29 @@ class Cavity(Part):
 
 _SPREAD = 1.2207440846057596  # g^4 = g + 1
 
+_PERIODIC = WithJsonSchema(
+    {
+        "enum": ["", "x", "y", "z", "xy", "xz", "yz"],
+        "description": "axes along which particles leave through one face and enter through the opposite one",
+        "examples": ["xy"],
+    }
+)
+
+
+def _periodic(value: object) -> Any:
+    """Return the periodic axes of a box as a text in alphabetical order."""
+    axes = "".join(map(str, value)) if isinstance(value, (list, tuple)) else value
+    if not isinstance(axes, str) or not set(axes.replace(",", "").replace(" ", "")) <= set(AXES):
+        raise Hint("the periodic directions of a box are axes: one or two of x, y and z", '"x" or "xy"')
+    given = axes.replace(",", "").replace(" ", "")
+    if len(set(given)) != len(given):
+        raise Hint("an axis is named twice", f'"{"".join(sorted(set(given)))}"')
+    if len(given) == len(AXES):
+        raise Hint(
+            "a box that is periodic along x, y and z has no wall, so that no force acts on the structure", '"xy"'
+        )
+    return "".join(sorted(given))
+
 
 class Box(Cavity):
     """A box with edges along x, y and z.
@@ -147,6 +214,9 @@ class Box(Cavity):
     ----------
     size
         Inner lengths [m].
+    periodic
+        Directions without walls, "x" or "xy" for example: a particle that leaves through one face enters through the
+        opposite one, as in a slice of a much wider bed. The edges along them are more than two diameters long.
 
     Examples
     --------
@@ -157,6 +227,7 @@ class Box(Cavity):
 
     kind: Literal["box"] = "box"
     size: Lengths
+    periodic: Annotated[str, BeforeValidator(_periodic), _PERIODIC] = ""
 
     @model_validator(mode="after")
     def _has_size(self) -> Box:
@@ -166,10 +237,44 @@ class Box(Cavity):
         return self
 
     def walls(self) -> Walls:
-        """Return six planes."""
-        axis = np.concatenate([-np.eye(3), np.eye(3)])
-        names = tuple(sign + axis for sign in "-+" for axis in "xyz")
-        return Walls(names, axis, np.tile(self.lengths / 2, 2), ("plane",) * 6)
+        """Return six planes, without those of periodic directions."""
+        solid = [k for k, axis in enumerate(AXES) if axis not in self.periodic]
+        axis = np.concatenate([-np.eye(3)[solid], np.eye(3)[solid]])
+        names = tuple(sign + AXES[k] for sign in "-+" for k in solid)
+        return Walls(names, axis, np.tile(self.lengths[solid] / 2, 2), ("plane",) * len(names))
+
+    @property
+    def face_areas(self) -> Vector:
+        """Area of each face, (f,) [m^2]."""
+        return np.array([self.volume / self.size[AXES.index(name[-1])] for name in self.walls().labels])
+
+    @property
+    def period(self) -> Vector:
+        """Edges along periodic directions, (3,) [m]; 0 along the others."""
+        return np.array(
+            [length if axis in self.periodic else 0.0 for axis, length in zip(AXES, self.size, strict=True)]
+        )
+
+    def check_faces(self, names: Iterable[str]) -> None:
+        """Raise unless the box has faces of these names, which are not periodic."""
+        names = list(names)
+        for name in names:
+            if self.periodic and name[-1:] in self.periodic and name[:-1] in ("-", "+"):
+                raise Hint(
+                    f"the face {name} has no wall, since the box is periodic along {name[-1]}",
+                    f"no wall at {name}, or no {name[-1]} in periodic",
+                    [name],
+                )
+        super().check_faces(names)
+
+    def wrapped(self, positions: Vector) -> Vector:
+        """Return positions with those of the images inside, from minus to plus half of the edge, (n, 3) [m]."""
+        return wrapped(positions, self.period)
+
+    @property
+    def surface_over_volume(self) -> float:
+        """Area of the walls over the volume [1/m]."""
+        return 2 * float(np.sum(1 / self.lengths[self.period == 0]))
 
     def surface(self) -> Surface:
         """Return six faces."""
@@ -179,7 +284,8 @@ class Box(Cavity):
 
     def words(self) -> str:
         """Return a phrase with the three edges."""
-        return f"a box of {sizes(self.size)}"
+        along = " and ".join(self.periodic)
+        return f"a box of {sizes(self.size)}" + (f", periodic along {along}" if along else "")
 
     @property
     def volume(self) -> float:
@@ -301,6 +407,12 @@ class Cylinder(_Round):
             ("cylinder", "plane", "plane"),
         )
 
+    @property
+    def face_areas(self) -> Vector:
+        """Area of the side and of each end, (3,) [m^2]."""
+        end = math.pi * self.radius**2
+        return np.array([2 * math.pi * self.radius * self.length, end, end])
+
     def surface(self) -> Surface:
         """Return the side, of `_AROUND` faces, and the flat ends."""
         ring, up = self.radius * circle(_AROUND), np.array([0.0, 0.0, self.length / 2])
@@ -356,6 +468,11 @@ class SphericalCavity(_Round):
     def walls(self) -> Walls:
         """Return the spherical wall."""
         return Walls(("sphere",), np.zeros((1, 3)), np.array([self.radius]), ("sphere",))
+
+    @property
+    def face_areas(self) -> Vector:
+        """Area of the sphere, (1,) [m^2]."""
+        return np.array([4 * math.pi * self.radius**2])
 
     def surface(self) -> Surface:
         """Return a grid of latitude and longitude."""

@@ -304,6 +304,8 @@ class Output(Part):
     snapshots
         Number of snapshots of the particles, evenly spaced from 0 to the end, or their times [s], in runs with particle
         dampers and a snapshot file; default 101. An empty list is none.
+    walls
+        Whether forces, moments, losses and impacts are recorded for each face of the cavities with particles.
 
     Examples
     --------
@@ -318,6 +320,7 @@ class Output(Part):
     rate: PositiveFrequency | None = None
     times: Annotated[tuple[float, ...] | None, BeforeValidator(_times)] = None
     snapshots: Annotated[int | tuple[float, ...] | None, BeforeValidator(_count_or_times)] = None
+    walls: bool = False
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Output:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,11 @@ from .errors import Hint, at, several
 from .files import BINARY, absolute, check_finite, existing, read_arrays
 from .kinds import AnyKind
 from .records import read_table
-from .space import to_global
+from .space import AXES, to_global, wrapped
 from .units import SI, Number, Whole, in_si, numbers
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 TOUCHING = 1e-9  # tolerance for overlaps by rounding, relative to the radius
 PRESSED = 0.1
@@ -37,6 +40,9 @@ RANDOM_CLOSE_PACKING = 0.64
 G. D. Scott, D. M. Kilgour, J. Phys. D 2 (1969) 863, doi:10.1088/0022-3727/2/6/311."""
 COMPACTED = 0.62  # volume of equal spheres over that of a compacted bed, far from walls
 LOOSEST = 0.571  # the same of a settled bed with a large coefficient of friction
+NARROWEST = 2.02
+"""Least width of a periodic box over the diameter of the largest particle. Up to 2, two particles touch through both faces
+at once; the rest is for the overlaps while particles are pushed apart."""
 _FAR = 100.0  # distance over the size of the cavity from which positions are probably in other units
 
 
@@ -694,6 +700,14 @@ def check_size(cavity: AnyCavity, radius: float) -> None:
             f"a particle of {2e3 * radius:.4g} mm is {large} the cavity, which is {1e3 * widest:.4g} mm wide",
             "smaller particles, or a larger cavity; check both and their units",
         )
+    for axis, length in zip(AXES, cavity.period, strict=True):
+        if 0 < length < NARROWEST * 2 * radius:
+            least = 2e3 * NARROWEST * radius
+            raise Hint(
+                f"the box is {1e3 * length:.4g} mm wide along {axis}, in which it is periodic; a particle of "
+                f"{2e3 * radius:.4g} mm needs at least {least:.4g} mm, since two of them could otherwise touch twice",
+                f"a width of {1.01 * least:.4g} mm, or smaller particles; a slice of a wide bed has about ten diameters",
+            )
 
 
 def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector, allowed: float = TOUCHING) -> None:
@@ -702,6 +716,10 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector, allowed: 
     `positions`: centres, (n, 3) [m]. `radii`: radii, (n,) [m].
     """
     room = cavity.room(positions, radii)
+    # The centre of a particle is inside of periodic faces, too; the image of its other half is on the other side.
+    period = cavity.period
+    beyond = np.where(period > 0, np.abs(positions) - 0.5 * period * (1 + allowed), -np.inf).max(axis=1)
+    room = np.where(beyond > 0, np.minimum(room, -beyond), room)
     worst = int((room / radii).argmin())
     if room[worst] < -allowed * radii[worst]:
         place = ", ".join(f"{1e3 * x:.4g}" for x in positions[worst])
@@ -710,7 +728,7 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector, allowed: 
             f"particle {worst} at ({place}) mm sticks out of the cavity by {-1e3 * room[worst]:.4g} mm",
             "positions in metres, or with units" if far else _where_inside(cavity, positions, radii, worst),
         )
-    first, second, apart = overlapping(positions, radii)
+    first, second, apart = overlapping(positions, radii, period=period)
     if apart.size:
         smaller = np.minimum(radii[first], radii[second])
         k = int((apart / smaller).argmin())
@@ -733,18 +751,17 @@ def _where_inside(cavity: AnyCavity, positions: Vector, radii: Vector, worst: in
 
 
 def overlapping(
-    positions: Vector, radii: Vector, within: float = 0.0
+    positions: Vector, radii: Vector, within: float = 0.0, period: Vector | None = None
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], Vector]:
     """Return the pairs of spheres that overlap.
 
     `positions`: centres, (n, 3) [m]. `radii`: radii, (n,) [m]. `within`: largest distance between the surfaces of a pair
-    [m]. Returns indices of the pairs, (p,); and distance between the surfaces [m], negative for an overlap, (p,).
+    [m]. `period`: distances of the images of a particle along x, y and z, 0 for none, (3,) [m]. Returns indices of the
+    pairs, (p,); and distance between the surfaces [m], negative for an overlap, (p,).
     """
-    from scipy.spatial import cKDTree
-
     octave = np.log2(radii / radii.min()).astype(int)  # small spheres have a smaller search radius
     classes = [np.flatnonzero(octave == k) for k in np.unique(octave)]
-    trees = [cKDTree(positions[members]) for members in classes]
+    trees = [tree_of(positions[members], period) for members in classes]
     pairs = []
     for k, (members, tree) in enumerate(zip(classes, trees, strict=True)):
         for others, other in zip(classes[k:], trees[k:], strict=True):
@@ -756,3 +773,13 @@ def overlapping(
             pairs.append((i[mask], j[mask], apart[mask]))
     first, second, apart = (np.concatenate(parts) for parts in zip(*pairs, strict=True))
     return first, second, apart
+
+
+def tree_of(positions: Vector, period: Vector | None = None) -> cKDTree:
+    """Return a search tree of points, and of their images if there is a period, (3,) [m]."""
+    from scipy.spatial import cKDTree
+
+    if period is None or not np.any(period):
+        return cKDTree(positions)
+    # SciPy expects coordinates from 0 to the period; an axis with the period 0 is not periodic.
+    return cKDTree(wrapped(positions, period) + 0.5 * period, boxsize=period)

@@ -6,7 +6,7 @@ import math
 import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -38,8 +38,9 @@ from .packing import (
 )
 from .pairs import Body, Pair
 from .particles import MAX_PARTICLES, Particles, as_species
-from .space import Accelerations, Direction, Velocities
+from .space import AXES, Accelerations, Direction, Velocities
 from .units import Number, Whole
+from .walls import AnyFace, Wall
 
 WALL = "wall"
 MAX_DAMPERS = 10_000  # identical ones at a point
@@ -120,6 +121,7 @@ class Entry:
     friction: Friction | None
     rolling: Rolling | None
     names: tuple[str, str]
+    at_wall: bool
     place: tuple[str | int, ...]
     friction_place: tuple[str | int, ...]
     rolling_place: tuple[str | int, ...]
@@ -133,6 +135,10 @@ class ContactTable:
     particle_entry: NDArray[np.int64]  # Index of the entry of two species, (k, k)
     wall_entry: NDArray[np.int64]  # Index of the entry of a species and a kind of wall, (k, w)
     wall_kind: NDArray[np.int64]  # Kind of each wall, (walls,)
+
+    def at_wall(self, species: int, wall: int) -> Entry:
+        """Return the entry of a species and a wall."""
+        return self.entries[self.wall_entry[species, self.wall_kind[wall]]]
 
 
 def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:
@@ -163,6 +169,9 @@ class ParticleDamper(Damper):
         Friction laws or coefficients among particles and at walls; default none, and that of the particles at walls.
     rolling, wall_rolling
         Rolling resistances or their coefficients among particles and at walls; defaults as for friction.
+    walls
+        Faces that differ from the other walls, by name: "-x", "+x", "-y", ... of a box, "side", "first end" and "last end"
+        of a cylinder. Each is a `Wall`, a material, "rigid" or "frictionless".
     pairs
         Laws for pairs of species, or a species and the wall, that differ from the laws above.
     mixing
@@ -215,6 +224,7 @@ class ParticleDamper(Damper):
     wall_friction: AnyFriction | None = None
     rolling: AnyRolling | None = None
     wall_rolling: AnyRolling | None = None
+    walls: dict[str, AnyFace] = Field(default_factory=dict, examples=[{"-z": {"friction": 0.3}}])
     pairs: tuple[PairLaws, ...] = ()
     mixing: Mixing | None = None
     gravity: Accelerations = (0.0, 0.0, -9.81)
@@ -235,6 +245,7 @@ class ParticleDamper(Damper):
     @model_validator(mode="after")
     def _fits(self) -> ParticleDamper:
         self._check_group()
+        self._check_faces()
         self._check_amounts()
         self._check_room()
         self._check_pairs()
@@ -284,6 +295,18 @@ class ParticleDamper(Damper):
                 'packing = { kind = "settled" }, or a lattice with noise',
                 ["packing"],
             )
+
+    def _check_faces(self) -> None:
+        """Raise if a face does not exist, or if particles would fall forever along a periodic direction."""
+        with at("walls"):
+            self.cavity.check_faces(self.walls)
+        for axis, pull, length in zip(AXES, self.gravity, self.cavity.period, strict=True):
+            if length and pull:
+                raise Hint(
+                    f"gravity has a component along {axis}, in which the box is periodic: particles would fall forever",
+                    f"a direction of gravity without {axis}, or walls along {axis}",
+                    ["gravity"],
+                )
 
     def _check_amounts(self) -> None:
         if not self.particles:
@@ -340,7 +363,7 @@ class ParticleDamper(Damper):
                     )
                 seen.add(both)
         for walls in (False, True):
-            entries = [entry for entry in self._laws() if (WALL in entry.names) == walls]
+            entries = [entry for entry in self._laws() if entry.at_wall == walls]
             contacts = [(entry.contact, entry.place) for entry in entries]
             _check_alike("kind of law", [(law.kind, place) for law, place in contacts])
             _check_alike("ending", [(law.ending, place) for law, place in contacts if hasattr(law, "ending")])
@@ -492,8 +515,10 @@ class ParticleDamper(Damper):
     def largest_friction(self) -> float:
         """Largest coefficient of friction among particles and at walls."""
         names = [species.label for species in self.particles]
-        pairs = [(first, second) for k, first in enumerate(names) for second in (*names[k:], WALL)]
-        laws = (self._law("friction", *pair)[0] for pair in pairs)
+        laws = [self._law("friction", first, second)[0] for k, first in enumerate(names) for second in names[k:]]
+        for _, own in self._wall_kinds:
+            of_face = None if own is None else own.friction
+            laws += [self._law("friction", name, WALL)[0] for name in names] if of_face is None else [of_face]
         return max((law.coefficient for law in laws if law is not None), default=0.0)
 
     @cached_property
@@ -508,6 +533,7 @@ class ParticleDamper(Damper):
         radius = self.contents.radius
         positions = self.packing.place(self.cavity, radius, settles=any(self.gravity))
         velocity, spin = self.packing.motion(radius.size)
+        positions = self.cavity.wrapped(positions)
         return Start(positions, np.array(self.velocity) + velocity, spin)
 
     # ---- contacts
@@ -531,23 +557,56 @@ class ParticleDamper(Damper):
         wall = getattr(self, f"wall_{field}", None) if second == WALL else None
         return (wall, (f"wall_{field}",)) if wall is not None else (getattr(self, field), (field,))
 
+    @property
+    def _wall_kinds(self) -> tuple[tuple[tuple[str, ...], Wall | None], ...]:
+        """The faces with the same properties, and these; None for those of the damper."""
+        kinds: list[tuple[list[str], Wall | None]] = []
+        for name in self.cavity.walls().labels:
+            own = self.walls.get(name)
+            faces = next((faces for faces, wall in kinds if wall == own), None)
+            if faces is None:
+                kinds.append(([name], own))
+            else:
+                faces.append(name)
+        return tuple((tuple(faces), wall) for faces, wall in kinds)
+
     def _laws(self) -> Iterator[Entry]:
-        """Yield the entries of all pairs of species, then of each species and the fixed wall."""
+        """Yield the entries of all pairs of species, then of each species and each kind of wall."""
         names = [species.label for species in self.particles]
         bodies = [self._body(index) for index in range(len(names))]
-        wall = self.particles[0].material if self.wall is None else self.wall
-        side = Body(wall if isinstance(wall, Material) else None)
         for i, first in enumerate(bodies):
             for j in range(i, len(bodies)):
                 yield self._entry(names[i], names[j], Pair(first, bodies[j]))
-        for name, body in zip(names, bodies, strict=True):
-            yield self._entry(name, WALL, Pair(body, side))
+        usual = self.particles[0].material if self.wall is None else self.wall
+        for faces, own in self._wall_kinds:
+            material = usual if own is None or own.material is None else own.material
+            side = Body(material if isinstance(material, Material) else None)
+            for name, body in zip(names, bodies, strict=True):
+                entry = self._entry(name, WALL, Pair(body, side))
+                yield entry if own is None else self._of_face(entry, faces, own)
 
     def _entry(self, first: str, second: str, pair: Pair) -> Entry:
         contact, place = self._law("contact", first, second)
         friction, friction_place = self._law("friction", first, second)
         rolling, rolling_place = self._law("rolling", first, second)
-        return Entry(pair, contact, friction, rolling, (first, second), place, friction_place, rolling_place)
+        at_wall = second == WALL
+        return Entry(pair, contact, friction, rolling, (first, second), at_wall, place, friction_place, rolling_place)
+
+    def _of_face(self, entry: Entry, faces: tuple[str, ...], own: Wall) -> Entry:
+        """Return the entry of a species and a face that differs from the other walls."""
+        place = ("walls", faces[0])
+        with at(*place):
+            contact = own.contact_from(entry.contact)
+        changes: dict[str, Any] = {"contact": contact, "names": (entry.names[0], f"{WALL} {' '.join(faces)}")}
+        if contact is not entry.contact:
+            changes["place"] = (*place, "contact" if own.contact is not None else "restitution")
+        if own.friction is not None:
+            changes |= {"friction": own.friction, "friction_place": (*place, "friction")}
+            if not own.friction.coefficient:
+                changes |= {"rolling": None}
+        if own.rolling is not None:
+            changes |= {"rolling": own.rolling, "rolling_place": (*place, "rolling")}
+        return replace(entry, **changes)
 
     def _body(self, index: int) -> Body:
         contents, material = self.contents, self.particles[index].material
@@ -560,11 +619,13 @@ class ParticleDamper(Damper):
         k = len(self.particles)
         particle = np.zeros((k, k), np.int64)
         particle[np.triu_indices(k)] = np.arange(k * (k + 1) // 2)
+        kinds, walls = self._wall_kinds, self.cavity.walls()
+        kind = {face: number for number, (faces, _) in enumerate(kinds) for face in faces}
         return ContactTable(
             tuple(self._laws()),
             np.maximum(particle, particle.T),
-            k * (k + 1) // 2 + np.arange(k)[:, None],
-            np.zeros(self.cavity.walls().offset.size, np.int64),
+            k * (k + 1) // 2 + np.arange(k)[:, None] + k * np.arange(len(kinds)),
+            np.array([kind[name] for name in walls.names], np.int64),
         )
 
     @property

@@ -218,8 +218,8 @@ def _materials(node: object) -> Iterator[Material]:
     elif isinstance(node, Part):
         for name in type(node).model_fields:
             yield from _materials(getattr(node, name))
-    elif isinstance(node, tuple):
-        for item in node:
+    elif isinstance(node, (tuple, Mapping)):
+        for item in node.values() if isinstance(node, Mapping) else node:
             yield from _materials(item)
 
 

@@ -105,6 +105,23 @@ def to_global(coordinates: Vector, frame: Vector) -> Vector:
     return np.asarray(np.einsum("ij,jk->ik", coordinates, frame))
 
 
+def wrapped(positions: Vector, period: Vector) -> Vector:
+    """Return positions with those of the images in [-L/2, L/2) along the axes with a period L > 0, (n, 3)."""
+    if not np.any(period):
+        return positions
+    length = np.where(period > 0, period, np.inf)
+    inside = positions - period * np.floor(positions / length + 0.5)
+    # Rounding may leave a position at the upper end, which is the image of the lower one.
+    return np.where(inside >= 0.5 * length, -0.5 * period, inside)
+
+
+def to_nearest_image(branch: Vector, period: Vector) -> Vector:
+    """Return branch vectors to the nearest images along the axes with a period, (n, 3)."""
+    if not np.any(period):
+        return branch
+    return np.asarray(branch - period * np.rint(branch / np.where(period > 0, period, np.inf)))
+
+
 Accelerations = Annotated[Triple, *triple("m/s^2", "accelerations", "[0, 0, -9.81]")]
 Velocities = Annotated[Triple, *triple("m/s", "velocities", "[0.1, 0, 0]")]
 Lengths = Annotated[Triple, *triple("m", "lengths", '["40 mm", "40 mm", "60 mm"]')]

@@ -30,10 +30,15 @@ class Surface:
         return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
     @property
+    def areas(self) -> Vector:
+        """Area of each polygon, (m,) [m^2]."""
+        normals = [_normal(self.points[list(polygon)]) for polygon in self.polygons]
+        return np.asarray(0.5 * np.linalg.norm(normals, axis=1))
+
+    @property
     def area(self) -> float:
         """Sum of the areas of the polygons [m^2]."""
-        normals = [_normal(self.points[list(polygon)]) for polygon in self.polygons]
-        return 0.5 * float(np.linalg.norm(normals, axis=1).sum())
+        return float(self.areas.sum())
 
     @property
     def volume(self) -> float:

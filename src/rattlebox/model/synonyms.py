@@ -1,6 +1,9 @@
 """Synonyms of names in other programs and books, for suggestions, and names of what does not exist."""
 
 _OTHERS = {  # ours: others'
+    # faces of a box, for gravity along -z
+    "-z": "bottom floor base_plate",
+    "+z": "top roof lid ceiling",
     # fields
     "stiffness K": "k",
     "damping C": "c",
@@ -90,6 +93,10 @@ _ABSENT = {  # what does not exist, and what to do instead: others' names
     ("no air or liquid is between balls, particles and walls", "remove it, and compare a lower restitution"): (
         "drag drag_coefficient fluid air viscosity fluid_density buoyancy gas lubrication"
     ),
+    (
+        "only a box has parallel faces through which particles can pass",
+        'cavity = { kind = "box", periodic = "x", ... }',
+    ): ("periodic periodicity periodic_boundary periodic_boundaries periodic_bc pbc periodic_axes"),
     ("cavities move without turning", "remove it, and give the base a motion in two directions"): (
         "rotation rotating rotation_speed rotational_speed rotation_rate rotation_axis rotation_frequency angular_velocity "
         "angular_speed rpm omega tilt spin_rate axis_of_rotation centrifugal"

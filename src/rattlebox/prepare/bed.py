@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox.model.errors import at
-from rattlebox.model.packing import Crowd
+from rattlebox.model.packing import Crowd, tree_of
 from rattlebox.prepare.settle import VOLUME_POINTS, start_positions
 
 if TYPE_CHECKING:
@@ -181,23 +181,21 @@ def _bulk_density(damper: ParticleDamper, positions: Array, height: float) -> tu
     points = points[inside]
     if points.shape[0] < 100:
         return math.nan, math.nan
-    filled = _in_spheres(points, positions, radii)
+    filled = _in_spheres(points, positions, radii, cavity.period)
     # Points in eight octants about the median are eight parts of similar volume.
     octant = (points > np.median(points, axis=0)) @ np.array([1, 2, 4])
     parts = np.array([filled[octant == k].mean() for k in np.unique(octant)])
     return float(filled.mean()), float(parts.std(ddof=1) / math.sqrt(parts.size))
 
 
-def _in_spheres(points: Array, positions: Array, radii: Array) -> NDArray[np.bool_]:
+def _in_spheres(points: Array, positions: Array, radii: Array, period: Array) -> NDArray[np.bool_]:
     """Return whether each point is in one of the spheres, (n,)."""
-    from scipy.spatial import cKDTree
-
     filled = np.zeros(len(points), bool)
     sizes = np.log2(radii / radii.min()).astype(int)
     for size in np.unique(sizes):  # The search radius is that of similar spheres.
         similar = np.flatnonzero(sizes == size)
-        near = cKDTree(points).sparse_distance_matrix(
-            cKDTree(positions[similar]), float(radii[similar].max()), output_type="ndarray"
+        near = tree_of(points, period).sparse_distance_matrix(
+            tree_of(positions[similar], period), float(radii[similar].max()), output_type="ndarray"
         )
         filled[near["i"][near["v"] < radii[similar][near["j"]]]] = True
     return filled

@@ -103,6 +103,7 @@ def pack_particles(prepared: Prepared) -> _core.DemProblem:
         enduring=ENDURING / slowest if slowest else math.inf,
         steps=step.count,
         every=step.every,
+        each_wall=case.output.walls,
         gravity=_array(case.particle_dampers[0].gravity),
         mode_decay=_array(modes.decay),
         mode_stiffness=_array(modes.stiffness),
@@ -230,6 +231,7 @@ def _cavity(damper: ParticleDamper, shape: Array, table: ContactTable, first: in
     return _core.Cavity(
         shape=_array(shape),
         walls=pack_walls(damper.cavity.walls(), table.wall_kind),
+        period=damper.cavity.period,
         position=position,
         velocity=_array(start.velocity),
         spin=_array(start.spin),

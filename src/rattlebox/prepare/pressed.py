@@ -29,7 +29,7 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
         return
     contents, centres = damper.contents, damper.start.position
     radii, masses, species = contents.radius, contents.mass, contents.species
-    first, second, apart = overlapping(centres, radii)
+    first, second, apart = overlapping(centres, radii, period=damper.cavity.period)
     # One contact for each kind of pair decides, since the law and its usual overlap depend on the kind only.
     room = damper.cavity.room(centres, radii)
     pairs = [
@@ -38,7 +38,8 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
             apart, np.minimum(radii[first], radii[second]), table.particle_entry[species[first], species[second]]
         )
     ]
-    walls = [(float(-room[k]), int(k), -1) for k in _deepest(room, radii, table.wall_entry[species, 0])]
+    wall_entry = table.wall_entry[species, table.wall_kind[damper.cavity.nearest_wall(centres)]]
+    walls = [(float(-room[k]), int(k), -1) for k in _deepest(room, radii, wall_entry)]
     deepest = 0.0
     for depth, one, other in pairs + walls:
         if other >= 0:
@@ -48,7 +49,7 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
             )
             size = min(radii[one], radii[other])
         else:
-            entry = table.entries[table.wall_entry[species[one], 0]]
+            entry = table.entries[wall_entry[one]]
             law, size = _law(damper, entry, radii[one], masses[one]), radii[one]
         # Overlaps as deep as impacts make them are those of a run that is continued; much deeper ones would throw the
         # particles apart.

@@ -22,8 +22,9 @@ from rattlebox.model.packing import (
     holds_at_random,
     overlapping,
     random_density,
+    tree_of,
 )
-from rattlebox.model.space import components_along, to_global
+from rattlebox.model.space import components_along, to_global, to_nearest_image
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -82,9 +83,10 @@ def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -
         places = compact(damper, proceed) if packing.is_dense else insert(damper.cavity, radii, packing.seed, proceed)
         if damper.up is not None:
             bed = _SettlingBed(damper, proceed)
-            places = bed.expand(bed.fall(places, packing.at_rest), damper.cavity)
+            places = bed.expand(bed.fall(places, packing.at_rest))
     except _Stopped:
         return None
+    places = damper.cavity.wrapped(places)
     check_packing(damper.cavity, places, radii)
     for oldest in list(_beds)[: 1 - CACHED_BEDS]:
         _beds.pop(oldest, None)
@@ -171,7 +173,7 @@ def insert(
         for _ in range(1000):
             places[left] = to_global(generator.uniform(-half, half, (left.size, 3)), cavity.frame)
             outside = walls.distances(places[left]).min(axis=1) < radii[left]
-            left = left[outside | _overlap(places[left], radii[left], places[there], radii[there])]
+            left = left[outside | _overlap(places[left], radii[left], places[there], radii[there], cavity.period)]
             if not left.size:
                 break
         there = np.sort(np.concatenate([there, new]))
@@ -179,16 +181,15 @@ def insert(
     return places
 
 
-def _overlap(places: Array, radii: Array, others: Array, other_radii: Array) -> NDArray[np.bool_]:
+def _overlap(places: Array, radii: Array, others: Array, other_radii: Array, period: Array) -> NDArray[np.bool_]:
     """Return whether each sphere overlaps one of the others, which are larger, (n,)."""
-    from scipy.spatial import cKDTree
-
     overlaps = np.zeros(radii.size, bool)
     octave = np.log2(other_radii / other_radii.min(initial=math.inf)).astype(int)
     for k in np.unique(octave):
         large = np.flatnonzero(octave == k)
         reach = float(radii.max() + other_radii[large].max())
-        near = cKDTree(places).sparse_distance_matrix(cKDTree(others[large]), reach, output_type="ndarray")
+        trees = tree_of(places, period), tree_of(others[large], period)
+        near = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
         overlaps[near["i"][near["v"] < radii[near["i"]] + other_radii[large[near["j"]]]]] = True
     return overlaps
 
@@ -228,9 +229,9 @@ def push_apart(
         if iteration % 50 == 0 and not proceed():
             raise _Stopped
         if not 2 * np.abs(places - listed).max() * math.sqrt(3) < margin:
-            near = overlapping(places, grown, margin)[:2]
+            near = overlapping(places, grown, margin, cavity.period)[:2]
             listed = places.copy()
-        between = places[near[0]] - places[near[1]]
+        between = to_nearest_image(places[near[0]] - places[near[1]], cavity.period)
         length = np.linalg.norm(between, axis=1)
         apart = length - grown[near[0]] - grown[near[1]]
         deep = apart < 0
@@ -239,7 +240,7 @@ def push_apart(
         small = np.minimum(grown[first], grown[second])
         # Spheres were enlarged, so that the end may leave half of the enlargement: true sizes then have no overlap.
         if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * enlargement:
-            return places
+            return cavity.wrapped(places)
         between, length = between[deep], length[deep][:, None]
         # Two centres at the same place have no direction; any one separates them.
         push = -apart[:, None] * np.where(length > 0, between / np.maximum(length, 1e-300), [0.0, 0.0, 1.0])
@@ -289,7 +290,7 @@ class _SettlingBed:
 
     def __init__(self, damper: ParticleDamper, proceed: Callable[[], bool]) -> None:
         self._proceed = proceed
-        self._contents, self._walls = damper.contents, damper.cavity.walls()
+        self._contents, self._cavity = damper.contents, damper.cavity
         self._gravity = np.array(damper.gravity)
         self._pull = float(np.linalg.norm(self._gravity))
         height = damper.cavity.extent(present(damper.up))
@@ -330,16 +331,16 @@ class _SettlingBed:
                 places, before = now, energy
         raise Hint(f"particles do not come to rest within {MAX_FALL_TIMES * self._fall:.3g} s", "a larger at_rest")
 
-    def expand(self, places: Array, cavity: AnyCavity) -> Array:
+    def expand(self, places: Array) -> Array:
         """Reduce the weight in steps until particles of the true size do not overlap; return their positions."""
-        radii = self._contents.radius
+        radii, cavity = self._contents.radius, self._cavity
         # The tolerance is for rows exactly as long as the cavity, which overlap by rounding under any weight.
         reduced = radii - 0.5 * TOUCHING * radii.min()
         # Under its weight a bed overlaps; with less of it in each step it swells as a whole instead of being pushed
         # apart at random.
         for weight in WEIGHT_FACTORS:
             for now, _ in self._simulate(places, weight, RELAXATION_BLOCKS):
-                if cavity.room(now, reduced).min() >= 0 and not overlapping(now, reduced)[0].size:
+                if cavity.room(now, reduced).min() >= 0 and not overlapping(now, reduced, period=cavity.period)[0].size:
                     return now
             places = now
         return push_apart(cavity, places, radii, ENLARGEMENT)
@@ -347,9 +348,11 @@ class _SettlingBed:
     def _simulate(self, places: Array, weight: float, blocks: int) -> Iterator[tuple[Array, float]]:
         """Yield positions and kinetic energy every twenty contact times, under a fraction of the weight."""
         every, none, count = 20 * STEPS, np.zeros(0), self._contents.radius.size
+        walls = self._cavity.walls()
         cavity = _core.Cavity(
             shape=np.zeros((0, 3)),
-            walls=pack_walls(self._walls, np.zeros(self._walls.offset.size, int)),
+            walls=pack_walls(walls, np.zeros(walls.offset.size, int)),
+            period=self._cavity.period,
             position=places,
             velocity=np.zeros_like(places),
             spin=np.zeros_like(places),
@@ -394,8 +397,10 @@ class _SettlingBed:
 def pack_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
     """Pack walls for the core, each with the index of its material."""
     return [
-        _core.Wall(form=_core.WallForm[form], axis=axis, offset=float(offset), material=int(number))
-        for form, axis, offset, number in zip(walls.form, walls.axis, walls.offset, material, strict=True)
+        _core.Wall(form=_core.WallForm[form], axis=axis, offset=float(offset), material=int(number), label=int(label))
+        for form, axis, offset, number, label in zip(
+            walls.form, walls.axis, walls.offset, material, walls.label_numbers, strict=True
+        )
     ]
 
 

@@ -113,8 +113,11 @@ def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> flo
         return 0.0
     contents, table = damper.contents, damper.contact_table
     species = int(np.bincount(contents.species, contents.mass).argmax())
-    alone = contents.radius.size == 1
-    entry = table.entries[table.wall_entry[species, 0] if alone else table.particle_entry[species, species]]
+    if contents.radius.size == 1:  # It rests on the floor.
+        lowest = 0.5 * damper.cavity.extent(gravity / size) * gravity[None] / size
+        entry = table.at_wall(species, int(damper.cavity.nearest_wall(lowest)[0]))
+    else:
+        entry = table.entries[table.particle_entry[species, species]]
     factor = damper.softening_factor if softening is None else softening
     diameter = 2 * float(contents.radius[contents.species == species].mean())
     volume = 4 / 3 * math.pi * float((contents.radius**3).sum())

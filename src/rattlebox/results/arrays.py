@@ -168,8 +168,8 @@ class RunArrays(_Frozen):
     """All arrays of one run, in SI units, as attributes; `schema.VARIABLES` lists their names, dimensions and units.
 
     Dimensions: T times, P points, B balls (of all dampers, damper after damper), D dampers and behind them S stops, L loads,
-    M modes, three axes, two contact partners (another particle, the wall). Variables that are left out are zero. Arrays are
-    read-only; equality compares every value, NaN equals NaN.
+    M modes, three axes, two contact partners (another particle, the wall), W walls of all cavities if they are recorded.
+    Variables that are left out are zero. Arrays are read-only; equality compares every value, NaN equals NaN.
 
     Parameters
     ----------
@@ -187,6 +187,7 @@ class RunArrays(_Frozen):
     loads: tuple[str, ...]
     stops: tuple[str, ...]
     line: str
+    walls: tuple[str, ...]
     impacts: Table
     particles: Table
     # For editors and type checkers; a run has the variables of its engine.
@@ -232,6 +233,18 @@ class RunArrays(_Frozen):
     rotation_energy: FloatArray
     sliding_loss: FloatArray
     rolling_loss: FloatArray
+    wall_force: FloatArray
+    wall_moment: FloatArray
+    wall_normal_force: FloatArray
+    wall_impulse: FloatArray
+    wall_normal_impulse: FloatArray
+    wall_impacts: IntArray
+    wall_damper: IntArray
+    wall_area: FloatArray
+    wall_normal_loss: FloatArray
+    wall_plastic_loss: FloatArray
+    wall_sliding_loss: FloatArray
+    wall_rolling_loss: FloatArray
 
     def __init__(
         self,
@@ -244,13 +257,14 @@ class RunArrays(_Frozen):
         loads: tuple[str, ...] = (),
         stops: tuple[str, ...] = (),
         line: str = LINE,
+        walls: tuple[str, ...] = (),
         **values: Any,
     ) -> None:
         if engine not in BOTH:
             raise ValueError(f"there is no engine {engine!r}; there are {', '.join(BOTH)}")
         fields = vars(self)
         fields.update(engine=engine, time=_as_time(time), line=line)
-        names = {"points": points, "balls": balls, "dampers": dampers, "loads": loads, "stops": stops}
+        names = {"points": points, "balls": balls, "dampers": dampers, "loads": loads, "stops": stops, "walls": walls}
         for name, labels in names.items():
             fields[name] = _as_labels(name, labels)
         sizes = {
@@ -260,6 +274,7 @@ class RunArrays(_Frozen):
             "damper": len(self.dampers),
             "source": len(self.loads),
             "stop": len(self.stops),
+            "wall": len(self.walls),
             "mode": np.size(values.get("mode_frequency", ())),
             "axis": len(AXES),
             "partner": len(PARTNERS),
@@ -267,7 +282,7 @@ class RunArrays(_Frozen):
         for group in groups(engine).values():
             if group.along == "time":
                 for v in variables(engine, group.name):
-                    if not v.derived:
+                    if not v.derived and ("wall" not in v.dims or self.walls):
                         fields[v.name] = _as_array(v, values.pop(v.name, None), sizes)
             else:
                 table = values.pop(group.name, {})
@@ -280,7 +295,7 @@ class RunArrays(_Frozen):
     def _check_references(self) -> None:
         """Raise if an index names a damper or a contact that does not exist."""
         dampers = len(self.dampers)
-        indices = {"ball_damper": vars(self).get("ball_damper")}
+        indices = {name: vars(self).get(name) for name in ("ball_damper", "wall_damper")}
         for name in ("impacts", "particles"):
             if name in self:
                 indices[f"damper of the {name}"] = vars(self)[name].damper
@@ -316,6 +331,7 @@ class RunArrays(_Frozen):
             "damper": self.dampers,
             "source": self.loads,
             "stop": self.stops,
+            "wall": self.walls,
             "mode": np.arange(1, self.mode_frequency.size + 1),
             "axis": AXES,
             "partner": PARTNERS,

@@ -40,6 +40,8 @@ def parts(run: Record, group: str, *, empty: bool = True) -> Iterator[Part]:
     stored = run.arrays if groups(engine)[group].along == "time" else getattr(run.arrays, group)
     seen: set[str] = set()
     for v in variables(engine, group):
+        if "wall" in v.dims and not labels["wall"]:  # recorded on request only
+            continue
         if empty or all(len(labels.get(dim, "-")) for dim in v.dims):
             new = [dim for dim in v.dims if dim in labels and dim not in seen]
             seen.update(new)

@@ -228,6 +228,11 @@ class Ledger:
         count = np.bincount(arrays.particles.damper, minlength=len(arrays.dampers))
         return np.asarray(arrays.contacts @ np.array([2, 1]) / np.maximum(count, 1))
 
+    @property
+    def wall_pressure(self) -> FloatArray:
+        """Normal contact force on each wall over its area [Pa], (T, W); 3-D runs that record their walls only."""
+        return np.asarray(self.arrays.wall_normal_force / self.arrays.wall_area)
+
     def __repr__(self) -> str:
         shares = ", ".join(f"{channel} {quantity(share, '%')}" for channel, share in self.shares.items())
         supplied = quantity(float(self.supplied[-1]), "J")

@@ -57,7 +57,14 @@ _DAMAGE_HINT = "a copy of the file, or run the case again"
 _DISK_HINT = "free disk space and save the run again"
 
 _STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
-_NAMES = {"point": "points", "ball": "balls", "damper": "dampers", "source": "loads", "stop": "stops"}
+_NAMES = {
+    "point": "points",
+    "ball": "balls",
+    "damper": "dampers",
+    "source": "loads",
+    "stop": "stops",
+    "wall": "walls",
+}
 """Argument of `RunArrays` with the labels of a dimension."""
 _LARGE: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
 """Filters of arrays of more than 64 numbers; Fletcher-32 is a checksum, which HDF5 verifies when it reads them."""

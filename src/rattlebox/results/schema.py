@@ -76,6 +76,7 @@ DIMENSIONS: tuple[Dimension, ...] = (
     Dimension("mode", "number of the mode", "1"),
     Dimension("axis", "axis", engines=_DEM),
     Dimension("partner", "contact partner of the particles", engines=_DEM),
+    Dimension("wall", "wall of a cavity", engines=_DEM),
     Dimension("impact", "number of the impact, from 0", "1", engines=_IMPACT),
     Dimension("particle", "number of the particle, from 0, over all dampers", "1", engines=_DEM),
     Dimension("channel", "channel of the energy"),
@@ -109,6 +110,8 @@ _DAMPER = ("time", "damper")
 _CAVITY = ("time", "damper", "axis")
 _STOP = ("time", "stop")
 _PARTNER = ("time", "damper", "partner")
+_WALL = ("time", "wall")
+_WALL_AXIS = ("time", "wall", "axis")
 _LOG = ("impact",)
 _EACH = ("particle",)
 _EACH_AXIS = ("particle", "axis")
@@ -138,6 +141,13 @@ VARIABLES: tuple[Variable, ...] = (
     _3d("momentum", "motion", _CAVITY, "kg m/s", "momentum of the particles"),
     _3d("contacts", "motion", _PARTNER, "1", "number of contacts", "int"),
     _3d("coordination", "motion", _DAMPER, "1", "mean contacts of a particle", derived=True),
+    _3d("wall_force", "motion", _WALL_AXIS, "N", "contact force on the wall"),
+    _3d("wall_moment", "motion", _WALL_AXIS, "N m", "contact moment on the wall about the cavity's centre"),
+    _3d("wall_normal_force", "motion", _WALL, "N", "sum of the normal contact forces on the wall"),
+    _3d("wall_pressure", "motion", _WALL, "Pa", "normal contact force on the wall over its area", derived=True),
+    _3d("wall_impulse", "motion", _WALL_AXIS, "N s", "impulse on the wall since the start", cumulative=True),
+    _3d("wall_normal_impulse", "motion", _WALL, "N s", "sum of the normal impulses on the wall", cumulative=True),
+    _3d("wall_impacts", "motion", _WALL, "1", "impacts on the wall since the start", "int", cumulative=True),
     Variable("base_displacement", "motion", _BASE, "m", "displacement of the base"),
     Variable("base_velocity", "motion", _BASE, "m/s", "velocity of the base"),
     Variable("base_acceleration", "motion", _BASE, "m/s^2", "acceleration of the base"),
@@ -146,6 +156,8 @@ VARIABLES: tuple[Variable, ...] = (
     _1d("ball_centre", "motion", ("ball",), "m", "ball place in the packed, centred row"),
     _1d("clearance", "motion", ("damper",), "m", "total clearance of the cavity"),
     _3d("particle_mass", "motion", ("damper",), "kg", "mass of all particles"),
+    _3d("wall_damper", "motion", ("wall",), "1", "damper of the wall, from 0", "int", coordinate=True),
+    _3d("wall_area", "motion", ("wall",), "m^2", "area of the wall"),
     Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode", coordinate=True),
     Variable("mode_energy", "energy", _MODE, "J", "energy of the mode"),
     _1d("ball_energy", "energy", _BALL, "J", "kinetic energy of the ball"),
@@ -162,6 +174,10 @@ VARIABLES: tuple[Variable, ...] = (
         "sliding_loss", "energy", _PARTNER, "J", "loss in contacts by friction and tangential damping", cumulative=True
     ),
     _3d("rolling_loss", "energy", _PARTNER, "J", "loss in contacts by rolling resistance", cumulative=True),
+    _3d("wall_normal_loss", "energy", _WALL, "J", "loss at the wall by normal damping", cumulative=True),
+    _3d("wall_plastic_loss", "energy", _WALL, "J", "loss at the wall by plastic flow", cumulative=True),
+    _3d("wall_sliding_loss", "energy", _WALL, "J", "loss at the wall by friction", cumulative=True),
+    _3d("wall_rolling_loss", "energy", _WALL, "J", "loss at the wall by rolling resistance", cumulative=True),
     Variable("structure", "energy", _TIME, "J", "energy of the structure", derived=True),
     Variable("particles", "energy", _TIME, "J", "kinetic energy of the particles", derived=True),
     Variable("total", "energy", _TIME, "J", "total energy", derived=True),
@@ -233,7 +249,7 @@ def full_dims(group: str) -> dict[str, tuple[str, ...]]:
 @cache
 def channels(engine: Engine) -> tuple[str, ...]:
     """Return the channels of the supplied energy: the losses and "motion", whose shares at the end add up to one."""
-    losses = (v.name for v in variables(engine) if v.cumulative and v.name.endswith("_loss"))
+    losses = (v.name for v in variables(engine) if v.cumulative and v.name.endswith("_loss") and "wall" not in v.dims)
     return (*(name.removesuffix("_loss") for name in losses), "motion")
 
 
@@ -246,6 +262,8 @@ def explain_absence(name: str, engine: Engine) -> str:
             return f"this {runs} has no {name!r}: {group.absent}; {there}"
     same_name = [variable for variable in VARIABLES if variable.name == name]
     for variable in same_name:
+        if engine in variable.engines and "wall" in variable.dims:
+            return f"this run has no {name!r}: its walls were not recorded; output = rb.Output(walls=True) records them"
         if engine in variable.engines:
             return f"{name!r} is not one of the arrays along time; it is in run.{variable.group}"
     for variable in same_name:

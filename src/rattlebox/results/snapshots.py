@@ -34,6 +34,7 @@ from rattlebox._util.atomic_io import (
 from rattlebox._util.digests import SIZE, array_digest, group_digest
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import register_format
+from rattlebox.model.space import wrapped
 from rattlebox.model.surfaces import Surface
 
 from . import ondem
@@ -158,9 +159,11 @@ class SnapshotFile:
         walls: Sequence[Surface],
         case_toml: str,
         numbers: str,
+        periods: FloatArray | None = None,
     ) -> None:
         self.path = Path(path)
         self._times, self._places, self._walls = times, places, tuple(walls)
+        self._periods = np.zeros_like(places) if periods is None else periods  # of each cavity, (D, 3) [m]
         self._particles = int(fixed["radius"].size)
         self._wall_cavity = np.repeat(np.arange(len(walls)), [len(wall.points) for wall in walls])
         of_walls: dict[str, Any] = {"radius": 0.0, "mass": 0.0, "cavity": self._wall_cavity, "species": -1}
@@ -281,7 +284,10 @@ class SnapshotFile:
                 _force_sums(touching, len(each.position)) for each, touching in zip(cavities, contacts, strict=True)
             ],
         }
-        placed = [each.position + place for each, place in zip(cavities, self._places, strict=True)]
+        placed = [
+            _inside(each, period) + place
+            for each, period, place in zip(cavities, self._periods, self._places, strict=True)
+        ]
         placed += [wall.points + moved for wall, moved in zip(self._walls, displacement + self._places, strict=True)]
         for field, shape in _MOVING.items():  # the corners of the walls have neither spin nor contacts
             moving[field].append(np.zeros((self._wall_cavity.size, *shape)))
@@ -300,6 +306,12 @@ class SnapshotFile:
             )
             file.flush()
             root["Steps"].attrs.modify("NSteps", max(number + 1, int(root["Steps"].attrs["NSteps"])))
+
+
+def _inside(cavity: _core.CavityState, period: FloatArray) -> FloatArray:
+    """Return the positions of particles, of the images inside of a periodic cavity, (n, 3) [m]."""
+    position, centre = cavity.position, cavity.displacement
+    return centre + wrapped(position - centre, period) if period.any() else np.asarray(position)
 
 
 def _blocks(number: int, count: int, cavities: int) -> dict[str, slice]:
