@@ -1138,10 +1138,10 @@ class WallForm(enum.Enum):
 
 class Wall(Node):
     """
-    A wall around the centre of a cavity: outward normal of a plane or axis of a cylinder, and distance or radius [m].
+    A wall around the centre of a cavity: outward normal of a plane or axis of a cylinder, and distance or radius [m]. `label` is the number of its name; walls of one name are summed in results.
     """
 
-    def __init__(self, *, form: WallForm, axis: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], offset: float, material: int) -> None: ...
+    def __init__(self, *, form: WallForm, axis: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], offset: float, material: int, label: int = 0) -> None: ...
 
     @property
     def form(self) -> WallForm: ...
@@ -1155,15 +1155,18 @@ class Wall(Node):
     @property
     def material(self) -> int: ...
 
+    @property
+    def label(self) -> int: ...
+
     @staticmethod
     def fields() -> dict[str, Varies]: ...
 
 class Cavity(Node):
     """
-    A cavity and its particles. `particle_pair` and `wall_pair` are the indices of the laws of two species, and of a species and a wall material.
+    A cavity and its particles. `particle_pair` and `wall_pair` are the indices of the laws of two species, and of a species and a wall material. `period` is the distance of the images of a particle along each axis, 0 if it is not periodic.
     """
 
-    def __init__(self, *, shape: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], walls: Sequence[Wall], solids: Sequence[Solid] = [], position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], spin: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radius: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], particle_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wall_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, *, shape: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], walls: Sequence[Wall], solids: Sequence[Solid] = [], period: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], spin: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radius: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], particle_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wall_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
 
     @property
     def shape(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
@@ -1173,6 +1176,9 @@ class Cavity(Node):
 
     @property
     def solids(self) -> list[Solid]: ...
+
+    @property
+    def period(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
 
     @property
     def position(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
@@ -1234,10 +1240,10 @@ class PairLaws(Node):
 
 class DemProblem(Node):
     """
-    A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring. Step 0 is at the time `origin` [s], and samples are taken `every` steps from `first_step` on.
+    A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring. Step 0 is at the time `origin` [s], and samples are taken `every` steps from `first_step` on. `each_wall` is whether forces and losses are also summed for each wall.
     """
 
-    def __init__(self, *, dt: float, steps: int, every: int, enduring: float = float('inf'), origin: float = 0.0, first_step: int = 0, gravity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], load_directions: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cavities: Sequence[Cavity], pairs: Sequence[PairLaws]) -> None: ...
+    def __init__(self, *, dt: float, steps: int, every: int, enduring: float = float('inf'), origin: float = 0.0, first_step: int = 0, each_wall: bool = False, gravity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], load_directions: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cavities: Sequence[Cavity], pairs: Sequence[PairLaws]) -> None: ...
 
     @property
     def dt(self) -> float: ...
@@ -1256,6 +1262,9 @@ class DemProblem(Node):
 
     @property
     def first_step(self) -> int: ...
+
+    @property
+    def each_wall(self) -> bool: ...
 
     @property
     def gravity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
@@ -1295,7 +1304,7 @@ class Records(Node):
     Samples of a run of the 3-D engine: over samples, then modes, loads or cavities, then components or partners.
     """
 
-    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], p: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], kinetic: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], rotation: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], potential: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], elastic: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], centre: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], momentum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], force: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], moment: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], sliding_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], rolling_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], contacts: Annotated[NDArray[numpy.int64], dict(shape=(None, None, None), order='C', device='cpu')]) -> None: ...
+    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], p: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], kinetic: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], rotation: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], potential: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], elastic: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], centre: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], momentum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], force: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], moment: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], sliding_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], rolling_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], contacts: Annotated[NDArray[numpy.int64], dict(shape=(None, None, None), order='C', device='cpu')], wall_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], wall_moment: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], wall_impulse: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], wall_normal_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], wall_normal_impulse: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], wall_normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], wall_plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], wall_sliding_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], wall_rolling_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], wall_impacts: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu')]) -> None: ...
 
     @property
     def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
@@ -1353,6 +1362,36 @@ class Records(Node):
 
     @property
     def contacts(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_impulse(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_normal_force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_normal_impulse(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_normal_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_plastic_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_sliding_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_rolling_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def wall_impacts(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu')]: ...
 
     @staticmethod
     def fields() -> dict[str, Varies]: ...

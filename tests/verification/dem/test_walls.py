@@ -32,7 +32,7 @@ def thrown(direction: Any, cavity: Any, slip: float = 0.0, **options: Any) -> An
 
 @pytest.mark.parametrize("face", FACES)
 def test_each_face_has_its_own_laws(face: str) -> None:
-    """A ball that hits a face rebounds bit by bit as in a cavity with such walls only, and with the restitution asked for."""
+    """A ball that hits a face rebounds bit by bit as in a cavity with such walls only, and with its restitution."""
     cavity, direction = FACES[face]
     own = {"contact": rb.Tsuji(restitution=0.4), "friction": 0.1, "rolling": 0.02}
     one = thrown(direction, cavity, slip=0.2, walls={face: rb.Wall(material="glass", **own)})
@@ -113,8 +113,10 @@ def test_sums_over_walls_are_those_of_the_cavity(options: dict[str, Any]) -> Non
 
 
 def test_impulses_on_walls_are_the_change_of_momentum() -> None:
-    """The impulse on all walls is the impulse of gravity and base less the change of momentum; sides get it along their
-    normals only if they have no friction."""
+    """The impulse on all walls is that of gravity and base less the change of momentum.
+
+    A face without friction gets an impulse along its normal only.
+    """
     run = dem_cases.run(shaken())
     arrays = run.arrays
     pull = arrays.particle_mass[0] * (np.array([0, 0, -9.81]) * arrays.time[:, None] - arrays.base_velocity)
