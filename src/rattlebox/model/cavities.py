@@ -145,7 +145,7 @@ class Cavity(Part):
 
     def nearest_wall(self, positions: Vector) -> NDArray[np.intp]:
         """Return the index of the wall that is nearest to each point, (n,)."""
-        return self.walls().distances(positions).argmin(axis=1)
+        return np.asarray(self.walls().distances(positions).argmin(axis=1))
 
     def room(self, positions: Vector, radii: Vector) -> Vector:
         """Return the distances of the surfaces of spheres from the nearest wall, (n,) [m], positive inside."""
@@ -241,7 +241,8 @@ class Box(Cavity):
         solid = [k for k, axis in enumerate(AXES) if axis not in self.periodic]
         axis = np.concatenate([-np.eye(3)[solid], np.eye(3)[solid]])
         names = tuple(sign + AXES[k] for sign in "-+" for k in solid)
-        return Walls(names, axis, np.tile(self.lengths[solid] / 2, 2), ("plane",) * len(names))
+        forms: tuple[WallForm, ...] = ("plane",) * len(names)
+        return Walls(names, axis, np.tile(self.lengths[solid] / 2, 2), forms)
 
     @property
     def face_areas(self) -> Vector:

@@ -138,7 +138,7 @@ class ContactTable:
 
     def at_wall(self, species: int, wall: int) -> Entry:
         """Return the entry of a species and a wall."""
-        return self.entries[self.wall_entry[species, self.wall_kind[wall]]]
+        return self.entries[int(self.wall_entry[species, self.wall_kind[wall]])]
 
 
 def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:
