@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import cast
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure
 from rattlebox._util.exceptions import CaseError
 
 from ..results import Run
-from ..results.summary import checked_point, common_points
+from ..results.summary import Comparison, checked_point, common_points
 from .energy import draw_ledger
 from .motion import ball_displacements, draw_cavity
 from .panels import draw_largest
@@ -21,18 +22,19 @@ from .types import Size
 
 
 def plot_comparison(
-    runs: Mapping[str, Run], *, point: str | None = None, of: str | None = None, size: Size = "page"
+    runs: Mapping[str, Run] | Comparison, *, point: str | None = None, of: str | None = None, size: Size = "page"
 ) -> Figure:
     """Draw the motion and the energy ledger of several runs in columns with common axes.
 
     Parameters
     ----------
     runs
-        Runs by the title of their column; two to four fit well.
+        Runs by the title of their column, or the result of `rb.compare`; two to four runs fit well.
     point
-        Point of the structure; by default the one with the largest displacement in the first run, as of `rb.compare`.
+        Point of the structure; by default that of the comparison, or the one with the largest displacement in the first run.
     of
-        Variable of the motion or drift of `rattlebox.plots.plot_responses` in the first row; default "displacement".
+        Variable of the motion or drift of `rattlebox.plots.plot_responses` in the first row; default that of the comparison,
+        or "displacement".
     size
         Width of the figure: "column", "page" or "slide".
 
@@ -47,6 +49,9 @@ def plot_comparison(
     ValueError
         If there is no run, not all of them have the point or the variable, or the size is unknown.
     """
+    if isinstance(runs, Comparison):
+        point, of = point or runs.point or None, of or runs.drawn()
+        runs = cast("Mapping[str, Run]", runs.runs)
     if not runs:
         raise CaseError("runs is empty; a comparison needs at least one run", '{"name": run}')
     every = list(runs.values())
@@ -76,7 +81,7 @@ def plot_comparison(
                 if _has_balls(run):
                     draw_cavity(panel, arrays, 0, shown, time, travel)
                 else:
-                    panel.text(0.5, 0.5, "no ball", transform=panel.transAxes, ha="center", va="center")
+                    panel.text(0.5, 0.5, "no ball on a line", transform=panel.transAxes, ha="center", va="center")
             draw_ledger(run, next(free_panels), time, energy)
             time_axis(panels[-1, column], arrays.time, time, 5)
         # Only the first column is labelled, and all legends are merged, since their entries repeat.

@@ -22,7 +22,7 @@ from .style import (
     scaled,
     series_colour,
 )
-from .types import Size
+from .types import Size, Style
 
 if TYPE_CHECKING:
     import xarray
@@ -60,7 +60,8 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
         divisor, unit = scaled(amplitudes.assign_attrs(units="m"), "m")
         for number, (name, curve) in enumerate(named.items()):
             x, limits = curve.amplitude / divisor, (100 * curve.lower, 100 * curve.upper)
-            draw_with_interval(axes, x, 100 * curve.damping_ratio, limits, name, number)
+            doubtful = ~curve.steady.all("packing") if "steady" in curve else None
+            draw_with_interval(axes, x, 100 * curve.damping_ratio, limits, name, number, doubtful, "not steady")
         first = next(iter(named.values()))
         for curve in named.values():
             text = "structure alone" if curve is first else None
@@ -86,16 +87,17 @@ def draw_with_interval(
     limits: tuple[xarray.DataArray, xarray.DataArray],
     name: str,
     number: int,
+    doubtful: xarray.DataArray | None = None,
+    doubt: str = "",
 ) -> None:
-    """Draw a curve with its 95 % interval in the style of a series, counted from 0."""
+    """Draw a curve with its 95 % interval in the style of a series, counted from 0; doubtful points have hollow marks."""
     colour = series_colour(number)
     axes.fill_between(x, *limits, color=colour, alpha=0.25, lw=0)
+    marks: Style = {"marker": SERIES_MARKERS[number % len(SERIES_MARKERS)], "ms": pen(3), "clip_on": False, "zorder": 3}
     axes.plot(
-        x,
-        values,
-        color=colour,
-        ls=SERIES_STYLES[number % len(SERIES_STYLES)],
-        marker=SERIES_MARKERS[number % len(SERIES_MARKERS)],
-        ms=pen(3),
-        label=name or "with damper",
+        x, values, color=colour, ls=SERIES_STYLES[number % len(SERIES_STYLES)], label=name or "with damper", **marks
     )
+    if doubtful is not None and (hollow := doubtful & values.notnull()).any():
+        # One entry of the legend for all curves.
+        text = doubt if doubt not in axes.get_legend_handles_labels()[1] else None
+        axes.plot(x[hollow], values[hollow], color=colour, ls="", mfc="white", label=text, **marks)

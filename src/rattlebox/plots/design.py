@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from rattlebox.studies.work.measures import INTERVAL
 
 from .labels import LabelledValues, capitalised
-from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, label, legend_above, pen
+from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, label, pen
 from .types import Size, Style, Vector
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
 _MAX_PARAMETERS = 3
+_LEGEND_COLUMNS = 5
 _DOTS: Style = {"linestyle": "", "marker": "o", "color": SERIES_COLOURS[0], "alpha": 0.5, "markeredgewidth": 0}
 _RINGS: Style = {
     "linestyle": "",
@@ -57,7 +58,7 @@ def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
     ValueError
         If the size is unknown.
     """
-    goals, paths = goals_of(study), parameters_of(study)[:_MAX_PARAMETERS]
+    goals, paths = goals_of(study), _separate(study, parameters_of(study))[:_MAX_PARAMETERS]
     count = 1 + len(paths)
     with figure_style(size):
         narrow = size == "column"
@@ -66,7 +67,10 @@ def plot_design(study: xr.Dataset, *, size: Size = "page") -> Figure:
         (_draw_progress if len(goals) == 1 else _draw_front)(panels[0], study, goals)
         for panel, path in zip(panels[1:], paths, strict=True):
             (_draw_objective if len(goals) == 1 else _draw_parameter)(panel, study, path, goals[0])
-        legend_above(panels[0])
+        # Of the figure, since a panel is too narrow for the names.
+        figure.legend(
+            *panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=2 if narrow else _LEGEND_COLUMNS
+        )
     return figure
 
 
@@ -78,6 +82,12 @@ def goals_of(study: xr.Dataset) -> list[str]:
 def parameters_of(study: xr.Dataset) -> list[str]:
     """Return the paths of the parameters of a design."""
     return [str(name) for name, values in study.coords.items() if values.dims == ("trial",) and name != "trial"]
+
+
+def _separate(study: xr.Dataset, paths: list[str]) -> list[str]:
+    """Return the parameters without those that vary together with one before them."""
+    about = json.loads(study.attrs["parameters"])
+    return list({about[path].get("together", path): path for path in reversed(paths)}.values())[::-1]
 
 
 def _half_width(study: xr.Dataset, name: str, values: LabelledValues) -> Vector | None:

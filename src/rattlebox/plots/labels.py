@@ -9,8 +9,8 @@ from matplotlib.ticker import Formatter
 
 from rattlebox._util.quantities import quantity, without_zeros
 
-from .style import label, scaled, shorten
-from .types import Vector
+from .style import label, letters, scaled, shorten
+from .types import Style, Vector
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +22,7 @@ REPLICA = "replica"
 
 _TICK_LETTERS = 16  # of names at ticks
 _LARGEST_EXACT = 2**53  # whole numbers below it are written with all their digits
+_IN_PERCENT = ("damping_ratio", "equivalent_damping")  # engineers write them in per cent
 _UNBOUNDED = ("loss_factor",)  # it is infinite where the effective mass passes through zero
 _PERCENTILE = 95.0  # of an unbounded measure, at which its scale ends
 
@@ -44,6 +45,8 @@ class LabelledValues(NamedTuple):
             indices = {name: float(index) for index, name in enumerate(names)}
             numbers = np.array([indices[str(value)] for value in values.values.ravel()])
             return cls(numbers.reshape(values.shape), 1.0, "", text, names)
+        if str(values.name).rpartition(".")[2] in _IN_PERCENT:
+            return cls(np.asarray(100 * values.values, dtype=float), 0.01, "%", text, None)
         si_unit = unit_of(values)
         divisor, unit = scaled(values.values, si_unit) if si_unit else (1.0, "")
         return cls(np.asarray(values.values / divisor, dtype=float), divisor, unit.replace("^2", "²"), text, None)
@@ -60,7 +63,10 @@ class LabelledValues(NamedTuple):
             (axes.set_xscale if which == "x" else axes.set_yscale)("log")
             log_ticks(axis)
         if self.names is not None:
-            axis.set_ticks(range(len(self.names)), [shorten(name, _TICK_LETTERS) for name in self.names])
+            ticks = [shorten(name, _TICK_LETTERS) for name in self.names]
+            crowded = which == "x" and sum(map(len, ticks)) + len(ticks) > letters(axes)
+            slanted: Style = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if crowded else {}
+            axis.set_ticks(range(len(ticks)), ticks, **slanted)
         label(axes, which, self.text, self.unit)
 
 

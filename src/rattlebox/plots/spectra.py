@@ -87,7 +87,10 @@ class _Signals(NamedTuple):
             gain = (
                 np.sinc(found.frequency * step) ** 2 if self.text.split(" of ")[0] in _ACCELERATIONS.values() else 1.0
             )
-            yield (found.density / gain).assign_attrs(found.density.attrs | found.attrs)[1:]  # the mean is removed
+            density = (found.density / gain).assign_attrs(found.density.attrs | found.attrs)[1:]  # the mean is removed
+            # The windows of the density weigh the ends of a run less: its area differs from the mean square of a short run.
+            areas = [max(float(each.integrate("frequency")), 1e-300) for each in (density, found.density[1:])]
+            yield density.assign_attrs(rms=float(line.values.std()) * np.sqrt(areas[0] / areas[1]))
 
     def named(self, line: _Signal, value: float, what: str) -> str:
         """Return the name of a line with a number of it, accelerations in g."""
@@ -118,7 +121,7 @@ def plot_psd(
     size: Size = "column",
     between: tuple[float, float] | None = None,
 ) -> Figure:
-    """Draw the power spectral density of a response, with the RMS value in the legend.
+    """Draw the power spectral density of a response, with the RMS value of the whole run in the legend.
 
     Parameters
     ----------
@@ -160,8 +163,8 @@ def plot_psd(
         figure = StyledFigure(size, 0.7)
         axes = figure.subplots()
         for number, (line, density) in enumerate(zip(signals.lines, densities, strict=True)):
-            rms = float(np.sqrt(density.integrate("frequency")))
-            draw_line(axes, density.frequency.values, density.values, number, signals.named(line, rms, "RMS"))
+            name = signals.named(line, density.attrs["rms"], "RMS")
+            draw_line(axes, density.frequency.values, density.values, number, name)
             if len(signals.lines) == 1:
                 freedom = density.attrs["degrees_of_freedom"]
                 ends = (density * freedom / chi2.ppf(share, freedom) for share in (0.975, 0.025))

@@ -77,12 +77,17 @@ def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:
         yield "= identical dampers", f"{len(points)}, {amount(damper.mass * len(points), 'kg')} in all"
     for name, value in damper.facts():
         yield f"= {name}" + (", each" if len(points) > 1 else ""), value
+    tuned = case.tuned_masses
+    boxes = {part.label(index, len(tuned)): part.mass for index, part in enumerate(tuned)}
+    if hung := sorted({point for point in points if point in boxes}):
+        names = "mass over that of its box" if len(hung) == 1 else "mass over that of each box"
+        yield f"= {names}", ", ".join(amount(damper.mass * points.count(box) / boxes[box], "%", 3) for box in hung)
     modes = case.structure.modes()
     if not len(modes.stiffness):
         return
-    # The mass ratio of a mode is m phi^2, summed over the points and directions in which the damper acts.
+    # The mass ratio of a mode is m phi^2, summed over the points of the structure and directions in which the damper acts.
     ratio = np.zeros(len(modes.stiffness))
-    for point in points:
+    for point in (point for point in points if point not in boxes):
         shape = np.asarray(modes.shapes[modes.point(point)])
         ratio += damper.mass * np.sum(shape.reshape(len(shape), -1) ** 2, axis=1)
     moved = np.flatnonzero((ratio > 0) & (np.asarray(modes.stiffness) > 0))

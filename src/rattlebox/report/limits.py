@@ -103,8 +103,9 @@ def _particle_limits(run: Run) -> Iterator[Limit]:
         overlap = f"{amount(finite['largest_overlap'], '%', 3)} of the radius"
         yield limit("particles", "overlap in contacts", overlap, f"{100 * MAX_OVERLAP:g} %")
     if finite.get("softening", 1.0) > 1:
-        change = finite.get("softening_change")
-        effect = "" if change is None else f", change of the loss up to {digits(change, 2)} m V²"
+        change = finite.get("softening_change", 0.0)
+        # The estimate is for beds under their weight; without gravity its 0 is no finding.
+        effect = f", change of the loss up to {digits(change, 2)} m V²" if change > 0 else ", effect not estimated"
         yield limit("particles", "softening of contacts", f"{finite['softening']:.4g}{effect}", f"{MAX_CHANGE:g} m V²")
         if "softened_enduring_share" in finite:
             share = f"{amount(finite['softened_enduring_share'], '%', 2)} of the loss"

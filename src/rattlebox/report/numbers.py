@@ -6,10 +6,13 @@ import math
 
 from rattlebox._util.quantities import MISSING, PREFIXED_UNITS, amount, digits, in_unit
 
+_ROUNDING = 1e-6
+"""Half width of an interval over its value, below which the motion repeats and the interval is rounding."""
+
 
 def with_interval(value: float, half: float, unit: str = "") -> str:
     """Return a value with half of the width of its 95 % interval: "0.41 ± 0.02 mm"."""
-    if not (math.isfinite(value) and math.isfinite(half)):
+    if not (math.isfinite(value) and math.isfinite(half)) or abs(half) < _ROUNDING * abs(value):
         return amount(value, unit)
     divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
     if unit in PREFIXED_UNITS:

@@ -37,11 +37,11 @@ def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
     """Return commands and files that compute a result again."""
     names = {name: _file_name(number, len(cases)) for number, name in enumerate(cases)}
     files = [File(names[name], case.to_toml(), case.short_toml()) for name, case in cases.items()]
+    if call is None:
+        return Recipe((), tuple(files), ("The call of the study is not part of its result.",) if files else ())
     # A comparison is no single call: its cases run one by one, and a script compares them.
-    if call is None or call.function == "compare":
-        if len(cases) < 2:
-            return Recipe((), tuple(files), ("The call of the study is not part of its result.",) if files else ())
-        script = _comparison_script(names, call.arguments if call else {})
+    if call.function == "compare":
+        script = _comparison_script(names, call.arguments)
         commands = tuple(f"rattlebox run {file} -o {file.removesuffix('.toml')}" for file in names.values())
         return Recipe((*commands, "python script.py"), (*files, File("script.py", script, script)))
     # Several cases of one call are the best designs, each of which can begin the search.

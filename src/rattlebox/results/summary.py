@@ -123,8 +123,8 @@ _OF_POINT = (
     _Row("rms_acceleration", "RMS acceleration", "m/s^2"),
     _Row("steady_rms_acceleration", "RMS acceleration, second half", "m/s^2"),
     _Row("rms_relative_acceleration", "RMS acceleration relative to the base", "m/s^2"),
-    _Row("peak_reduction", "reduction of the peak", "%"),
-    _Row("rms_reduction", "reduction of the RMS", "%"),
+    _Row("peak_reduction", "reduction of the peak displacement", "%"),
+    _Row("rms_reduction", "reduction of the RMS displacement", "%"),
 )
 """Lines of a point; its name is added to their keys."""
 _DECAY = _Row("equivalent_damping_ratio", "equivalent damping ratio", "%", at="damping_amplitude")

@@ -221,6 +221,24 @@ def test_comparison_of_a_building_draws_one_point() -> None:
         plot_comparison(runs, point="storey 9")
 
 
+def test_comparison_of_rb_compare_is_drawn_with_its_choice(run: Run, make_run) -> None:
+    """The result of rb.compare shows its point and quantity; it ended in an error, since only mappings were drawn."""
+    compared = rb.results.compare({"strong": run, "weak": make_run(pulse=100.0)})
+    figure = plot_comparison(compared)
+    drawn, same = (
+        np.concatenate([line.get_ydata() for line in each.axes[0].lines])
+        for each in (figure, plot_comparison(compared.runs))
+    )
+    assert np.array_equal(drawn, same)
+    push = rb.Case(
+        structure=rb.SDOF(mass="1 kg", frequency="5 Hz"),
+        load=rb.Harmonic(amplitude="1 N", frequency="4 Hz"),
+        duration="1 s",
+    )
+    moved = rb.compare({"a": push, "b": push.replaced({"load.amplitude": 2.0})}, of="acceleration", progress=False)
+    assert plot_comparison(moved).axes[0].get_ylabel().startswith("Absolute")
+
+
 def test_comparison_of_different_structures(run: Run, make_run) -> None:
     """Runs without a ball or without a moving structure can be compared; an empty comparison raises an error."""
     figure = plot_comparison({"a": run, "b": make_run(rows=()), "c": make_run(fixed=True, ball_speed=0.1)})

@@ -80,6 +80,13 @@ def on_shaker() -> rb.Case:
     )
 
 
+def in_a_tuned_mass() -> rb.Case:
+    """Return a case with a ball in a box on a spring."""
+    box = rb.TunedMass(mass="20 g", frequency="30 Hz", damping_ratio=0.02)
+    ball = case().dampers[0].model_copy(update={"point": "tuned mass"})
+    return case(damper=ball, tuned_mass=box)
+
+
 def free() -> rb.Case:
     """Return a case in free vibration."""
     structure = rb.SDOF(mass="3 kg", frequency="50 Hz", damping_ratio=0.01, velocity="0.2 m/s")
@@ -108,6 +115,7 @@ def result_of(name: str) -> Any:
         "particles": lambda: rb.simulate(particles()),
         "comparison": lambda: rb.compare({"bare": case(damper=()), "ball": case()}, **quiet),
         "runs": lambda: {"a": rb.simulate(case(damper=())), "b": rb.simulate(case())},
+        "in a tuned mass": lambda: rb.compare({"bare": case(damper=()), "box and ball": in_a_tuned_mass()}, **quiet),
         "sweep": lambda: rb.sweep(
             case(), {"damper.gap": ["0.5 mm", "1 mm"], "load.amplitude": [5, 10, 20]}, ["rms", "impacts"], **quiet
         ),
@@ -148,6 +156,13 @@ def result_of(name: str) -> Any:
             seed=5,
             log=["damper.gap"],
             cycles=(5, 5),
+            **quiet,
+        ),
+        "design of damping": lambda: rb.design(
+            free(),
+            {("damper.ball.material", "damper.contact.restitution"): (["steel", "brass"], [0.5, 0.7])},
+            "damping_ratio",
+            amplitudes=["0.5 mm", "1 mm"],
             **quiet,
         ),
         "sensitivity": lambda: rb.sensitivity(
@@ -198,6 +213,7 @@ KINDS = {
     "free run": "vibrate freely within 2 s?",
     "particles": "8 glass balls of 4 mm",
     "comparison": "How do the variants “bare” and “ball” of an oscillator of 1 kg",
+    "in a tuned mass": "How do the variants “bare” and “box and ball”",
     "runs": "How do the variants “a” and “b”",
     "sweep": "How do the RMS displacement and impacts of an oscillator",
     "frequency_response": "Which steady motion does an oscillator",
@@ -208,6 +224,7 @@ KINDS = {
     "stability_lobes": "Up to which depth of cut does an oscillator of 3 kg",
     "damping_curve": "Which damping ratio does mode 1 (50 Hz)",
     "damping curves": "of an oscillator of 3 kg at 50 Hz with a and b have at amplitudes",
+    "design of damping": "Which damper ball material and damper contact restitution give the largest damping ratio",
     "design": "Which damper gap gives the smallest RMS displacement",
     "sensitivity": "Which of damper.gap and load.amplitude cause the variation of rms",
     "drops": "Which restitution do 5 measured impacts show?",
@@ -245,6 +262,7 @@ def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str) -> No
         "basins apart",
         "lyapunov of pairs",
         "design of a seed",
+        "design of damping",
         "loss_map",
         "damping_curve",
         "drops",
@@ -333,6 +351,52 @@ def test_all_sentences_of_a_comparison_are_about_one_point(
         f"{amount(abs(1 - changed / bare), '%', 3)} {'less' if changed < bare else 'more'} than with bare" in page.text
     )
     assert repr(options.get("of", "")) in page.downloads["script.py"] or "of" not in options
+
+
+def test_mass_of_a_ball_in_a_tuned_mass_is_compared_with_its_box() -> None:
+    """The page states the mass over that of the box: the report ended in an error.
+
+    No report of a test had a damper in a tuned mass.
+    """
+    assert re.search(r"mass over that of its box\s*451 %", page_of("in a tuned mass").text)
+
+
+@pytest.mark.parametrize("name", ["stability_lobes", "damping curves"])
+def test_a_result_without_a_call_has_no_script(name: str) -> None:
+    """A page that does not hold the call claims nothing: a script that compared the cases was said to compute the lobes.
+
+    Only the files of results with a call were run.
+    """
+    page = page_of(name)
+    assert "The call of the study is not part of its result." in page.text
+    assert not any(file.endswith(".py") for file in page.downloads) and "computes the result again" not in page.text
+
+
+def test_a_stable_depth_has_its_interval_in_the_same_unit() -> None:
+    """Intervals of zero are not shown, and others have the unit of the depth: there were 1.08e-07 pm.
+
+    No test had read the table.
+    """
+    table = (
+        page_of("stability_lobes").text.partition("stable depth at all speeds")[2].partition("Warnings and notes")[0]
+    )
+    assert " pm" not in table and "0 m" not in table.replace("0 mm", "")
+
+
+def test_a_curve_names_accelerations_and_motions_that_are_not_steady() -> None:
+    """Amplitudes stand in g, too, and a point without an interval states why: a dash left the reader to guess."""
+    curve = result_of("damping_curve")
+    doubt = curve.assign(
+        steady=(("packing", "amplitude"), np.array([[True, False]] * curve.sizes["packing"])),
+        lower=curve.lower.where([True, False]),
+        upper=curve.upper.where([True, False]),
+    )
+    with TemporaryDirectory() as folder:
+        text = Page(rb.write_report(doubt, Path(folder) / "report.html")).text
+    assert re.search(r"0.4 mm\s*4.03 g", text) and text.count("not steady") == 1
+    axes = rb.plot_damping_curve(doubt).axes[0]
+    (hollow,) = [line for line in axes.lines if line.get_label() == "not steady"]
+    assert hollow.get_xdata() == pytest.approx([0.4])
 
 
 def test_files_of_a_front_are_those_that_its_script_reads(tmp_path: Path) -> None:

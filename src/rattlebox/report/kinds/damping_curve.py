@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox._util.phrases import joined
-from rattlebox._util.quantities import MISSING, amount
+from rattlebox._util.quantities import MISSING, amount, digits
+from rattlebox.model.units import STANDARD_GRAVITY
 from rattlebox.plots.damping_curve import plot_damping_curve
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
@@ -84,17 +85,28 @@ def _pictures(curves: Curves) -> Iterator[Picture]:
 
 def _tables(curves: Curves) -> Iterator[Table]:
     for name, curve in _named(curves).items():
+        per_g = (2 * np.pi * float(curve.attrs["frequency"])) ** 2 / STANDARD_GRAVITY
         rows = [
             (
                 amount(float(curve.amplitude[k]), "m"),
+                f"{digits(per_g * float(curve.amplitude[k]), 3)} g",
                 amount(float(curve.damping_ratio[k]), "%", 3),
-                between(float(curve.lower[k]), float(curve.upper[k]), "%"),
+                _interval(curve, k),
                 str(int(np.isfinite(curve.damping_ratios[:, k]).sum())) if "damping_ratios" in curve else MISSING,
             )
             for k in range(curve.amplitude.size)
         ]
         title = f"Damping ratio, {name}" if name else "Damping ratio"
-        yield Table(title, ("amplitude", "damping ratio", "95 % interval", "random starts"), rows, numbers=True)
+        yield Table(
+            title, ("amplitude", "acceleration", "damping ratio", "95 % interval", "random starts"), rows, numbers=True
+        )
+
+
+def _interval(curve: xr.Dataset, k: int) -> str:
+    """Return the interval at an amplitude, or the reason why it has none."""
+    if "steady" in curve and not bool(curve.steady[:, k].all()):
+        return "not steady"
+    return between(float(curve.lower[k]), float(curve.upper[k]), "%")
 
 
 def _warnings(curves: Curves) -> Iterator[str]:

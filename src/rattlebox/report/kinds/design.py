@@ -203,7 +203,7 @@ def _call(study: xr.Dataset) -> Call | None:
     if not all(name in MEASURES or name in (ADDED_MASS, DAMPING_RATIO) for name in objective):
         return None
     arguments = {"parameters": space, "objective": objective, "trials": int(study.trial.size)}
-    arguments |= words.option_of(study, "curve") or {}
+    arguments |= {name: value for name, value in (words.option_of(study, "curve") or {}).items() if value is not None}
     arguments |= {name: value for name, value in (words.option_of(study, "options") or {}).items() if value}
     usual_values = {
         "packings": 1,

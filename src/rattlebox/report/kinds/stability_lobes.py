@@ -12,6 +12,7 @@ from rattlebox.model.case import Case
 from rattlebox.plots.stability_lobes import plot_stability_lobes
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
+from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Limit, Table
 
 if TYPE_CHECKING:
@@ -46,13 +47,19 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
         rows.append(
             (
                 amount(size, "m", 3) if size else "any",
-                *(_known(one[name], unit) for name, unit in (("limit", "m"), ("limit_interval", "m"))),
+                _limit(one),
                 _known(one.limit_frequency, "Hz"),
                 _known(one.dynamic_stiffness, "N/m"),
             )
         )
-    header = ("amplitude", "stable depth at all speeds", "± (95 %)", "chatter frequency", "dynamic stiffness")
+    header = ("amplitude", "stable depth at all speeds", "chatter frequency", "dynamic stiffness")
     yield Table("Limits", header, rows, numbers=True)
+
+
+def _limit(one: xr.Dataset) -> str:
+    """Return the stable depth at an amplitude with its 95 % interval."""
+    half = float(one.limit_interval)
+    return with_interval(float(one.limit), half, "m") if half > 0 else _known(one.limit, "m")
 
 
 def _known(value: xr.DataArray, unit: str) -> str:
