@@ -2,6 +2,7 @@
 
 from rattlebox._util.batch_means import Interval, mean_interval
 from rattlebox.results.extremes import largest_acceleration, largest_drift
+from rattlebox.results.wall_measures import wall_pressures, wall_wear
 
 from .chaos import lyapunov_exponent
 from .chatter import minimum_real_part
@@ -66,4 +67,6 @@ __all__ = [
     "specific_damping_capacity",
     "transfer_function",
     "transmissibility",
+    "wall_pressures",
+    "wall_wear",
 ]

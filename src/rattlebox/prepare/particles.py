@@ -17,6 +17,7 @@ from rattlebox.model.particle_case import direction_of_base, inertia_along
 from rattlebox.prepare.bed import bed_level, bed_note, loose_note
 from rattlebox.prepare.laws import pack_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
+from rattlebox.prepare.periodic import periodic_notes
 from rattlebox.prepare.pressed import pressed_notes
 from rattlebox.prepare.settle import pack_walls, settle, start_positions
 from rattlebox.prepare.softening import ENDURING, cavity_motion, choose_softening
@@ -67,7 +68,12 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
             pressed += pressed_notes(damper, table, speed, damper.label(index))
     inside = [start - case.modes.q0 @ shape for start, shape in zip(starts, shapes, strict=True)]
     fills, more = _fills(case, inside, [motion.acceleration for motion in step.motions])
-    return Prepared(case, (*notes, *more, *pressed), step, tables, starts, fills)
+    periodic = [
+        note
+        for index, (damper, shape) in enumerate(zip(case.particle_dampers, shapes, strict=True))
+        for note in periodic_notes(case, damper, shape, damper.label(index))
+    ]
+    return Prepared(case, (*notes, *more, *pressed, *periodic), step, tables, starts, fills)
 
 
 def count_steps(case: Case) -> int:

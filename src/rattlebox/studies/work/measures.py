@@ -18,6 +18,7 @@ from rattlebox.engines.batch import BlockOutput
 from rattlebox.model.errors import Hint
 from rattlebox.results.extremes import largest_acceleration, largest_drift
 from rattlebox.results.schema import OUTCOMES
+from rattlebox.results.wall_measures import largest_wall_pressure, largest_wall_wear
 from rattlebox.studies.work.work import Values
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ class Measure(NamedTuple):
     of_acceleration: bool = False
     # Whether it is computed from a Run, with the samples of its output, and not by the core
     of_run: bool = False
+    # Whether it is one of the faces of cavities with particles
+    of_walls: bool = False
 
 
 class Measures(Catalogue[Measure]):
@@ -61,6 +64,8 @@ class Measures(Catalogue[Measure]):
                              mean c_k of contacts and other loads over the step, whose pulses may be shorter
         largest_drift        max abs(x_k - x_(k - 1)) over the storeys k, see `rattlebox.analysis.largest_drift`
         largest_acceleration largest peak_acceleration over the points, see `rattlebox.analysis.largest_acceleration`
+        largest_wall_...     mean pressure, and power of friction over the area, of the wall where they are largest; see
+                             `rattlebox.analysis.wall_pressures` and `rattlebox.analysis.wall_wear`
         settling_time        see `rattlebox.analysis.settling_time`
         loss_per_cycle       W = loss in the damper / n
         reduced_loss         W / (m V^2); m is the mass of all balls or particles, V the velocity amplitude of the cavity
@@ -110,12 +115,18 @@ MEASURES = Measures(
         "largest_acceleration": Measure(
             "m/s^2", "largest absolute acceleration of all points, without peaks of contacts", of_run=True
         ),
+        "largest_wall_pressure": Measure("Pa", "largest mean pressure on a wall", of_run=True, of_walls=True),
+        "largest_wall_wear": Measure(
+            "W/m^2", "largest friction loss at a wall over area and time", of_run=True, of_walls=True
+        ),
     }
 )
 
 OF_RUN: dict[str, Callable[[Run], float]] = {
     "largest_drift": largest_drift,
     "largest_acceleration": largest_acceleration,
+    "largest_wall_pressure": largest_wall_pressure,
+    "largest_wall_wear": largest_wall_wear,
 }
 """Functions of the measures that are computed from a Run."""
 

@@ -186,6 +186,8 @@ class ParticleEngine:
         for name in self.variants.names:
             if MEASURES[name].of_first_harmonic:
                 _check_samples(case, name)
+        if any(MEASURES[name].of_walls for name in self.variants.names_of_run):
+            case = case.model_copy(update={"output": case.output.model_copy(update={"walls": True})})
         return case
 
     def window(self, run: Run, case: Case) -> Window:

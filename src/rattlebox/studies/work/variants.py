@@ -257,6 +257,9 @@ class Variants:
         """Raise if a measure needs floors or the participation of the modes, which the structure lacks."""
         if "largest_drift" in self.names_of_run:
             require_storeys(self.case.modes.lines())
+        of_walls = [name for name in self.names_of_run if MEASURES[name].of_walls]
+        if of_walls and not self.case.particle_dampers:
+            raise Hint(f"{of_walls[0]} is that of the walls around particles", "a ParticleDamper")
         asked = [name for name in self.names if MEASURES[name].of_base_force]
         modes = self.case.modes
         if not asked:

@@ -202,7 +202,7 @@ def cut_before(run: Run, start: float) -> Run:
     part = (start - times[first - 1]) / (times[first] - times[first - 1]) if between else 0.0
     cut: dict[str, Any] = {"time": np.concatenate([[start], times[first:]]) if between else times[first:]}
     for variable in variables(arrays.engine):
-        if variable.dims[0] == "time" and variable.name in arrays:
+        if variable.dims[0] == "time" and not variable.derived and variable.name in arrays:
             values = getattr(arrays, variable.name)
             if between:
                 entry = values[first - 1] + part * (values[first] - values[first - 1])
@@ -220,7 +220,7 @@ def cut_after(run: Run, end: float) -> Run:
     """
     arrays = run.arrays
     count = min(int(np.searchsorted(arrays.time, end * (1 - 1e-9))) + 1, arrays.time.size)
-    names = (v.name for v in variables(arrays.engine) if v.dims[0] == "time" and v.name in arrays)
+    names = (v.name for v in variables(arrays.engine) if v.dims[0] == "time" and not v.derived and v.name in arrays)
     cut = {name: getattr(arrays, name)[:count] for name in names}
     return replace(run, arrays=arrays.replaced(time=arrays.time[:count], **cut))
 
