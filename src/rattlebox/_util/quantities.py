@@ -17,6 +17,14 @@ PREFIXED_UNITS = ("m", "s", "kg", "m/s", "m/s^2", "N", "N/m", "J", "W", "Pa", "H
 """Units that take an SI prefix in tables; others, such as kg/m^3 and rad, are written as they are."""
 
 
+STANDARD_GRAVITY = 9.80665
+"""Acceleration of 1 g [m/s^2]."""
+ACCELERATION = "m/s^2"
+"""Unit of accelerations, which engineers also read in g."""
+_LEAST_IN_G = 0.01
+"""Smallest acceleration that is also written in g [g]."""
+
+
 def _exponent(value: float, significant: int) -> int:
     """Return the power of ten of the first digit of the rounded number."""
     return int(f"{value:.{significant - 1}e}".partition("e")[2])
@@ -80,8 +88,8 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
 
     Examples
     --------
-    >>> quantity(0.00041234, "m"), quantity(0.93, "Hz"), quantity(1.2e6, "kg")
-    ('0.4123 mm', '0.9300 Hz', '1200 t')
+    >>> quantity(0.00041234, "m"), quantity(0.93, "Hz"), quantity(1.2e6, "kg"), quantity(25.0, "m/s^2")
+    ('0.4123 mm', '0.9300 Hz', '1200 t', '25.00 m/s^2 (2.549 g)')
     """
     if math.isnan(value):
         return MISSING
@@ -90,7 +98,26 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
     if unit in ("", "1"):
         return digits(value, significant)
     divisor, written = in_unit(value, unit)
-    return f"{digits(value / divisor, significant)} {written}"
+    text = f"{digits(value / divisor, significant)} {written}"
+    if unit == ACCELERATION and abs(value) >= _LEAST_IN_G * STANDARD_GRAVITY:
+        return f"{text} ({digits(value / STANDARD_GRAVITY, significant)} g)"
+    return text
+
+
+def acceleration(value: float, significant: int = 4) -> str:
+    """Format an acceleration [m/s^2] as it was given: in g if that number has few digits, else in m/s^2.
+
+    Examples
+    --------
+    >>> acceleration(4.903325), acceleration(5.0)
+    ('0.5 g', '5 m/s^2')
+    """
+    in_si, in_g = (without_zeros(digits(each, significant)) for each in (value, value / STANDARD_GRAVITY))
+    # A number that was given has few digits; one that was converted has all of them.
+    is_si, is_g = (
+        abs(float(text) * unit - value) <= 1e-9 * abs(value) for text, unit in ((in_si, 1.0), (in_g, STANDARD_GRAVITY))
+    )
+    return f"{in_g} g" if is_g and not is_si else f"{in_si} {ACCELERATION}"
 
 
 def amount(value: float, unit: str = "", significant: int = 4) -> str:
@@ -104,6 +131,8 @@ def amount(value: float, unit: str = "", significant: int = 4) -> str:
     if math.isnan(value):
         return MISSING
     value += 0.0  # turns -0.0 into 0.0
+    if unit == ACCELERATION:
+        return acceleration(value, significant)
     if unit in PREFIXED_UNITS and not (unit == "s" and abs(value) >= 1):
         divisor, written = in_unit(value, unit)
         return f"{without_zeros(digits(value / divisor, significant))} {written}"

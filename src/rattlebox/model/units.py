@@ -19,13 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
 
+from rattlebox._util.quantities import STANDARD_GRAVITY as STANDARD_GRAVITY
+
 from .errors import Hint, at, nearest
 
 if TYPE_CHECKING:
     import pint
-
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of gravity, the unit g [m/s^2]."""
 
 MOST_MEMORY = 16e9
 """Largest size of the arrays of a signal or of the output of a run [bytes]."""

@@ -2,18 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from rattlebox._util.quantities import STANDARD_GRAVITY
+
 from .damping_curve import draw_with_interval
-from .style import ABOVE, FAINT, StyledFigure, figure_style, label, pen, scaled
+from .style import FAINT, StyledFigure, axis_in_g, figure_style, label, pen, scaled
 from .types import Size
 
 if TYPE_CHECKING:
     import xarray
+
+
+_Both = tuple[Callable[[Any], Any], Callable[[Any], Any]]
+
+
+def _accelerations(curve: xarray.Dataset, divisor: float) -> _Both | None:
+    """Return the functions from amplitudes in a unit to accelerations in g at phase resonance, and back, if these rise."""
+    found = curve.frequency.notnull()
+    amplitude = np.log(curve.amplitude.where(found, drop=True).values / divisor)
+    frequency = curve.frequency.where(found, drop=True).values
+    if not amplitude.size:
+        amplitude, frequency = np.zeros(1), np.array([curve.attrs["mode_frequency"]])
+    level = amplitude + np.log(divisor * (2 * np.pi * frequency) ** 2 / STANDARD_GRAVITY)
+    if np.any(np.diff(level) <= 0):  # a frequency that falls faster than the amplitude rises
+        return None
+
+    def along(value: Any, old: Any, new: Any) -> Any:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = np.log(np.asarray(value, dtype=float))
+        # Beyond the ends the frequency stays as it is there.
+        return np.exp(at + np.interp(at, old, new - old))
+
+    return partial(along, old=amplitude, new=level), partial(along, old=level, new=amplitude)
 
 
 def plot_backbone(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *, size: Size = "column") -> Figure:
@@ -29,7 +56,8 @@ def plot_backbone(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *, size
     Returns
     -------
     Figure
-        Figure with two panels, the frequency above the damping ratio; faint lines are the structure alone.
+        Figure with two panels, the frequency above the damping ratio; faint lines are the structure alone. The axis above
+        has the amplitudes of one dataset as accelerations at its frequencies.
 
     Raises
     ------
@@ -61,5 +89,7 @@ def plot_backbone(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *, size
         label(above, "y", "Frequency", "Hz")
         label(below, "x", "Amplitude", unit)
         label(below, "y", "Damping ratio", "%")
-        above.legend(**ABOVE, ncols=3)
+        if len(named) == 1 and (both := _accelerations(next(iter(named.values())), divisor)):
+            axis_in_g(above, "x", both, "Acceleration")
+        figure.legend(*above.get_legend_handles_labels(), loc="outside upper left", ncols=3)
     return figure

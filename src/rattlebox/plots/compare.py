@@ -57,7 +57,7 @@ def plot_comparison(
     every = list(runs.values())
     point = checked_point(point, common_points(runs))
     moving = bool(of) or any(run.arrays.mode_frequency.size for run in every)
-    lines = [response(run.arrays, of or "displacement", point or None) for run in every] if moving else []
+    lines = [response(run, of or "displacement", point or None) for run in every] if moving else []
     with_balls = [run for run in every if _has_balls(run)]
     rows = int(bool(lines)) + int(bool(with_balls)) + 1
     with figure_style(size):

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from matplotlib.ticker import Formatter
 
-from rattlebox._util.quantities import quantity, without_zeros
+from rattlebox._util.quantities import ACCELERATION, STANDARD_GRAVITY, acceleration, quantity, without_zeros
 
-from .style import label, letters, scaled, shorten
+from .style import axis_in_g, label, letters, scaled, shorten
 from .types import Style, Vector
 
 if TYPE_CHECKING:
@@ -69,6 +69,11 @@ class LabelledValues(NamedTuple):
             axis.set_ticks(range(len(ticks)), ticks, **slanted)
         label(axes, which, self.text, self.unit)
 
+    def axis_in_g(self, axes: Axes, which: Literal["x", "y"]) -> None:
+        """Add a second axis in g to one of accelerations."""
+        if self.names is None and self.unit == ACCELERATION.replace("^2", "²"):
+            axis_in_g(axes, which, STANDARD_GRAVITY / self.divisor)
+
 
 class StudyAxis(NamedTuple):
     """Axis of a study: values, (n,), and edges of the cells of a map, (n + 1,)."""
@@ -91,9 +96,11 @@ class StudyAxis(NamedTuple):
         edges = np.concatenate(([2 * numbers[0] - middle[0]], middle, [2 * numbers[-1] - middle[-1]]))
         return cls(values, np.asarray(np.exp(edges) if log else edges, dtype=float), log)
 
-    def label(self, axes: Axes, which: Literal["x", "y"]) -> None:
-        """Label an axis of a figure and its ticks."""
+    def label(self, axes: Axes, which: Literal["x", "y"], *, in_g: bool = True) -> None:
+        """Label an axis of a figure and its ticks, with a second one in g if requested."""
         self.values.label(axes, which, log=self.log)
+        if in_g:
+            self.values.axis_in_g(axes, which)
 
 
 def _is_geometric(values: Vector) -> bool:
@@ -156,4 +163,4 @@ def value_of(coord: xr.DataArray, value: Any) -> str:
     number = float(value) + 0.0  # turns -0.0 into 0.0
     if not unit and number.is_integer() and abs(number) < _LARGEST_EXACT:
         return f"{number:.0f}"
-    return without_zeros(quantity(number, unit))
+    return acceleration(number) if unit == ACCELERATION else without_zeros(quantity(number, unit))

@@ -47,6 +47,7 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
     marks = _clip_peaks(axes, name, values, along, x_axis) + _mark_gaps(axes, study, name, along, x_axis)
     x_axis.label(axes, "x")
     measure.label(axes, "y")
+    measure.axis_in_g(axes, "y")
     return marks
 
 

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.figure import Figure
 
+from rattlebox._util.quantities import STANDARD_GRAVITY
+
 from .gaps import add_gap_legend
-from .labels import value_of
+from .labels import LabelledValues, unit_of, value_of
 from .lines import draw_lines
 from .maps import draw_map
-from .style import StyledFigure, figure_style, letters, shorten
+from .style import StyledFigure, axis_in_g, figure_style, letters, shorten
 from .types import Size
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
 
 _AMPLITUDE, _FREQUENCY = _AXES = ("structure.motion.amplitude", "structure.motion.frequency")
 _NAMES = {_AMPLITUDE: "Amplitude", _FREQUENCY: "Frequency"}
@@ -63,11 +67,21 @@ def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
 def _draw_maps(figure: Figure, study: xr.Dataset, size: Size) -> None:
     panels = figure.subplots(3, 1, sharex=True) if size == "column" else figure.subplots(1, 3, sharey=True)
     for panel, (name, text) in zip(panels, _PANELS, strict=True):
-        draw_map(figure, panel, study, name, _FREQUENCY, _AMPLITUDE, text=text)
+        # In a row the last panel has the axis in g, on the other side of that of the first.
+        in_g = size == "column" or panel is panels[-1]
+        draw_map(figure, panel, study, name, _FREQUENCY, _AMPLITUDE, text=text, in_g=in_g)
         panel.label_outer()
         panel.set_xlabel("Frequency (Hz)" if panel.get_xlabel() else "")
         panel.set_ylabel(panel.get_ylabel().replace("Structure motion amplitude", "Amplitude"))
     add_gap_legend(figure, study, "loss_factor")
+
+
+def _add_axis_in_g(panel: Axes, amplitude: xr.DataArray, frequency: float) -> None:
+    """Add a second axis with the acceleration of the cavity, whose amplitude may be a length or a velocity."""
+    order = {"m/s": 1, "m": 2}.get(unit_of(amplitude))  # that of accelerations has one already
+    if order is not None:
+        per_g = STANDARD_GRAVITY / (2 * np.pi * frequency) ** order
+        axis_in_g(panel, "x", per_g / LabelledValues.of(amplitude).divisor, "Acceleration")
 
 
 def _draw_lines(figure: Figure, study: xr.Dataset, fixed: str, size: Size) -> None:
@@ -80,6 +94,8 @@ def _draw_lines(figure: Figure, study: xr.Dataset, fixed: str, size: Size) -> No
         marks = draw_lines(figure, panel, line, name, [along])
         panel.set_xlabel(panel.get_xlabel().replace("Structure motion " + _NAMES[along].lower(), _NAMES[along]))
         panel.set_ylabel(text)
+        if along == _AMPLITUDE and (size != "column" or panel is panels[0]):
+            _add_axis_in_g(panel, line[along], float(study[fixed].values[0]))
         if size == "column":
             panel.label_outer()
     if marks:

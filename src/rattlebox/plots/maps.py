@@ -157,7 +157,15 @@ def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> 
 
 
 def draw_map(
-    figure: Figure, axes: Axes, study: xr.Dataset, name: str, x: str, y: str, *, text: str | None = None
+    figure: Figure,
+    axes: Axes,
+    study: xr.Dataset,
+    name: str,
+    x: str,
+    y: str,
+    *,
+    text: str | None = None,
+    in_g: bool = True,
 ) -> None:
     """Draw a measure in colours over two axes, with hatches where runs did not finish."""
     values = study[name]
@@ -180,8 +188,8 @@ def draw_map(
         ]
         style: Style = {"facecolors": gap.face, "edgecolors": GREY, "linewidths": 0, "hatch": gap.hatch}
         axes.add_collection(PolyCollection(cells, zorder=2, **style))
-    x_axis.label(axes, "x")
-    y_axis.label(axes, "y")
+    x_axis.label(axes, "x", in_g=in_g)
+    y_axis.label(axes, "y", in_g=in_g)
     text = measure.with_unit if text is None else text
     text += ", median" if REPLICA in study[name].dims else ""
     colour_bar(figure, mesh, axes, text, aspect=28, extend="neither" if norm is None else "max")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import pairwise, permutations
 from typing import NamedTuple
 
@@ -24,8 +24,8 @@ QUANTITIES = {
     "velocity": ("Velocity", "m/s"),
     "acceleration": ("Acceleration relative to base", "m/s^2"),
     "absolute_acceleration": ("Absolute acceleration", "m/s^2"),
-    "modal_displacement": ("Modal displacement", "kg^0.5 m"),
-    "modal_velocity": ("Modal velocity", "kg^0.5 m/s"),
+    "modal_displacement": ("Displacement of modes", "kg^0.5 m"),
+    "modal_velocity": ("Velocity of modes", "kg^0.5 m/s"),
     "cavity_force": ("Force of damper", "N"),
     "interface_force": ("Force on base", "N"),
     "base_displacement": ("Displacement of base", "m"),
@@ -83,7 +83,7 @@ def plot_responses(
     chosen = _default(arrays) if of is None else [of] if isinstance(of, str) else list(of)
     drifts = [name for name in chosen if " - " in name]
     variables = [name for name in chosen if name not in drifts]
-    panels = [response(arrays, name) for name in variables]
+    panels = [response(run, name) for name in variables]
     if drifts:
         panels.insert(min(1, len(panels)), _drifts(arrays, drifts))
     if not panels:
@@ -115,9 +115,11 @@ def _default(arrays: RunArrays) -> list[str]:
     return chosen or ["base_acceleration"]
 
 
-def response(arrays: RunArrays, name: str, point: str | None = None) -> Panel:
+def response(run: Run, name: str, point: str | None = None) -> Panel:
     """Return the lines of a variable or a drift; of the variables of points that of one point, if it is given."""
-    panel = _drifts(arrays, [name]) if " - " in name else _variable(arrays, name)
+    panel = _drifts(run.arrays, [name]) if " - " in name else _variable(run.arrays, name)
+    if name.startswith("modal"):
+        return _at_largest_points(panel, run.case.modes.lines())
     if len(panel.names) == 1 and " - " in name:
         return panel._replace(text=f"Drift of {name}")
     if point not in panel.names or point is None:
@@ -149,6 +151,15 @@ def _variable(arrays: RunArrays, name: str) -> Panel:
     else:
         names = first
     return Panel(values.reshape(arrays.time.size, -1), names, *QUANTITIES[name])
+
+
+def _at_largest_points(panel: Panel, lines: Mapping[str, Vector]) -> Panel:
+    """Return the motion of modes at the point that each moves most, in metres: a modal coordinate is in kg^0.5 m."""
+    shapes, points = np.array(list(lines.values())), list(lines)
+    largest = np.abs(shapes).argmax(axis=0)
+    scale = shapes[largest, np.arange(shapes.shape[1])]
+    names = [f"{name} at {points[place]}" for name, place in zip(panel.names, largest, strict=True)]
+    return Panel(panel.values * scale, names, panel.text, panel.unit.removeprefix("kg^0.5 "))
 
 
 def _drifts(arrays: RunArrays, names: list[str]) -> Panel:

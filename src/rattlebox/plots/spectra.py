@@ -55,7 +55,7 @@ class _Signals(NamedTuple):
         arrays, window = run.arrays, time_window(run.arrays, between)
         time = arrays.time[window]
         if of in _ACCELERATIONS:
-            panel = response(arrays, "velocity", point)
+            panel = response(run, "velocity", point)
             values, names, text, unit = panel.values, panel.names, _ACCELERATIONS[of], "m/s^2"
             if point is not None:
                 text = f"{text} of {point}"
@@ -65,7 +65,7 @@ class _Signals(NamedTuple):
             # Differences of the velocity contain each contact, and samples of the acceleration the contacts that they hit.
             values, time = np.diff(values[window], axis=0) / np.diff(time)[:, None], time[:-1] + 0.5 * np.diff(time)
         else:
-            panel = response(arrays, of, point)
+            panel = response(run, of, point)
             values, names, text, unit = panel.values[window], panel.names, panel.text, panel.unit
         if point is not None and point not in names:
             raise CaseError(f"point = {point!r} is not a point of this run", ", ".join(arrays.points))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from textwrap import wrap
@@ -261,7 +261,17 @@ def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
     axes.set_ylabel("\n".join([*lines, f"({unit})"] if unit else lines))
 
 
-def axis_in_g(axes: Axes, which: Literal["x", "y"], per_g: float, text: str = "", unit: str = "g") -> None:
+_FEW_DECADES = 1000.0
+"""Ratio of the ends of a logarithmic axis up to which 2 and 5 are written beside the powers of ten."""
+
+
+def axis_in_g(
+    axes: Axes,
+    which: Literal["x", "y"],
+    per_g: float | tuple[Callable[[Any], Any], Callable[[Any], Any]],
+    text: str = "",
+    unit: str = "g",
+) -> None:
     """Add a second axis in g above or to the right of axes.
 
     Parameters
@@ -271,20 +281,23 @@ def axis_in_g(axes: Axes, which: Literal["x", "y"], per_g: float, text: str = ""
     which
         "x" or "y".
     per_g
-        Value on the axis that is an acceleration of 1 g.
+        Value on the axis that is an acceleration of 1 g; or the functions from the values to the accelerations in g, and
+        back, if they are not in proportion.
     text
         Name of the quantity.
     unit
         Unit of the second axis, "g" or one that contains it.
     """
-    both = (lambda value: value / per_g, lambda value: value * per_g)
+    both = per_g if isinstance(per_g, tuple) else (lambda value: value / per_g, lambda value: value * per_g)
     second = axes.secondary_xaxis("top", both) if which == "x" else axes.secondary_yaxis("right", both)
     axis = second.xaxis if which == "x" else second.yaxis
     log = (axes.get_xscale() if which == "x" else axes.get_yscale()) == "log"
     axis.set_minor_formatter(NullFormatter())
-    if which == "x" or not log:
+    low, high = axes.get_xlim() if which == "x" else axes.get_ylim()
+    few = which == "x" or (low > 0 and high < _FEW_DECADES * low)
+    if few or not log:
         axis.set_major_formatter("{x:g}")
-    if which == "x" and log:
+    if few and log:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     unit = unit.replace("^2", "²")
     axis.set_label_text(f"{text} ({unit})" if text else unit)

@@ -13,7 +13,7 @@ import numpy as np
 from rattlebox._util.batch_means import half_widths, shortest_window
 from rattlebox._util.exceptions import CaseError, RattleboxError
 from rattlebox._util.html import bullets, paragraph, table
-from rattlebox._util.quantities import MISSING, digits, quantity
+from rattlebox._util.quantities import ACCELERATION, MISSING, STANDARD_GRAVITY, digits, quantity
 from rattlebox.core import _core
 
 from .damper_force import mean_damper_force
@@ -66,8 +66,16 @@ class _Row:
     unit: str = ""
     at: str = ""
 
+    @property
+    def in_g(self) -> _Row:
+        """Line with accelerations in g alone, for tables of several columns."""
+        return replace(self, unit="g") if self.unit == ACCELERATION else self
+
     def text(self, values: Mapping[str, Value]) -> str:
         value = values.get(self.key)
+        scale = STANDARD_GRAVITY if self.unit == "g" else 1.0
+        if isinstance(value, float):
+            value /= scale
         if value is None:
             return MISSING
         if isinstance(value, str):
@@ -77,7 +85,7 @@ class _Row:
         if self.at:
             return f"{quantity(value, self.unit)} at {quantity(float(values[self.at]), 'm')}"
         if self.key.startswith("steady_"):
-            return self._with_error(value, float(values[error_of(self.key)]))
+            return self._with_error(value, float(values[error_of(self.key)]) / scale)
         if self.key == "end_time" and (start := float(values["start_time"])):  # of a run that continues another one
             return f"{quantity(start, self.unit)} to {quantity(value, self.unit)}"
         if self.key.startswith("settling_time") and math.isnan(value):
@@ -634,7 +642,7 @@ class Comparison(_Report):
         every = tuple(self.values.values())
         several = len(_keys("peak_displacement", every)) > _MAX_POINTS
         detailed = [self.point] if several else [_name_in(key) for key in _keys("peak_displacement", every)]
-        return [(row.label, *(row.text(values) for values in every)) for row in _rows(every, detailed)]
+        return [(row.label, *(row.in_g.text(values) for values in every)) for row in _rows(every, detailed)]
 
 
 COMPARED = {

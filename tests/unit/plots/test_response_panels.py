@@ -46,7 +46,7 @@ def test_particles_have_lines_along_three_axes(tmp_path: Path) -> None:
     figure = run.plot.responses(of=["cavity_force", "modal_displacement"], between=(0.01, 0.04), size="page")
     force, modal = figure.axes
     assert [line.get_label() for line in force.lines[1:]] == ["along x", "along y", "along z"]
-    assert len(modal.lines) == 4 and modal.get_ylabel().startswith("Modal displacement")
+    assert len(modal.lines) == 4 and modal.get_ylabel().startswith("Displacement of modes")
     figure.savefig(tmp_path / "responses.png")
 
 
