@@ -89,9 +89,9 @@ template <int n> Pack<n> read(const real* p) {
     else
         return {read<n / 2>(p), read<n / 2>(p + n / 2)};
 }
-// Number of contacts that are computed at once: one register, but at most four, because the many variables of
-// a contact law do not fit into the registers otherwise and eight are no faster.
-inline constexpr int group = register_width < 4 ? register_width : 4;
+// Number of contacts that are computed at once: one register, because the many variables of a contact law do
+// not fit into the registers otherwise.
+inline constexpr int group = register_width;
 using Group = Pack<group>;
 
 // Consecutive numbers at any address.

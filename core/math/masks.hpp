@@ -12,7 +12,9 @@
 namespace rattlebox {
 
 inline unsigned positive(const Group& a) {
-#if defined(__AVX__)
+#if defined(__AVX512F__)
+    return _mm512_cmp_pd_mask(a.v, _mm512_setzero_pd(), _CMP_GT_OQ);
+#elif defined(__AVX__)
     return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, _mm256_setzero_pd(), _CMP_GT_OQ)));
 #else
     unsigned bits = 0;

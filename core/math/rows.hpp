@@ -112,7 +112,20 @@ struct Columns {
 
 // Transposes the rows of(0), of(1), ... into lanes.
 template <class Of> RATTLEBOX_INLINE Columns columns_of(Of&& of) {
-#if defined(__AVX__)
+#if defined(__AVX512F__)
+    const auto two = [&](int l) __attribute__((always_inline)) {
+        return __builtin_shufflevector(of(l), of(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    const auto a = two(0), b = two(1), c = two(2), d = two(3);
+    const auto xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto yw = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    const auto zx = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto wy = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    return {{__builtin_shufflevector(xz, zx, 0, 1, 8, 9, 4, 5, 12, 13)},
+            {__builtin_shufflevector(yw, wy, 0, 1, 8, 9, 4, 5, 12, 13)},
+            {__builtin_shufflevector(xz, zx, 2, 3, 10, 11, 6, 7, 14, 15)},
+            {__builtin_shufflevector(yw, wy, 2, 3, 10, 11, 6, 7, 14, 15)}};
+#elif defined(__AVX__)
     const Row a = of(0), b = of(1), c = of(2), d = of(3);
     const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
     const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6), wy = __builtin_shufflevector(c, d, 1, 5, 3, 7);
@@ -136,7 +149,20 @@ template <class At> RATTLEBOX_INLINE Columns columns(At&& at) {
 // Transposes back: lane l is stored in the row that at(l) points to. If lanes share a row, the last one
 // remains.
 template <class At> RATTLEBOX_INLINE void store(const Columns& c, At&& at) {
-#if defined(__AVX__)
+#if defined(__AVX512F__)
+    const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 8, 9, 4, 5, 12, 13);
+    const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 8, 9, 4, 5, 12, 13);
+    const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 10, 11, 6, 7, 14, 15);
+    const auto wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 10, 11, 6, 7, 14, 15);
+    const auto store_two = [&](int l, auto both) __attribute__((always_inline)) {
+        *at(l) = __builtin_shufflevector(both, both, 0, 1, 2, 3);
+        *at(l + 4) = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+    };
+    store_two(0, __builtin_shufflevector(xz, yw, 0, 8, 2, 10, 4, 12, 6, 14));
+    store_two(1, __builtin_shufflevector(xz, yw, 1, 9, 3, 11, 5, 13, 7, 15));
+    store_two(2, __builtin_shufflevector(zx, wy, 0, 8, 2, 10, 4, 12, 6, 14));
+    store_two(3, __builtin_shufflevector(zx, wy, 1, 9, 3, 11, 5, 13, 7, 15));
+#elif defined(__AVX__)
     const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 4, 5);
     const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 4, 5);
     const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 6, 7);
