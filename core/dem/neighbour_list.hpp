@@ -45,9 +45,12 @@ class NeighbourList {
     std::vector<real> coordinates_[4];       // x, y, z and radius, for searches in SIMD lanes
     std::vector<OutgoingContacts> outgoing_; // by chunk before the sort
 
-    // Chooses a skin that lasts for some steps at the approach per step since the last scan.
-    static void choose_skin(ContactList& list, real smallest, real largest) {
-        constexpr real steps = 9; // measured; the optimum is flat
+    // Number of steps that a skin should last, measured; the optima are flat. A scan for walls visits all
+    // particles of the chunk and finds few candidates, so that it pays to scan less often than for pairs.
+    static constexpr real steps_of_pairs = 9, steps_of_walls = 30;
+
+    // Chooses a skin that lasts for a number of steps at the approach per step since the last scan.
+    static void choose_skin(ContactList& list, real smallest, real largest, real steps) {
         if (list.steps_since_scan > 0 && list.approach < infinity)
             list.approach_per_step = list.approach / static_cast<real>(list.steps_since_scan);
         list.skin = list.approach_per_step > 0
@@ -312,7 +315,7 @@ public:
     void scan_pairs(const Bed& bed, Chunk& chunk) const {
         // Neighbours hold for many steps, candidates for fewer: a thinner skin leaves fewer pairs to test in
         // each step, and a scan is cheaper than a search.
-        choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach);
+        choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach, steps_of_pairs);
         const real skin = chunk.pairs.skin;
         thread_local std::vector<int> candidate_pairs;
         const int count = static_cast<int>(chunk.neighbour_second.size());
@@ -344,7 +347,7 @@ public:
     }
 
     void scan_walls(const Bed& bed, Chunk& chunk) const {
-        choose_skin(chunk.walls, bed.smallest, 0.5 * bed.smallest);
+        choose_skin(chunk.walls, bed.smallest, 0.5 * bed.smallest, steps_of_walls);
         const real skin = chunk.walls.skin;
         const auto& all_walls = bed.cavity->walls;
         const Solids& solids = bed.cavity->solids;
