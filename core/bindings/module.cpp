@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "bindings/dem.hpp"
+#include "bindings/linearise.hpp"
 #include "bindings/sweep.hpp"
 
 namespace {
@@ -58,6 +59,7 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
     bindings::add_results(module);
     bindings::add_measures(module);
     bindings::add_sweep(module);
+    bindings::add_linearise(module);
     bindings::add_dem(module);
     module.attr("worst_energy_residual") = worst_energy_residual;
     module.attr("energy_at_rest") = energy_at_rest;

@@ -104,6 +104,7 @@ class ContactSolver {
         const bool at_event = kind == ContactEvent::Kind::touch || kind == ContactEvent::Kind::phase_end;
         if (problem_.settings.peaks) samples_.record_peaks(locator_.length());
         samples_.sample_step(locator_.length(), at_event);
+        if (run_.listener) run_.listener->step(motion_.y.data(), locator_.length());
         std::swap(motion_.y, motion_.trial);
         // Errors are measured by the speeds, which other bodies may raise within a contact.
         for (Active& a : run_.system.active) {
@@ -155,6 +156,7 @@ class ContactSolver {
     }
 
     void end_phase(std::size_t j) {
+        if (run_.listener) run_.listener->end_phase(j);
         Active& a = run_.system.active[j];
         const Contact& k = run_.contact(a.contact);
         const real rate = run_.system.approach(run_.state.y.data(), a.contact);

@@ -38,6 +38,7 @@ class ContactStarter {
             a.state = initial_state(law, e, speed);
             has_restitution = law.needs_restitution();
         });
+        if (run_.listener) run_.listener->touch(c, speed, e);
         Impact impact;
         impact.contact = c;
         impact.time = std::isnan(since) ? run_.state.t : since;
@@ -77,10 +78,11 @@ public:
             return run_.fail(Status::no_rebound, c, speed);
         if (speed == 0) { // by rounding; the forces decide whether it closes
             run_.phase(c) = RunState::Phase::touching;
+            if (run_.listener && run_.hard()) run_.listener->graze(c);
             return;
         }
         if (run_.hard()) return hard_.impact(c);
-        if (problem_.settings.collocation && isolated_.solve(c, speed, r.e)) return;
+        if (problem_.settings.collocation && !run_.listener && isolated_.solve(c, speed, r.e)) return;
         start(c, speed, r.e, 0);
     }
 

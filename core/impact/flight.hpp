@@ -135,6 +135,8 @@ public:
     }
 
     real horizon() const { return horizon_; }
+    // The series of the motion, or null if it is in closed form.
+    const TaylorMotion* series() const { return series_ ? &series_motion_ : nullptr; }
     // Whether bounds of the motion depend on the length that the flight was given.
     bool is_bounded_by(real length) const { return series_ && horizon_ == length; }
     real curvature(std::size_t contact) const { return curvature_[contact]; }

@@ -130,6 +130,12 @@ class HardContacts {
             for (const int j : taking_part_)
                 matrix_.push_back(-contact_coupling(problem_, run_.contact(i), run_.contact(j)));
         solve_complementary(matrix_, need_, both_signs_, impulses_);
+        if (run_.listener) {
+            std::vector<real> restitution;
+            for (const Closing& each : contacts) restitution.push_back(sticks ? 0 : each.restitution);
+            run_.listener->impulses(
+                {taking_part_, resting, restitution, need_, both_signs_, matrix_, impulses_});
+        }
         for (std::size_t i = 0; i < taking_part_.size(); ++i) impulse(taking_part_[i], impulses_[i]);
         for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].impulse = impulses_[resting + i];
     }
@@ -178,6 +184,7 @@ public:
             rebounds = rebounds || each.restitution > 0;
             slow = slow && each.speed < slowest;
         }
+        if (run_.listener) run_.listener->begin_impact(first);
         // All impulses at once, so that the order of the contacts does not matter.
         reduce_approaches(closing_, rebounds, slow);
         run_.contact_ended = true;
@@ -211,9 +218,9 @@ public:
             else if (each.restitution == 0)
                 run_.phase(c) = Phase::touching;
         }
-        if (sticking.empty()) return;
         // What is left of the approach rates is lost, too, and belongs to the same impacts.
-        stick(sticking);
+        if (!sticking.empty()) stick(sticking);
+        if (run_.listener) run_.listener->end_impact();
         for (const Closing& each : sticking)
             run_.result.impacts[each.number].energy_lost += 0.5 * each.impulse * each.change;
     }

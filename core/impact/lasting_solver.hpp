@@ -186,7 +186,9 @@ public:
     // Whether all closed contacts have lasted so long that long steps may pay. The explicit steps before keep
     // ordinary impacts as they are.
     bool may_last() const {
-        if (run_.system.active.empty() || !run_.released.empty() || !problem_.coupling.empty()) return false;
+        if (run_.listener || run_.system.active.empty() || !run_.released.empty() ||
+            !problem_.coupling.empty())
+            return false;
         for (const Active& a : run_.system.active)
             if (a.steps < a.wait || a.state.phase == ContactState::yielding) return false;
         for (RunState::Phase p : run_.phases)

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "impact/result.hpp"
+#include "impact/run_listener.hpp"
 #include "impact/system.hpp"
 
 namespace rattlebox {
@@ -28,6 +29,7 @@ struct RunState {
     real last_jump = 0; // time of the last jump of a force or its rate, except by contacts that began at rest
     real largest_overlap = 0; // so far, expected from the approach speeds
     Result result;
+    RunListener* listener = nullptr; // an object beside the run, or null
 
     RunState(const Problem& problem_to_run, const std::atomic<bool>* stop_flag)
         : problem(problem_to_run), stop(stop_flag), loads(problem.loads), state(problem), ledger(problem),

@@ -86,12 +86,15 @@ class Trajectory {
         std::vector<Closing> pressed;
         for (std::size_t c = 0; c < is_pressing_.size(); ++c)
             if (is_pressing_[c]) pressed.emplace_back().contact = static_cast<int>(c);
+        if (run_.listener) run_.listener->begin_impact(-1);
         hard_.stick(pressed);
+        if (run_.listener) run_.listener->end_impact();
     }
 
     // Moves to the end of the flight, with samples and the energies of the way there.
     void land(real length, real end, bool at_touch) {
         sample_flight(end, at_touch);
+        if (run_.listener) run_.listener->flight(flight_, length);
         flight_.add_to_ledger(length, run_.ledger);
         std::swap(flight_end_.y, run_.state.y);
         run_.state.t = end;
@@ -236,7 +239,10 @@ public:
         for (long turn = 0; run_.running() && run_.state.t < run_.until; ++turn) {
             if (problem_.settings.keep_end && !run_.met_end && turn % turns_per_state == 0)
                 save(run_.result.states.whole);
-            if (run_.state.t >= run_.loads.next_knot()) run_.loads.advance(run_.state.t);
+            if (run_.state.t >= run_.loads.next_knot()) {
+                if (run_.listener) run_.listener->pass_knot();
+                run_.loads.advance(run_.state.t);
+            }
             run_.result.counts.events += !goes_on_;
             if (!may_go_on()) break;
             if (run_.system.active.empty() && released_contacts_only_open())

@@ -42,6 +42,7 @@ struct ExternalLaw {
                                                     {"zero_overlap", &ExternalLaw::zero_overlap},
                                                     {"tangential_share", &ExternalLaw::tangential_share}};
     static constexpr bool hysteretic = false;
+    static constexpr bool is_opaque = true; // the formula takes plain numbers only
 
     bool is_possible() const {
         return number == std::floor(number) && number < static_cast<real>(external_laws().size());

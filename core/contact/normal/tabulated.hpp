@@ -41,10 +41,12 @@ struct PiecewiseCubic {
         const auto after = std::upper_bound(knots.data, knots.data + knots.size, x) - knots.data;
         return std::clamp(static_cast<int>(after) - 1, 0, knots.size - 2);
     }
-    real value(real x) const {
-        if (x > last()) return value(last()) + slope(last()) * (x - last());
-        const int i = piece(x);
-        const real *c = coefficients.data + 4 * i, t = x - knots[i];
+    // Of a number, or of one with derivatives.
+    template <class T> T value(const T& x) const {
+        if (x > T(last())) return value(last()) + slope(last()) * (x - last());
+        const int i = piece(static_cast<real>(x));
+        const real* c = coefficients.data + 4 * i;
+        const T t = x - knots[i];
         return ((c[0] * t + c[1]) * t + c[2]) * t + c[3];
     }
     real slope(real x) const {
@@ -100,7 +102,7 @@ struct TabulatedNormal {
     }
     template <class T> RATTLEBOX_INLINE T yielding_force(const Coefficients<T>& k, const Depth<T>& d) const {
         const PiecewiseCubic f = loading();
-        return k.stiffness * each(d.overlap, [&](real overlap) { return f.value(overlap); });
+        return k.stiffness * each(d.overlap, [&](const auto& overlap) { return f.value(overlap); });
     }
     template <class T> RATTLEBOX_INLINE T elastic_force(const Coefficients<T>& k, const Depth<T>& d) const {
         return yielding_force(k, d);
@@ -109,8 +111,8 @@ struct TabulatedNormal {
     template <class T> RATTLEBOX_INLINE T unloading_force(const History<T>& h, const Depth<T>& above) const {
         if (unloading().empty()) return yielding_force({all(above.overlap, stiffness), h.origin}, above);
         const PiecewiseCubic g = unloading();
-        return h.stiffness *
-               each(part(h, above.overlap), [&](real x) { return g.value(std::max(x, g.first())); });
+        return h.stiffness * each(part(h, above.overlap),
+                                  [&](const auto& x) { return g.value(larger(x, all(x, g.first()))); });
     }
     // Energy that unloading along that curve recovers.
     template <class T> RATTLEBOX_INLINE T recovered(const History<T>& h, const Depth<T>& above) const {

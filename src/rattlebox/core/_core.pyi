@@ -1038,6 +1038,79 @@ def sweep(problem: Problem, grid: Sequence[int], start: int, stop: int, window: 
     Run the variants start to stop of a batch over a grid and return their output; None if `progress` returned False. With `times` the output holds the runs, too, with samples at these times.
     """
 
+class NotLinear(enum.IntEnum):
+    """Why a derivative does not exist."""
+
+    none = 0
+
+    simultaneous = 1
+
+    grazing = 2
+
+    kink = 3
+
+    closed = 4
+
+class Linearised(Node):
+    """
+    A run with derivatives of its state in the state at the start and in parameters, at fixed times.
+    """
+
+    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], rate: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], miss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], derivative: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], impacts: Impacts, phases: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')], counts: Counts, status: Status, refused: NotLinear, stopped_at: float, stopped_value: float, refused_at: float, stopped_contact: int, refused_contact: int) -> None: ...
+
+    @property
+    def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def rate(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def miss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def derivative(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def impacts(self) -> Impacts: ...
+
+    @property
+    def phases(self) -> Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def counts(self) -> Counts: ...
+
+    @property
+    def status(self) -> Status: ...
+
+    @property
+    def refused(self) -> NotLinear: ...
+
+    @property
+    def stopped_at(self) -> float: ...
+
+    @property
+    def stopped_value(self) -> float: ...
+
+    @property
+    def refused_at(self) -> float: ...
+
+    @property
+    def stopped_contact(self) -> int: ...
+
+    @property
+    def refused_contact(self) -> int: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def linearise(problem: Problem, start: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')] | None, from_time: float, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], weights: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], coarse: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], derivatives: bool = True) -> Linearised:
+    """
+    Run a problem of the 1-D engine from a state (None: that of the problem) at a time up to the last of `times`, with derivatives in the state at the start and in parameters. The problem is a batch of variants along one axis, of which the first runs; each row of `weights` is the derivative in one parameter as a sum over the variants, and each row of `coarse` is another one of lower order.
+    """
+
 class Partner(enum.IntEnum):
     """Body that a particle touches."""
 

@@ -176,7 +176,22 @@ def _broadcast(
     """Pack the variants over columns of numbers; return the problem, the mode shapes at the points and the inertia."""
     # The case with the first value of each column has a field for each array.
     first = {path: values.flat[0].item() for path, values in columns.items()}
-    batch = replaced(case, {**fixed, **first})
+    batch = with_columns(replaced(case, {**fixed, **first}), columns)
+    try:
+        return _problem(batch, axes), _points(batch, axes), _inertia(batch, axes)
+    except (TypeError, ValueError) as error:
+        if not isinstance(error, CaseError):
+            error.add_note("A formula of the model does not accept arrays; see rattlebox.model.elementwise.")
+        raise
+
+
+def pack_columns(case: Case, columns: Columns) -> _core.Problem:
+    """Pack the variants over columns of numbers along one axis; the case has a field for each of them."""
+    return _problem(with_columns(case, columns), 1)
+
+
+def with_columns(batch: Case, columns: Columns) -> Case:
+    """Return a copy of a case with arrays in place of numbers."""
     # Fields are replaced without validation, which would refuse arrays; lengths that are given in another way are
     # converted here, as validation does for one case.
     cavities: dict[Place, NDArray[Any]] = {}
@@ -193,12 +208,7 @@ def _broadcast(
             batch = with_value(batch, place, (values,) if isinstance(current, tuple) else values)
     for place, length in cavities.items():
         batch = with_value(batch, (*place, "gap"), (length - part_at(batch, place).row) / 2)
-    try:
-        return _problem(batch, axes), _points(batch, axes), _inertia(batch, axes)
-    except (TypeError, ValueError) as error:
-        if not isinstance(error, CaseError):
-            error.add_note("A formula of the model does not accept arrays; see rattlebox.model.elementwise.")
-        raise
+    return batch
 
 
 def _points(case: Case, axes: int = 0) -> dict[str, NDArray[np.float64]]:
