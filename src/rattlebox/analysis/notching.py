@@ -213,7 +213,7 @@ def notch(
     """
     import xarray
 
-    test = profile if isinstance(profile, Signal) else _SineTable(profile)
+    test = profile if isinstance(profile, Signal) else SineTable(profile)
     is_random = test.is_density
     limits = {"force": force, "force_density": force_density, "force_rms": force_rms}
     given = [name for name, value in limits.items() if value is not None]
@@ -279,7 +279,7 @@ def _swept_force(case: Any, sweep: SineSweep, profile: Record, notched: FloatArr
     return float(np.abs(np.fft.irfft(pushed, size)[: even.size]).max())
 
 
-class _SineTable:
+class SineTable:
     """A sine profile of pairs of frequency and amplitude, with what a signal says of its levels."""
 
     is_density = False
