@@ -91,8 +91,10 @@ inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::s
     for (const SolidShape& one : given.solids) {
         require(one.material >= 0 && one.material < static_cast<int>(wall_material_count),
                 "a body has no laws");
+        require(one.label >= 0 && one.label < static_cast<int>(given.walls.size() + given.solids.size()),
+                "the label of a body is less than the number of walls");
         target.solids.add(solid_of(one, static_cast<int>(target.walls.size())), plain, one.encloses);
-        target.walls.push_back({Row{}, dem::Wall::solid, one.material, target.wall_labels()});
+        target.walls.push_back({Row{}, dem::Wall::solid, one.material, one.label});
     }
     target.period = one_row(given.period);
     for (int a = 0; a < 3; ++a) {

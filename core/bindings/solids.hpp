@@ -13,7 +13,7 @@ using Indices = nb::ndarray<nb::numpy, const std::int64_t, nb::ndim<axes>, nb::c
 
 struct SolidShape : Node {
     dem::Solid::Form form{};
-    int material = 0;
+    int material = 0, label = 0;
     bool encloses = false;
     double smooth = 0;
     Input<1> centre, size;
@@ -141,9 +141,10 @@ inline void add_solids(nb::module_& module) {
               "`size` is half of the edges of a plate, radius and half of the length of a rod, or the radius "
               "of a "
               "ball [m]; the third of the axes is along a rod.",
-              field("form", &S::form), field("material", &S::material), field("encloses", &S::encloses),
-              field("smooth", &S::smooth), field("centre", &S::centre), field("size", &S::size),
-              field("axes", &S::axes), field("vertices", &S::vertices), field("faces", &S::faces));
+              field("form", &S::form), field("material", &S::material), field("label", &S::label, 0),
+              field("encloses", &S::encloses), field("smooth", &S::smooth), field("centre", &S::centre),
+              field("size", &S::size), field("axes", &S::axes), field("vertices", &S::vertices),
+              field("faces", &S::faces));
     using C = SurfaceContacts;
     define<C>(module, "SurfaceContacts",
               "Contacts of spheres with solids: number of the sphere and of the solid, outward normal, and "

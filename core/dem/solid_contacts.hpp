@@ -38,6 +38,9 @@ inline void find_wall_points(ContactList& list, const Bed& bed, bool selects) {
         for (int a = 0; a < n; ++a)
             if (!selects || at(points, a).counts) at(list.near, at(candidate, a)) = at(points, a).near;
         if (!selects) continue;
+        const auto material = [&](int a) {
+            return at(cavity.walls, at(list.second, at(candidate, a))).material;
+        };
         for (int a = 0; a < n; ++a) {
             int& slot = at(list.slot, at(candidate, a));
             if (at(points, a).counts || slot == ContactList::none) continue;
@@ -46,7 +49,7 @@ inline void find_wall_points(ContactList& list, const Bed& bed, bool selects) {
             for (int b = 0; b < n; ++b) {
                 const LeafPoint& next = at(points, b);
                 if (next.counts && at(list.slot, at(candidate, b)) == ContactList::none &&
-                    solids.continues(at(points, a), next) &&
+                    solids.continues(at(points, a), next) && material(a) == material(b) &&
                     (to < 0 ||
                      dot(at(points, a).near, next.near) > dot(at(points, a).near, at(points, to).near)))
                     to = b;

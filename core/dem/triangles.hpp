@@ -47,7 +47,7 @@ class Triangles {
         sides.reserve(3 * face_.size());
         for (int f = 0; f < faces(); ++f)
             for (int k = 0; k < 3; ++k) {
-                const auto [a, b] = std::minmax(corner_number(f, k), corner_number(f, (k + 1) % 3));
+                const auto [a, b] = std::minmax({corner_number(f, k), corner_number(f, (k + 1) % 3)});
                 sides.push_back({static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b), f, k});
             }
         std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
@@ -281,7 +281,8 @@ public:
         const Row o = corner(f, 0), one = corner(f, 1) - o, other = corner(f, 2) - o, along = b - a;
         const Row h = cross(along, other);
         const real det = dot(one, h);
-        if (det == 0) return false;
+        // A line in the plane of the triangle does not cross it.
+        if (square(det) <= 1e-18 * dot(one, one) * dot(other, other) * dot(along, along)) return false;
         const Row s = a - o, q = cross(s, one);
         const real u = dot(s, h) / det, v = dot(along, q) / det, t = dot(other, q) / det;
         return u >= 0 && v >= 0 && u + v <= 1 && t > 1e-9 && t < 1 - 1e-9;

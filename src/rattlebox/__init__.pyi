@@ -19,6 +19,14 @@ from rattlebox.engines.simulate import simulate_many as simulate_many
 from rattlebox.engines.stepper import Stepper as Stepper
 from rattlebox.engines.stepper import StepResult as StepResult
 from rattlebox.model.beams import Beam as Beam
+from rattlebox.model.bodies import BallBody as BallBody
+from rattlebox.model.bodies import BodyCross as BodyCross
+from rattlebox.model.bodies import BodyRing as BodyRing
+from rattlebox.model.bodies import BodyRow as BodyRow
+from rattlebox.model.bodies import Honeycomb as Honeycomb
+from rattlebox.model.bodies import MeshBody as MeshBody
+from rattlebox.model.bodies import PlateBody as PlateBody
+from rattlebox.model.bodies import RodBody as RodBody
 from rattlebox.model.case import Case as Case
 from rattlebox.model.cavities import Box as Box
 from rattlebox.model.cavities import Cylinder as Cylinder
@@ -45,6 +53,7 @@ from rattlebox.model.inspect_file import inspect as inspect
 from rattlebox.model.materials import Material as Material
 from rattlebox.model.materials import materials as materials
 from rattlebox.model.matrices import Matrices as Matrices
+from rattlebox.model.mesh_cavity import Mesh as Mesh
 from rattlebox.model.methods import Dem as Dem
 from rattlebox.model.methods import EventDriven as EventDriven
 from rattlebox.model.methods import Newton as Newton
@@ -134,7 +143,6 @@ from rattlebox.studies.kinds.sweep import check_step as check_step
 from rattlebox.studies.kinds.sweep import compare as compare
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.maps.response_from_map import response_from_map as response_from_map
-from rattlebox.studies.notching import notch_with_dampers as notch_with_dampers
 from rattlebox.studies.orbits.find import find_orbit as find_orbit
 from rattlebox.studies.orbits.orbit import Orbit as Orbit
 from rattlebox.studies.run.stored import open_study as open_study

@@ -242,7 +242,7 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
 
 def _cavities(case: rb.Case) -> list[dict[str, Any]]:
     """Return edges [m], size [m] and place in the picture [m] of each cavity; they stand side by side along y."""
-    cavities = [damper.cavity for damper in case.particle_dampers]
+    cavities = [damper.interior for damper in case.particle_dampers]
     widths = np.array([float(cavity.lengths.max()) for cavity in cavities])
     ends = np.cumsum(1.3 * widths)
     places = ends - 0.65 * widths - ends[-1] / 2

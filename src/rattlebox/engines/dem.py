@@ -249,7 +249,7 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
         particles={
             "position": np.concatenate(
                 [
-                    damper.cavity.wrapped(end.position - end.displacement)
+                    damper.interior.wrapped(end.position - end.displacement)
                     for damper, end in zip(dampers, ends, strict=True)
                 ]
             ),
@@ -263,7 +263,7 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
 
 def _wall_arrays(dampers: Sequence[ParticleDamper], raw: _core.Records) -> dict[str, Any]:
     """Return the arrays of the walls of all cavities; impulses, losses and impacts count from the first sample."""
-    labels = [damper.cavity.walls().labels for damper in dampers]
+    labels = [damper.interior.walls().labels for damper in dampers]
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     alone = len(dampers) == 1
     arrays = {name: getattr(raw, name) for name in raw.fields() if name.startswith("wall_")}
@@ -273,7 +273,7 @@ def _wall_arrays(dampers: Sequence[ParticleDamper], raw: _core.Records) -> dict[
             face if alone else f"{name} {face}" for name, faces in zip(names, labels, strict=True) for face in faces
         ),
         "wall_damper": np.repeat(np.arange(len(dampers)), [len(faces) for faces in labels]),
-        "wall_area": np.concatenate([damper.cavity.face_areas for damper in dampers]),
+        "wall_area": np.concatenate([damper.interior.face_areas for damper in dampers]),
     }
 
 

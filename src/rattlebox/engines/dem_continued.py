@@ -154,7 +154,8 @@ def _differences(cavity: _core.Cavity, other: _core.Cavity) -> Iterator[tuple[st
     for name in _PARTICLES:
         if not np.array_equal(getattr(cavity, name), getattr(other, name)):
             yield name, "the particles and their start"
-    if fingerprint({"": [cavity.walls, cavity.period]}) != fingerprint({"": [other.walls, other.period]}):
+    own, others = ({"": [each.walls, each.solids, each.period]} for each in (cavity, other))
+    if fingerprint(own) != fingerprint(others):
         yield "walls", "the cavity"
     if not np.array_equal(cavity.shape, other.shape):
         yield "point and direction", "the place of the damper"

@@ -38,8 +38,8 @@ def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Sn
         "species": np.concatenate([each.species for each in contents]),
     }
     sampled = np.asarray(steps * dt, dtype=float)
-    walls = [damper.cavity.surface() for damper in case.particle_dampers]
-    periods = np.array([damper.cavity.period for damper in case.particle_dampers])
+    walls = [damper.interior.surface() for damper in case.particle_dampers]
+    periods = np.array([damper.interior.period for damper in case.particle_dampers])
     file = SnapshotFile(
         path, sampled, _drawing_positions(case), fixed, walls, case.to_toml(), fingerprint(packed), periods
     )
@@ -48,6 +48,6 @@ def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Sn
 
 def _drawing_positions(case: Case) -> NDArray[np.float64]:
     """Return centres at which the cavities are drawn side by side along x, (D, 3) [m]."""
-    lengths = np.array([damper.cavity.extent(np.array([1.0, 0.0, 0.0])) for damper in case.particle_dampers])
+    lengths = np.array([damper.interior.extent(np.array([1.0, 0.0, 0.0])) for damper in case.particle_dampers])
     along = np.concatenate([[0.0], np.cumsum(SPACING * (lengths[1:] + lengths[:-1]) / 2)])
     return np.stack([along, np.zeros_like(along), np.zeros_like(along)], axis=1)

@@ -341,7 +341,7 @@ def particle_notes(
     for index, (name, damper) in enumerate(_named(case.particle_dampers)):
         yield from _beyond_measurement(name, _deepest_measured(damper, overlaps[index]))
         if not first_touches[index].any() and not contacts[:, index].any():
-            room = float(damper.cavity.room(damper.start.position, damper.contents.radius).min())
+            room = float(damper.interior.room(damper.start.position, damper.contents.radius).min())
             centre = centre_of_mass[:, index]
             moved = float(np.linalg.norm(centre - centre[0], axis=1).max())
             distances = f"smallest distance to a wall at the start {_length(room)}, largest displacement from there"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
@@ -19,7 +19,7 @@ from rattlebox._util.quantities import amount
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint, nearest
-from .kinds import AnyKind
+from .solids import Solids
 from .space import AXES, Direction, Lengths, components_along, to_global, unit_vector, wrapped
 from .surfaces import Surface, bands, circle, facing_inward
 from .units import PositiveLength, radius_of_diameter
@@ -30,16 +30,18 @@ WallForm = Literal["plane", "cylinder", "sphere"]
 # time. The faces are inside the wall by up to 0.1 % of the radius of a cylinder and 0.8 % of that of a sphere.
 _AROUND = 72
 _MERIDIANS, _LATITUDES = 36, 17
+_NO_SOLIDS = Solids()
 
 
 @dataclass(frozen=True)
 class Walls:
     """Walls around the centre of a cavity."""
 
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # Of the walls, then of the solids
     axis: Vector  # Outward normal of a plane, axis of a cylinder's side; zeros for a sphere, (w, 3)
     offset: Vector  # Distance of a plane from the centre, radius of a cylinder or a sphere [m], (w,)
     form: tuple[WallForm, ...]
+    solids: Solids = _NO_SOLIDS  # Bodies and surfaces of triangles
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -53,15 +55,28 @@ class Walls:
         return np.array([number[name] for name in self.names], np.int64)
 
     def distances(self, positions: Vector) -> Vector:
-        """Return the distances of points from the walls, (n, w) [m], positive inside."""
-        result = np.empty((len(positions), self.offset.size))
+        """Return the distances of points from the walls and solids, (n, w) [m], positive inside."""
+        result = np.empty((len(positions), len(self.names)))
         for k, (axis, offset, form) in enumerate(zip(self.axis, self.offset, self.form, strict=True)):
             along = components_along(positions, axis)
             if form != "plane":
                 square = np.einsum("ij,ij->i", positions, positions)
                 along = np.sqrt(np.maximum(square - along**2, 0.0))
             result[:, k] = offset - along
+        if self.solids.each:
+            result[:, self.offset.size :] = self.solids.distances(positions)
         return result
+
+    def with_lid(self, up: Vector, level: float) -> Walls:
+        """Return the walls with a plane at a level above the centre [m]."""
+        plain = self.offset.size
+        return Walls(
+            (*self.names[:plain], "lid", *self.names[plain:]),
+            np.vstack([self.axis, up]),
+            np.append(self.offset, level),
+            (*self.form, "plane"),
+            self.solids,
+        )
 
 
 class Cavity(Part):
@@ -150,6 +165,20 @@ class Cavity(Part):
     def room(self, positions: Vector, radii: Vector) -> Vector:
         """Return the distances of the surfaces of spheres from the nearest wall, (n,) [m], positive inside."""
         return np.asarray(self.depth(positions) - radii)
+
+    def notes(self, radius: float) -> Iterator[str]:
+        """Yield notes, and warnings that begin with "warning: ", on its surface and on the room for spheres."""
+        yield from ()
+
+    @property
+    def widest(self) -> float:
+        """Upper bound of the diameter of a sphere inside [m]."""
+        return float(self.lengths.min())
+
+    @property
+    def digest(self) -> str:
+        """Text that differs for cavities with other walls."""
+        return self.model_dump_json()
 
     def extent(self, direction: Vector) -> float:
         """Return the width of the cavity along a unit vector u [m]; that of a box is the sum of abs(u_i) times its edges."""
@@ -241,8 +270,8 @@ class Box(Cavity):
         solid = [k for k, axis in enumerate(AXES) if axis not in self.periodic]
         axis = np.concatenate([-np.eye(3)[solid], np.eye(3)[solid]])
         names = tuple(sign + AXES[k] for sign in "-+" for k in solid)
-        forms: tuple[WallForm, ...] = ("plane",) * len(names)
-        return Walls(names, axis, np.tile(self.lengths[solid] / 2, 2), forms)
+        plane: WallForm = "plane"
+        return Walls(names, axis, np.tile(self.lengths[solid] / 2, 2), (plane,) * len(names))
 
     @property
     def face_areas(self) -> Vector:
@@ -513,6 +542,3 @@ class SphericalCavity(_Round):
     def inside(self) -> Vector:
         """Edges of the inscribed cube, (3,) [m]."""
         return np.full(3, 2 * self.radius / math.sqrt(3))
-
-
-AnyCavity = Annotated[Cavity, AnyKind()]

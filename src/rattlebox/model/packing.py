@@ -17,8 +17,9 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import DataError
 
+from .any_cavity import AnyCavity
 from .base import FilePart, Part
-from .cavities import AnyCavity, Box, SphericalCavity
+from .cavities import Box, SphericalCavity
 from .elementwise import Vector
 from .errors import Hint, at, several
 from .files import BINARY, absolute, check_finite, existing, read_arrays
@@ -693,7 +694,7 @@ def _filled(cavity: AnyCavity, crowd: Crowd, count: int) -> str:
 
 def check_size(cavity: AnyCavity, radius: float) -> None:
     """Raise if a sphere is as large as the cavity or larger."""
-    widest = float(cavity.lengths.min())
+    widest = cavity.widest
     if 2 * radius > widest or 4 / 3 * math.pi * radius**3 >= cavity.volume:
         large = "larger than" if 2 * radius > widest else "as large as"
         raise Hint(

@@ -20,13 +20,16 @@ from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount
 
 from .also_accepts import AlsoAccepts
+from .any_cavity import AnyCavity
 from .base import Part
-from .cavities import AnyCavity
+from .bodies import AnyBody
+from .cavities import Cavity
 from .contacts import AnyContact, Linear
 from .damper_base import Damper
 from .elementwise import Vector
 from .errors import Hint, at, several
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
+from .interior import Interior
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
 from .packing import (
@@ -160,7 +163,9 @@ class ParticleDamper(Damper):
     particles
         Particles of one species, or a list of several.
     cavity
-        Box, Cylinder or SphericalCavity.
+        Box, Cylinder, SphericalCavity or Mesh.
+    bodies
+        Fixed bodies inside the cavity, such as RodBody, PlateBody, BallBody, MeshBody, and arrays of them.
     wall
         Material of the walls, or "rigid"; default that of the first species.
     contact, wall_contact
@@ -217,6 +222,7 @@ class ParticleDamper(Damper):
         examples=[{"material": "steel", "diameter": "4 mm", "count": 100}]
     )
     cavity: AnyCavity
+    bodies: tuple[AnyBody, ...] = ()
     wall: AnyWall | None = None
     contact: AnyContact
     wall_contact: AnyContact | None = None
@@ -245,6 +251,8 @@ class ParticleDamper(Damper):
     @model_validator(mode="after")
     def _fits(self) -> ParticleDamper:
         self._check_group()
+        if isinstance(self.interior, Interior):
+            self.interior.check()
         self._check_faces()
         self._check_amounts()
         self._check_room()
@@ -260,6 +268,11 @@ class ParticleDamper(Damper):
             else self
         )
 
+    @cached_property
+    def interior(self) -> Cavity:
+        """The space for particles: the cavity less the bodies inside."""
+        return Interior.of(self.cavity, self.bodies)
+
     @property
     def mass(self) -> float:
         """Mass of the particles [kg]."""
@@ -268,7 +281,7 @@ class ParticleDamper(Damper):
     def facts(self) -> list[tuple[str, str]]:
         """Return numbers that follow from the fields, with their names."""
         radii = self.contents.radius
-        share = float((4 / 3 * math.pi * radii**3).sum()) / self.cavity.volume
+        share = float((4 / 3 * math.pi * radii**3).sum()) / self.interior.volume
         return [
             ("particles", counted(len(radii), "particle")),
             ("mass of the particles", amount(self.mass, "kg")),
@@ -282,7 +295,7 @@ class ParticleDamper(Damper):
         size = amount(2 * float(radii.min()), "m")
         if not np.isclose(radii.min(), radii.max()):
             size += f" to {amount(2 * float(radii.max()), 'm')}"
-        return f"{counted(len(radii), f'{joined(materials)} ball')} of {size} ({mass}) in {self.cavity.words()}"
+        return f"{counted(len(radii), f'{joined(materials)} ball')} of {size} ({mass}) in {self.interior.words()}"
 
     def _check_group(self) -> None:
         """Raise if point and points are both given, or if identical dampers have the same packing."""
@@ -299,8 +312,8 @@ class ParticleDamper(Damper):
     def _check_faces(self) -> None:
         """Raise if a face does not exist, or if particles would fall forever along a periodic direction."""
         with at("walls"):
-            self.cavity.check_faces(self.walls)
-        for axis, pull, length in zip(AXES, self.gravity, self.cavity.period, strict=True):
+            self.interior.check_faces(self.walls)
+        for axis, pull, length in zip(AXES, self.gravity, self.interior.period, strict=True):
             if length and pull:
                 raise Hint(
                     f"gravity has a component along {axis}, in which the box is periodic: particles would fall forever",
@@ -401,19 +414,19 @@ class ParticleDamper(Damper):
         """Raise, before arrays are allocated, if the particles exceed the volume of the cavity or the memory."""
         if self.packing.stated_count is not None:
             return
-        crowds = [species.crowd(self.cavity.volume, self._density(species)) for species in self.particles]
+        crowds = [species.crowd(self.interior.volume, self._density(species)) for species in self.particles]
         count = sum(crowd.count for crowd in crowds)
         if not 0 < count <= MAX_PARTICLES:  # `Particles.number` raises.
             return
-        filled = sum(crowd.count * crowd.volume for crowd in crowds) / self.cavity.volume
+        filled = sum(crowd.count * crowd.volume for crowd in crowds) / self.interior.volume
         largest = max((crowd.largest for crowd in crowds), default=0.0)
-        whole = Crowd(count, filled * self.cavity.volume / count, largest)
+        whole = Crowd(count, filled * self.interior.volume / count, largest)
         if (
             filled >= 1
-            and 2 * largest < self.cavity.lengths.min()
-            and largest**3 * 4 / 3 * math.pi < self.cavity.volume
+            and 2 * largest < self.interior.lengths.min()
+            and largest**3 * 4 / 3 * math.pi < self.interior.volume
         ):
-            raise self.packing.too_many(self.cavity, whole)
+            raise self.packing.too_many(self.interior, whole)
         count *= self.number * max(1, len(self.points))
         if count * _BYTES > memory():
             raise ResourceError(
@@ -426,12 +439,12 @@ class ParticleDamper(Damper):
         contents = self.contents
         largest = int(contents.radius.argmax())
         with at(*self._place(int(contents.species[largest]))):
-            check_size(self.cavity, float(contents.radius[largest]))
-        filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
+            check_size(self.interior, float(contents.radius[largest]))
+        filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.interior.volume
         crowd = Crowd.of(contents.radius)
         if filled >= 1:
-            raise self.packing.too_many(self.cavity, crowd)
-        self.packing.check(self.cavity, crowd, settles=any(self.gravity))
+            raise self.packing.too_many(self.interior, crowd)
+        self.packing.check(self.interior, crowd, settles=any(self.gravity))
         _ = self.start
 
     @property
@@ -496,14 +509,14 @@ class ParticleDamper(Damper):
         if not species.has_amount:
             return present(self.packing.stated_count)
         with at(*self._place(index)):
-            return species.number(self.cavity.volume, self._density(species))
+            return species.number(self.interior.volume, self._density(species))
 
     def _density(self, species: Particles) -> float:
         """Return the volume of the particles over that of their bed; 1 without `bed_fill`."""
         if species.bed_fill is None or not species.has_size:
             return 1.0
         bulk = self.packing.bulk_density(self.largest_friction)
-        return bed_density(self.cavity, species.mean_diameter, bulk, species.bed_fill, self.up)
+        return bed_density(self.interior, species.mean_diameter, bulk, species.bed_fill, self.up)
 
     @property
     def up(self) -> Vector | None:
@@ -531,9 +544,9 @@ class ParticleDamper(Damper):
             If particles overlap, extend beyond the cavity, or do not fit.
         """
         radius = self.contents.radius
-        positions = self.packing.place(self.cavity, radius, settles=any(self.gravity))
+        positions = self.packing.place(self.interior, radius, settles=any(self.gravity))
         velocity, spin = self.packing.motion(radius.size)
-        positions = self.cavity.wrapped(positions)
+        positions = self.interior.wrapped(positions)
         return Start(positions, np.array(self.velocity) + velocity, spin)
 
     # ---- contacts
@@ -561,7 +574,7 @@ class ParticleDamper(Damper):
     def _wall_kinds(self) -> tuple[tuple[tuple[str, ...], Wall | None], ...]:
         """The faces with the same properties, and these; None for those of the damper."""
         kinds: list[tuple[list[str], Wall | None]] = []
-        for name in self.cavity.walls().labels:
+        for name in self.interior.walls().labels:
             own = self.walls.get(name)
             faces = next((faces for faces, wall in kinds if wall == own), None)
             if faces is None:
@@ -619,7 +632,7 @@ class ParticleDamper(Damper):
         k = len(self.particles)
         particle = np.zeros((k, k), np.int64)
         particle[np.triu_indices(k)] = np.arange(k * (k + 1) // 2)
-        kinds, walls = self._wall_kinds, self.cavity.walls()
+        kinds, walls = self._wall_kinds, self.interior.walls()
         kind = {face: number for number, (faces, _) in enumerate(kinds) for face in faces}
         return ContactTable(
             tuple(self._laws()),

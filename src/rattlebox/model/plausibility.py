@@ -49,7 +49,13 @@ def plausibility_notes(case: Case, *, signals: bool = True) -> tuple[str, ...]:
         for index, damper in enumerate(case.dampers)
         for warning in _check_damper(case, damper, " ".join(damper.label(index).split()))
     )
-    warnings = (*_check_structure(case), *(_check_signals(case) if signals else ()), *dampers)
+    room = (
+        f"{damper.label(index)}: {note.removeprefix('warning: ')}"
+        for index, damper in enumerate(case.particle_dampers)
+        for note in damper.interior.notes(float(damper.contents.radius.min()))
+        if note.startswith("warning: ")
+    )
+    warnings = (*_check_structure(case), *(_check_signals(case) if signals else ()), *dampers, *room)
     about_structure = (*case.structure.notes(), *(case.structure.base_notes() if case.base else ()))
     notes = (*(f"note: {note}" for note in about_structure), *_note_assumptions(case))
     return (*notes, *(f"warning: {warning}" for warning in warnings))
@@ -70,7 +76,10 @@ def _note_assumptions(case: Case) -> Iterator[str]:
 
     for index, damper in enumerate(case.particle_dampers):
         name = " ".join(damper.label(index).split())
-        yield from (f"note: {name}: {note}" for note in damper.packing.notes())
+        room = damper.interior.notes(float(damper.contents.radius.min()))
+        yield from (
+            f"note: {name}: {note}" for note in (*damper.packing.notes(), *room) if not note.startswith("warning: ")
+        )
 
 
 def _check_peaks(case: Case) -> Iterator[str]:
@@ -265,7 +274,7 @@ def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) 
         materials = [*(species.material for species in damper.particles), damper.wall]
         diameters = [2 * float(damper.contents.radius.max())]
         mass = float(damper.contents.mass.sum())
-        fill_ratio = float(np.sum(4 / 3 * np.pi * damper.contents.radius**3)) / damper.cavity.volume
+        fill_ratio = float(np.sum(4 / 3 * np.pi * damper.contents.radius**3)) / damper.interior.volume
         if 0 < fill_ratio < _SMALLEST_FILL_RATIO:
             yield f"the fill ratio of {name} is {fill_ratio:.2g}, less than usual; check the sizes and their units"
         frictions = [entry.friction.coefficient for entry in damper.contact_table.entries if entry.friction]

@@ -126,7 +126,7 @@ def _solid() -> Style:
 @draw_damper.register
 def _draw_particle_damper(damper: ParticleDamper, axes: Axes) -> None:
     """Draw a cavity from the front (along y) to scale, with its particles and dimensions."""
-    cavity = damper.cavity
+    cavity = damper.interior
     axes.set_aspect("equal")
     axes.set_axis_off()
     half_x, half_z = (0.5 * cavity.extent(np.array(direction)) for direction in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
@@ -156,7 +156,7 @@ def _contents(damper: ParticleDamper) -> list[str]:
     size = amount(2 * float(radii.min()), "m")
     if not math.isclose(radii.min(), radii.max()):
         size += f" to {amount(2 * float(radii.max()), 'm')}"
-    share = float((4 / 3 * math.pi * radii**3).sum()) / damper.cavity.volume
+    share = float((4 / 3 * math.pi * radii**3).sum()) / damper.interior.volume
     mass = amount(float(damper.contents.mass.sum()), "kg")
     balls = counted(len(radii), f"{joined(names)} ball")
     return [f"{balls} of {size}", f"{mass}, {amount(share, '%', 3)} of the volume"]
@@ -178,7 +178,7 @@ def _rgb(colour: str) -> tuple[float, ...]:
 
 def _draw_level(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
     """Draw the level of a bed of many particles."""
-    radii, cavity = damper.contents.radius, damper.cavity
+    radii, cavity = damper.contents.radius, damper.interior
     filled = float((4 / 3 * math.pi * radii**3).sum()) / _PACKED
     rng = np.random.default_rng(0)
     # The level below which this share of the cavity lies, from random points inside.

@@ -30,7 +30,8 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import progress_bar
 
-from ..model.cavities import AnyCavity, Cavity
+from ..model.any_cavity import AnyCavity
+from ..model.cavities import Cavity
 from ..results import Run
 from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots

@@ -17,7 +17,7 @@ from rattlebox.prepare.settle import VOLUME_POINTS, start_positions
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rattlebox.model.cavities import AnyCavity
+    from rattlebox.model.any_cavity import AnyCavity
     from rattlebox.model.particle_damper import ParticleDamper
 
     Array = NDArray[np.float64]
@@ -60,7 +60,7 @@ def bed_level(damper: ParticleDamper, positions: Array) -> tuple[float, float]:
     top of the highest layer.
     """
     up, volume = np.asarray(damper.up), damper.contents.radius**3
-    heights, centroids = _levels(damper.cavity, tuple(up.tolist()))
+    heights, centroids = _levels(damper.interior, tuple(up.tolist()))
     centre = float(volume @ (positions @ up) / volume.sum())
     below = int(np.searchsorted(centroids, centre))
     top = heights[min(below, heights.size - 1)]
@@ -153,7 +153,7 @@ def measure_bed(damper: ParticleDamper) -> BedMeasures:
     """
     with at("packing"):
         positions = start_positions(damper)
-    cavity, contents = damper.cavity, damper.contents
+    cavity, contents = damper.interior, damper.contents
     fill_ratio = 4 / 3 * math.pi * float(np.sum(contents.radius**3)) / cavity.volume
     fill, height = (math.nan, math.nan) if damper.up is None else bed_level(damper, positions)
     bulk, error = _bulk_density(damper, positions, height)
@@ -171,7 +171,7 @@ def measure_bed(damper: ParticleDamper) -> BedMeasures:
 
 def _bulk_density(damper: ParticleDamper, positions: Array, height: float) -> tuple[float, float]:
     """Return the density in the bulk and its standard error; NaN if there is no bulk."""
-    cavity, radii = damper.cavity, damper.contents.radius
+    cavity, radii = damper.interior, damper.contents.radius
     margin = MARGIN * 2 * float(radii.max())
     points = cavity.spread(BULK_POINTS)
     inside = cavity.depth(points) > margin

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -19,7 +21,7 @@ from rattlebox.prepare.laws import pack_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
 from rattlebox.prepare.periodic import periodic_notes
 from rattlebox.prepare.pressed import pressed_notes
-from rattlebox.prepare.settle import pack_walls, settle, start_positions
+from rattlebox.prepare.settle import pack_solids, pack_walls, settle, start_positions
 from rattlebox.prepare.softening import ENDURING, cavity_motion, choose_softening
 from rattlebox.prepare.time_step import (
     Step,
@@ -169,14 +171,25 @@ def _shapes(case: Case) -> list[Array]:
 def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | None) -> list[Array]:
     """Return the initial positions of the particles of each damper; settled ones are taken from `known` if it is given."""
     positions = []
+    beds = {} if known is not None else _beds(case)
     for index, (damper, shape) in enumerate(zip(case.particle_dampers, shapes, strict=True)):
         if known is not None and damper.packing.is_computed:
             position = known[index]
         else:
             with at(*(("dampers", index) if len(shapes) > 1 else ("damper",)), "packing"):
-                position = start_positions(damper) + case.modes.q0 @ shape
+                start = beds[index].result() if index in beds else start_positions(damper)
+                position = start + case.modes.q0 @ shape
         positions.append(_array(position))
     return positions
+
+
+def _beds(case: Case) -> dict[int, Future[Array]]:
+    """Compute the beds of several dampers in parallel, by the index of the damper; each has its own random numbers."""
+    computed = {index: damper for index, damper in enumerate(case.particle_dampers) if damper.packing.is_computed}
+    if len(computed) < 2:
+        return {}
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        return {index: pool.submit(start_positions, damper) for index, damper in computed.items()}
 
 
 def _fills(
@@ -184,14 +197,16 @@ def _fills(
 ) -> tuple[dict[str, float], list[str]]:
     """Return the fills of all cavities together, and notes on beds; positions are relative to the cavities."""
     dampers = case.particle_dampers
-    volume = sum(damper.cavity.volume for damper in dampers)
+    volume = sum(damper.interior.volume for damper in dampers)
     solid = sum(4 / 3 * math.pi * float(np.sum(damper.contents.radius**3)) for damper in dampers)
     fills = {"fill_ratio": solid / volume}
     notes: list[str] = []
     beds = [math.nan for _ in dampers]
     if all(damper.packing.is_computed and damper.up is not None for damper in dampers):
         beds = [bed_level(damper, centres)[0] for damper, centres in zip(dampers, positions, strict=True)]
-        fills["bed_fill"] = sum(bed * damper.cavity.volume for bed, damper in zip(beds, dampers, strict=True)) / volume
+        fills["bed_fill"] = (
+            sum(bed * damper.interior.volume for bed, damper in zip(beds, dampers, strict=True)) / volume
+        )
         for index, (damper, bed) in enumerate(zip(dampers, beds, strict=True)):
             notes += bed_note(damper, damper.label(index), bed)
     for index, (damper, bed, acceleration) in enumerate(zip(dampers, beds, accelerations, strict=True)):
@@ -233,11 +248,12 @@ def _without_particles(case: Case) -> Array:
 
 def _cavity(damper: ParticleDamper, shape: Array, table: ContactTable, first: int, position: Array) -> _core.Cavity:
     """Pack a cavity and its particles; `first` is the index of its first pair law in the list of the problem."""
-    contents, start = damper.contents, damper.start
+    contents, start, walls = damper.contents, damper.start, damper.interior.walls()
     return _core.Cavity(
         shape=_array(shape),
-        walls=pack_walls(damper.cavity.walls(), table.wall_kind),
-        period=damper.cavity.period,
+        walls=pack_walls(walls, table.wall_kind),
+        solids=pack_solids(walls, table.wall_kind),
+        period=damper.interior.period,
         position=position,
         velocity=_array(start.velocity),
         spin=_array(start.spin),

@@ -25,7 +25,7 @@ def periodic_notes(case: Case, damper: ParticleDamper, shape: NDArray[np.float64
 
     `shape`: displacement of the cavity for each mode, (m, 3).
     """
-    period = damper.cavity.period
+    period = damper.interior.period
     if not period.any():
         return
     signals = (*case.base, *case.shaker_motion)

@@ -29,16 +29,16 @@ def pressed_notes(damper: ParticleDamper, table: ContactTable, speed: float, nam
         return
     contents, centres = damper.contents, damper.start.position
     radii, masses, species = contents.radius, contents.mass, contents.species
-    first, second, apart = overlapping(centres, radii, period=damper.cavity.period)
+    first, second, apart = overlapping(centres, radii, period=damper.interior.period)
     # One contact for each kind of pair decides, since the law and its usual overlap depend on the kind only.
-    room = damper.cavity.room(centres, radii)
+    room = damper.interior.room(centres, radii)
     pairs = [
         (float(-apart[k]), int(first[k]), int(second[k]))
         for k in _deepest(
             apart, np.minimum(radii[first], radii[second]), table.particle_entry[species[first], species[second]]
         )
     ]
-    wall_entry = table.wall_entry[species, table.wall_kind[damper.cavity.nearest_wall(centres)]]
+    wall_entry = table.wall_entry[species, table.wall_kind[damper.interior.nearest_wall(centres)]]
     walls = [(float(-room[k]), int(k), -1) for k in _deepest(room, radii, wall_entry)]
     deepest = 0.0
     for depth, one, other in pairs + walls:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from rattlebox._util.narrow import instance, present
 from rattlebox.core import _core
-from rattlebox.model.cavities import Walls
 from rattlebox.model.errors import Hint
 from rattlebox.model.packing import (
     TOUCHING,
@@ -29,7 +28,8 @@ from rattlebox.model.space import components_along, to_global, to_nearest_image
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rattlebox.model.cavities import AnyCavity
+    from rattlebox.model.any_cavity import AnyCavity
+    from rattlebox.model.cavities import Walls
     from rattlebox.model.particle_damper import ParticleDamper
 
     Array = NDArray[np.float64]
@@ -60,7 +60,8 @@ def start_positions(damper: ParticleDamper) -> Array:
 
 def bed_key(damper: ParticleDamper) -> str:
     """Return a text that is equal for dampers with the same settled bed."""
-    return damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
+    fields = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"})
+    return f"{fields} {damper.interior.digest} {_friction(damper)!r}"
 
 
 @overload
@@ -76,18 +77,19 @@ def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -
     """
     packing = instance(damper.packing, Bed)
     key = bed_key(damper)
-    if key in _beds:
-        return _beds[key].copy()
+    known = _beds.get(key)
+    if known is not None:
+        return known.copy()
     radii = damper.contents.radius
     try:
-        places = compact(damper, proceed) if packing.is_dense else insert(damper.cavity, radii, packing.seed, proceed)
+        places = compact(damper, proceed) if packing.is_dense else insert(damper.interior, radii, packing.seed, proceed)
         if damper.up is not None:
             bed = _SettlingBed(damper, proceed)
             places = bed.expand(bed.fall(places, packing.at_rest))
     except _Stopped:
         return None
-    places = damper.cavity.wrapped(places)
-    check_packing(damper.cavity, places, radii)
+    places = damper.interior.wrapped(places)
+    check_packing(damper.interior, places, radii)
     for oldest in list(_beds)[: 1 - CACHED_BEDS]:
         _beds.pop(oldest, None)
     _beds[key] = places.copy()
@@ -111,7 +113,7 @@ def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) 
     Below the lid, particles have the density of `rattlebox.model.packing.random_density`. If they cannot be inserted, the
     volume below the lid grows by 3 % until they can. `push_apart` names the method and its source.
     """
-    cavity, radii, seed = damper.cavity, damper.contents.radius, instance(damper.packing, Bed).seed
+    cavity, radii, seed = damper.interior, damper.contents.radius, instance(damper.packing, Bed).seed
     fill = 1.0 if damper.up is None else _compacted_fill(cavity, radii, damper.up)
     while fill < 1:
         try:
@@ -141,9 +143,7 @@ def _under_lid(cavity: AnyCavity, up: Array, fill: float) -> Walls:
     """Return the walls of a cavity with a lid perpendicular to gravity, above a share of the volume."""
     walls = cavity.walls()
     level = np.quantile(components_along(cavity.spread(VOLUME_POINTS), up), fill)
-    return Walls(
-        (*walls.names, "lid"), np.vstack([walls.axis, up]), np.append(walls.offset, level), (*walls.form, "plane")
-    )
+    return walls.with_lid(up, float(level))
 
 
 def insert(
@@ -237,6 +237,7 @@ def push_apart(
         deep = apart < 0
         first, second, apart = near[0][deep], near[1][deep], apart[deep]
         depth = walls.distances(places) - grown[:, None]
+        solids = _off_solids(walls, places, grown, depth)
         small = np.minimum(grown[first], grown[second])
         # Spheres were enlarged, so that the end may leave half of the enlargement: true sizes then have no overlap.
         if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * enlargement:
@@ -245,6 +246,7 @@ def push_apart(
         # Two centres at the same place have no direction; any one separates them.
         push = -apart[:, None] * np.where(length > 0, between / np.maximum(length, 1e-300), [0.0, 0.0, 1.0])
         force = _off_walls(walls, places, depth)
+        np.add.at(force, *solids)
         np.add.at(force, first, push)
         np.add.at(force, second, -push)
         around = np.bincount(first, minlength=radii.size) + np.bincount(second, minlength=radii.size)
@@ -271,7 +273,7 @@ def push_apart(
     )
 
 
-def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
+def _off_walls(walls: Walls, places: Array, depth: Array) -> Array:
     """Return displacements that move spheres out of the walls."""
     move = np.zeros_like(places)
     for k, (axis, form) in enumerate(zip(walls.axis, walls.form, strict=True)):
@@ -285,15 +287,24 @@ def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
     return move
 
 
+def _off_solids(walls: Walls, places: Array, radii: Array, depth: Array) -> tuple[NDArray[np.int64], Array]:
+    """Return spheres that overlap solids, once for each contact, and displacements that move them out, (k, 3) [m]."""
+    near = np.flatnonzero((depth[:, walls.offset.size :] < 0).any(axis=1))
+    if not near.size:
+        return near, np.zeros((0, 3))
+    number, normal, distance = walls.solids.contacts(places[near], radii[near])
+    return near[number], (distance - radii[near[number]])[:, None] * normal
+
+
 class _SettlingBed:
     """Slightly enlarged particles with soft, strongly damped contacts in a cavity at rest."""
 
     def __init__(self, damper: ParticleDamper, proceed: Callable[[], bool]) -> None:
         self._proceed = proceed
-        self._contents, self._cavity = damper.contents, damper.cavity
+        self._contents, self._cavity = damper.contents, damper.interior
         self._gravity = np.array(damper.gravity)
         self._pull = float(np.linalg.norm(self._gravity))
-        height = damper.cavity.extent(present(damper.up))
+        height = damper.interior.extent(present(damper.up))
         self._fall = math.sqrt(2 * height / self._pull)
         small = float(self._contents.radius.min())
         # The largest overlap of a linear contact is the speed times the duration over pi.
@@ -351,7 +362,8 @@ class _SettlingBed:
         walls = self._cavity.walls()
         cavity = _core.Cavity(
             shape=np.zeros((0, 3)),
-            walls=pack_walls(walls, np.zeros(walls.offset.size, int)),
+            walls=pack_walls(walls, np.zeros(len(walls.names), int)),
+            solids=pack_solids(walls, np.zeros(len(walls.names), int)),
             period=self._cavity.period,
             position=places,
             velocity=np.zeros_like(places),
@@ -395,12 +407,21 @@ class _SettlingBed:
 
 
 def pack_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
-    """Pack walls for the core, each with the index of its material."""
+    """Pack walls for the core without solids, each with the index of its material."""
     return [
         _core.Wall(form=_core.WallForm[form], axis=axis, offset=float(offset), material=int(number), label=int(label))
         for form, axis, offset, number, label in zip(
-            walls.form, walls.axis, walls.offset, material, walls.label_numbers, strict=True
+            walls.form, walls.axis, walls.offset, material, walls.label_numbers, strict=False
         )
+    ]
+
+
+def pack_solids(walls: Walls, material: NDArray[np.int_]) -> list[_core.Solid]:
+    """Pack bodies and surfaces of triangles for the core, each with the index of its material."""
+    plain = walls.offset.size
+    return [
+        solid.packed(int(number), int(label))
+        for solid, number, label in zip(walls.solids.each, material[plain:], walls.label_numbers[plain:], strict=True)
     ]
 
 

@@ -114,14 +114,14 @@ def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> flo
     contents, table = damper.contents, damper.contact_table
     species = int(np.bincount(contents.species, contents.mass).argmax())
     if contents.radius.size == 1:  # It rests on the floor.
-        lowest = 0.5 * damper.cavity.extent(gravity / size) * gravity[None] / size
-        entry = table.at_wall(species, int(damper.cavity.nearest_wall(lowest)[0]))
+        lowest = 0.5 * damper.interior.extent(gravity / size) * gravity[None] / size
+        entry = table.at_wall(species, int(damper.interior.nearest_wall(lowest)[0]))
     else:
         entry = table.entries[table.particle_entry[species, species]]
     factor = damper.softening_factor if softening is None else softening
     diameter = 2 * float(contents.radius[contents.species == species].mean())
     volume = 4 / 3 * math.pi * float((contents.radius**3).sum())
-    area = damper.cavity.volume / damper.cavity.extent(gravity / size)
+    area = damper.interior.volume / damper.interior.extent(gravity / size)
     depth = max(diameter, volume / (PACKED * area))
     density = PACKED * float(contents.mass.sum()) / volume
     neighbours = 4.6

@@ -109,7 +109,7 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
     for damper, velocity in zip(case.particle_dampers, cavity_velocities, strict=True):
         gravity = np.array(damper.gravity)
         size = float(np.linalg.norm(gravity))
-        fall = math.sqrt(2 * size * damper.cavity.extent(gravity / size)) if size else 0.0
+        fall = math.sqrt(2 * size * damper.interior.extent(gravity / size)) if size else 0.0
         start = 2 * float(np.linalg.norm(damper.start.velocity, axis=1).max())
         rest = np.zeros((1, 3))  # particles at rest relative to the base
         speeds.append(_span(np.vstack([rest, velocity])) + _span(base) + fall + start)

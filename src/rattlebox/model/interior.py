@@ -1,0 +1,161 @@
+"""The space for particles in a cavity with bodies inside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from .bodies import MOST_BODIES, Body, bodies_words
+from .cavities import Cavity, Walls
+from .elementwise import Vector
+from .errors import Hint
+from .necks import neck_notes, widest_sphere
+from .solids import Solid, Solids
+from .surfaces import Surface
+
+
+class Interior(Cavity):
+    """A cavity less the bodies inside."""
+
+    kind: str
+    shape: Cavity
+    bodies: tuple[Body, ...]
+
+    @classmethod
+    def of(cls, shape: Cavity, bodies: Sequence[Body]) -> Cavity:
+        """Return a cavity with bodies; the cavity itself without them."""
+        return cls.model_construct(kind=shape.kind, shape=shape, bodies=tuple(bodies)) if bodies else shape
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """The bodies, with names of their own; an array of bodies has one name."""
+        solids: list[Solid] = []
+        names = list(self.shape.walls().names)
+        for each in self.bodies:
+            name, number = each.label, 1
+            while name in names:
+                number += 1
+                name = f"{each.label}{number}"
+            names.append(name)
+            solids += [replace(solid, name=name) for solid in each.solids(self.shape)]
+        if len(solids) > MOST_BODIES:
+            raise Hint(f"{len(solids)} bodies are too many", f"at most {MOST_BODIES}", ["bodies"])
+        return tuple(solids)
+
+    @cached_property
+    def _walls(self) -> Walls:
+        walls = self.shape.walls()
+        names = (*walls.names, *(solid.name for solid in self.solids))
+        return replace(walls, names=names, solids=Solids((*walls.solids.each, *self.solids)))
+
+    def walls(self) -> Walls:
+        """Return the walls of the cavity and the bodies."""
+        return self._walls
+
+    @cached_property
+    def _shares(self) -> list[float]:
+        """Share of the volume of each body that is in the cavity, and in no body before it."""
+        shares = []
+        for k, solid in enumerate(self.solids):
+            low, high = solid.bounds
+            before = [
+                other for other in self.solids[:k] if (other.bounds[0] < high).all() and (other.bounds[1] > low).all()
+            ]
+            points = solid.samples
+            free = self.shape.depth(points) >= 0
+            for other in before:
+                free &= ~other.is_within(points)
+            shares.append(float(free.mean()))
+        return shares
+
+    @cached_property
+    def volume(self) -> float:
+        """Volume of the space for particles [m^3]; a body that is partly in a wall or another body counts by points."""
+        taken = sum(share * solid.volume for share, solid in zip(self._shares, self.solids, strict=True))
+        return self.shape.volume - taken
+
+    @property
+    def lengths(self) -> Vector:
+        """Edges of the bounding box of the cavity, (3,) [m]."""
+        return self.shape.lengths
+
+    @property
+    def inside(self) -> Vector:
+        """Zeros: no box is known to be free, (3,) [m]."""
+        return np.zeros(3)
+
+    @property
+    def frame(self) -> Vector:
+        """Axes of the cavity, (3, 3)."""
+        return self.shape.frame
+
+    @property
+    def period(self) -> Vector:
+        """That of the cavity, (3,) [m]."""
+        return self.shape.period
+
+    def surface(self) -> Surface:
+        """Return the polygons of the cavity and of the bodies."""
+        parts = [self.shape.surface(), *(solid.surface() for solid in self.solids)]
+        starts = np.cumsum([0, *(len(part.points) for part in parts)])
+        polygons = (
+            tuple(int(corner + start) for corner in polygon)
+            for part, start in zip(parts, starts, strict=False)
+            for polygon in part.polygons
+        )
+        return Surface(np.concatenate([part.points for part in parts]), tuple(polygons))
+
+    def outline(self, view: Vector) -> list[Vector]:
+        """Return the lines of the cavity and of the bodies."""
+        bodies = [line for solid in self.solids for line in solid.surface().lines(view[2])]
+        return [*self.shape.outline(view), *bodies]
+
+    def extent(self, direction: Vector) -> float:
+        """Return the width of the cavity along a unit vector [m]."""
+        return self.shape.extent(direction)
+
+    @property
+    def surface_over_volume(self) -> float:
+        """Area of walls and bodies over the volume [1/m]."""
+        area = self.shape.surface_over_volume * self.shape.volume
+        area += sum(share * solid.area for share, solid in zip(self._shares, self.solids, strict=True))
+        return area / self.volume
+
+    def notes(self, radius: float) -> Iterator[str]:
+        """Yield notes on the bodies, and where spheres do not pass."""
+        for each in self.bodies:
+            yield from each.notes()
+        yield from neck_notes(self, radius)
+
+    @cached_property
+    def widest(self) -> float:
+        """Diameter of the largest sphere inside [m]."""
+        return 2 * widest_sphere(self)
+
+    @property
+    def digest(self) -> str:
+        """Text that differs for other walls or bodies."""
+        return " ".join([self.shape.digest, *(each.digest for each in self.bodies)])
+
+    def check(self) -> None:
+        """Raise if a body is outside of the cavity, or if the bodies leave no space."""
+        if self.shape.period.any():
+            raise Hint("a periodic cavity cannot contain bodies", "walls in place of periodic", ["bodies"])
+        for solid, share in zip(self.solids, self._shares, strict=True):
+            low, high = solid.bounds
+            reach = self.shape.depth(np.vstack([solid.samples, [low], [high]])).max()
+            if share == 0 and reach < 0:
+                raise Hint(
+                    f"the body {solid.name!r} is outside of the cavity",
+                    "a position relative to the centre of the cavity, in metres or with units",
+                    ["bodies"],
+                )
+        if not self.volume > 0 or self.widest <= 0:
+            raise Hint("the bodies fill the whole cavity", "smaller bodies", ["bodies"])
+
+    def words(self) -> str:
+        """Return a phrase about the cavity and its bodies."""
+        return f"{self.shape.words()}, {bodies_words(self.bodies)}"

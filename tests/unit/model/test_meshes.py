@@ -1,0 +1,228 @@
+"""Surfaces of triangles and bodies in cases: files, units, checks and messages.
+
+No cavity had a file or bodies, so that no test could see what a surface with a hole or a wrong unit does.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from support import triangle_meshes
+
+import rattlebox as rb
+from rattlebox.model.plausibility import plausibility_notes
+from rattlebox.prepare.settle import start_positions
+
+BOX = triangle_meshes.box((30, 20, 25), 2)
+
+
+def box(vertices=BOX[0], faces=BOX[1], **options):
+    """Return a box of triangles in mm."""
+    return rb.Mesh(vertices=vertices, faces=faces, **{"unit": "mm", **options})
+
+
+def damper(cavity=None, **options):
+    """Return a damper of ten balls of 3 mm."""
+    usual = {
+        "particles": rb.Particles(material="steel", diameter="3 mm", count=10),
+        "contact": rb.Tsuji(restitution=0.7),
+        "friction": 0.3,
+        "packing": rb.Lattice(seed=1),
+    }
+    return rb.ParticleDamper(cavity=cavity or rb.Box(size=("30 mm", "20 mm", "25 mm")), **{**usual, **options})
+
+
+def test_measures_of_surface_are_those_of_its_shape():
+    """Volume, area, bounding box and distances of a box of triangles are those of the box."""
+    exact, cavity = rb.Box(size=("30 mm", "20 mm", "25 mm")), box()
+    assert cavity.volume == pytest.approx(exact.volume, rel=1e-12)
+    assert cavity.surface_over_volume == pytest.approx(exact.surface_over_volume, rel=1e-12)
+    assert np.allclose(cavity.lengths, exact.lengths, rtol=1e-12)
+    assert cavity.extent(np.array([0.6, 0.8, 0.0])) == pytest.approx(exact.extent(np.array([0.6, 0.8, 0.0])), rel=1e-12)
+    points = np.random.default_rng(1).uniform(-0.02, 0.02, (2000, 3))
+    inside = exact.depth(points) > 0
+    assert np.array_equal(cavity.depth(points) > 0, inside)
+    assert np.allclose(cavity.depth(points)[inside], exact.depth(points)[inside], atol=1e-15)
+    assert 2 * 0.01 * 0.99 < cavity.widest <= 0.02 * (1 + 1e-9)
+    assert "30 x 20 x 25 mm" in cavity.words()
+
+
+@pytest.mark.parametrize("ending", [".stl", ".obj", ".ply", ".off", ".step"])
+def test_surface_is_read_from_file(tmp_path, ending):
+    """Files of each format give the box that was written, with the unit that is stated."""
+    trimesh = pytest.importorskip("trimesh")
+    file = tmp_path / f"box{ending}"
+    unit = {"unit": "mm"}
+    if ending == ".step":
+        pytest.importorskip("cascadio")
+        file.write_text(triangle_meshes.step_box((30, 20, 25)))
+        unit = {}
+    else:
+        trimesh.Trimesh(BOX[0] + (7, 8, 9), BOX[1], process=False).export(file)
+    cavity = rb.Mesh(file=str(file), **unit)
+    assert cavity.volume == pytest.approx(15e-6, rel=1e-6)
+    centre = (0.015, 0.01, 0.0125) if ending == ".step" else (0.007, 0.008, 0.009)
+    assert np.allclose(cavity.centre, centre, atol=1e-8)
+    case = rb.Case(structure=rb.Fixed(), damper=damper(cavity), duration="1 ms")
+    case.to_file(tmp_path / "case.toml")
+    assert rb.Case.from_file(tmp_path / "case.toml").dampers[0].cavity.volume == cavity.volume
+
+
+def open_box():
+    """Return a box that lacks a triangle."""
+    return {"faces": BOX[1][1:]}
+
+
+def turned_triangle():
+    """Return a box with one triangle inside out."""
+    faces = BOX[1].copy()
+    faces[3] = faces[3][::-1]
+    return {"faces": faces}
+
+
+def two_boxes(shift):
+    """Return two boxes, the second smaller and displaced."""
+    vertices = np.concatenate([BOX[0], 0.4 * BOX[0] + shift])
+    return {"vertices": vertices, "faces": np.concatenate([BOX[1], BOX[1] + len(BOX[0])])}
+
+
+def flat_triangle():
+    """Return a box in which an edge is divided on one side only, with a triangle without area beside it."""
+    vertices, faces = triangle_meshes.box((30, 20, 25), 1)
+    merged, number = np.unique(vertices, axis=0, return_inverse=True)
+    faces = number.reshape(-1)[faces]
+    a, b, c = faces[0]
+    middle = len(merged)
+    return {
+        "vertices": np.concatenate([merged, [(merged[a] + merged[b]) / 2]]),
+        "faces": np.concatenate([faces[1:], [[a, middle, c], [middle, b, c], [a, b, middle]]]),
+    }
+
+
+REFUSED = {
+    "open": (open_box, "open: 3 edges"),
+    "inside out": (turned_triangle, "normals of the surface are not consistent"),
+    "crossing": (lambda: two_boxes((12, 0, 0)), "crosses itself"),
+    "two cavities": (lambda: two_boxes((40, 0, 0)), "2 shells"),
+    "flat": (flat_triangle, "no area"),
+    "no unit": (lambda: {"unit": None}, "the unit of the coordinates is needed"),
+    "no length": (lambda: {"unit": "kg"}, "'kg' is not a unit of length"),
+    "no triangles": (lambda: {"faces": np.zeros((0, 3))}, "no triangles"),
+    "a corner that is missing": (lambda: {"faces": [[0, 1, 9999]]}, "corner 9999"),
+    "a table of two columns": (lambda: {"vertices": [[0, 1], [1, 2]]}, "rows of 3 finite numbers"),
+    "an angle": (lambda: {"smooth_angle": 3.0}, "0 to 90 degrees"),
+}
+
+
+@pytest.mark.parametrize("fault", list(REFUSED))
+def test_faulty_surface_is_refused(fault):
+    """A surface through which particles would leave, or without an inside, is refused with a place and advice."""
+    values, text = REFUSED[fault]
+    with pytest.raises(rb.CaseError, match="(?s)" + text + ".*try: "):
+        box(**values())
+
+
+def test_inverted_surface_is_turned_around_with_a_warning():
+    """A surface whose normals all point inward is the same cavity, and a run says so."""
+    cavity = box(faces=BOX[1][:, ::-1])
+    assert cavity.volume == pytest.approx(15e-6)
+    assert cavity.depth(np.zeros((1, 3)))[0] == pytest.approx(0.01)
+    case = rb.Case(structure=rb.Fixed(), damper=damper(cavity), duration="1 ms")
+    assert any(note.startswith("warning") and "point inward" in note for note in plausibility_notes(case))
+
+
+def test_inner_shell_is_a_body():
+    """A shell inside the largest one bounds a body, whichever way its normals point."""
+    for turn in (1, -1):
+        values = two_boxes((0, 0, 0))
+        values["faces"][len(BOX[1]) :] = values["faces"][len(BOX[1]) :, ::turn]
+        cavity = box(**values)
+        assert cavity.volume == pytest.approx(15e-6 * (1 - 0.4**3))
+        assert cavity.depth(np.zeros((1, 3)))[0] == pytest.approx(-0.004)
+        assert "1 body inside" in cavity.words()
+
+
+@pytest.mark.parametrize(
+    ("body", "volume"),
+    [
+        (rb.RodBody(diameter="8 mm"), math.pi / 4 * 8**2 * 25),
+        (rb.RodBody(diameter="8 mm", axis="x", length="10 mm"), math.pi / 4 * 8**2 * 10),
+        (rb.PlateBody(size=("2 mm", "10 mm", "10 mm"), angle="30 deg"), 200.0),
+        (rb.PlateBody(size=("2 mm", "80 mm", "10 mm")), 2 * 20 * 10),
+        (rb.BallBody(diameter="6 mm", position=("15 mm", 0, 0)), math.pi / 6 * 6**3 / 2),
+        (rb.BodyRing(body=rb.RodBody(diameter="2 mm"), count=5, radius="6 mm"), 5 * math.pi * 25),
+        (rb.BodyRow(body=rb.BallBody(diameter="2 mm"), count=3, step=("5 mm", 0, 0)), 3 * math.pi / 6 * 8),
+        (rb.BodyCross(thickness="1 mm"), (30 + 20 - 1) * 25),
+    ],
+)
+def test_volume_is_that_without_bodies(body, volume):
+    """The volume of a cavity lacks that of the bodies, as far as they are inside and not in each other."""
+    assert 1e9 * damper(bodies=[body]).interior.volume == pytest.approx(15e3 - volume, rel=2e-5)
+
+
+def test_honeycomb_has_walls_between_cells():
+    """Seven cells have thirty walls, and the middle of each cell is half a cell from them."""
+    comb = rb.Honeycomb(cell="10 mm", thickness="1 mm", rings=1)
+    cavity = damper(rb.Cylinder(diameter="60 mm", length="10 mm"), bodies=[comb]).interior
+    assert len(cavity.solids) == 30
+    middles = np.column_stack([comb.centres(), np.zeros(7)])
+    assert np.allclose(cavity.depth(middles), 4.5e-3, atol=1e-12)
+    assert cavity.walls().labels[-1] == "honeycomb"
+
+
+@pytest.mark.parametrize(
+    ("bodies", "text"),
+    [
+        ([rb.BallBody(diameter="4 mm", position=("50 mm", 0, 0))], "outside of the cavity"),
+        ([rb.BallBody(diameter="60 mm")], "fill the whole cavity"),
+        ([rb.RodBody(diameter="18 mm"), rb.PlateBody(size=("1 mm", "40 mm", "40 mm"))], "larger than the cavity"),
+    ],
+)
+def test_bodies_that_leave_no_space_are_refused(bodies, text):
+    """Bodies outside of the cavity, or that leave no room for a particle, are refused."""
+    particles = rb.Particles(material="steel", diameter="9 mm", count=1)
+    with pytest.raises(rb.CaseError, match="(?s)" + text):
+        damper(bodies=bodies, particles=particles)
+
+
+def test_necks_narrower_than_particles_are_noted():
+    """A run notes into how many parts bodies divide the space, and only for particles that cannot pass."""
+    shelf = rb.PlateBody(size=("2 mm", "16 mm", "30 mm"))
+    for diameter, divided in (("3 mm", True), ("1.2 mm", False)):
+        notes = list(damper(bodies=[shelf]).interior.notes(float(diameter.split()[0]) / 2e3))
+        assert any("2 parts" in note for note in notes) == divided
+
+
+@pytest.mark.parametrize("packing", [rb.Lattice(seed=1), rb.Settled(seed=1), rb.Compacted(seed=1)])
+def test_packings_avoid_walls_and_bodies(packing):
+    """Packings place all particles inside of a surface and outside of bodies."""
+    for one in (
+        damper(box(), packing=packing, particles=rb.Particles(material="steel", diameter="3 mm", count=60)),
+        damper(
+            rb.Cylinder(diameter="30 mm", length="20 mm"),
+            bodies=[rb.RodBody(diameter="10 mm")],
+            packing=packing,
+            particles=rb.Particles(material="steel", diameter="3 mm", count=60),
+        ),
+    ):
+        positions = start_positions(one)
+        assert one.interior.room(positions, one.contents.radius).min() > -1e-9 * 1.5e-3
+
+
+def test_wall_of_body_has_its_own_results():
+    """A body is a wall with its own name, material and force."""
+    case = rb.Case(
+        structure=rb.Fixed(),
+        damper=damper(
+            bodies=[rb.PlateBody(size=("30 mm", "20 mm", "5 mm"), position=(0, 0, "-10 mm"), name="block")],
+            packing=rb.Positions(positions=[[x, 0, -6e-3] for x in (-9e-3, 0, 9e-3)]),
+            particles=rb.Particles(material="steel", diameter="3 mm"),
+        ),
+        duration="30 ms",
+        output=rb.Output(walls=True),
+    )
+    run = rb.simulate(case)
+    assert run.ok
+    wall = list(run.arrays.walls).index("block")
+    weight = 9.81 * run.arrays.particles.mass.sum()
+    assert run.arrays.wall_force[-1, wall, 2] == pytest.approx(-weight, rel=0.05)
