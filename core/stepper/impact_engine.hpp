@@ -114,6 +114,10 @@ public:
             e.kinetic += 0.5 * m * v[i] * v[i];
             e.potential -= problem.dampers[d].gravity * m * x[i];
         }
+        // A stop pushes with the change of the impulse that it has received, as a damper does by its
+        // momentum.
+        for (std::size_t d = problem.first_stop(); d < problem.dampers.size(); ++d)
+            e.dampers[d].momentum[0] = -y[problem.motion_size() + d - problem.first_stop()];
         e.work = s.load_work.back() + s.base_work.back(), e.loss = s.viscous.back();
         for (std::size_t d = 0; d < problem.dampers.size(); ++d)
             e.elastic += s.stored[d], e.loss += s.normal[d] + s.plastic[d];

@@ -11,6 +11,7 @@
 // coefficients in the order of its `fields`, and its tables. All numbers are little-endian.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -152,6 +153,9 @@ template <class Pack> void pack(Pack& p, rattlebox::Problem& problem) {
         p.number(damper.clearance), p.number(damper.gravity);
         pack(p, damper.shape);
     });
+    if constexpr (Pack::reads)
+        problem.stop_count = static_cast<int>(std::count_if(problem.dampers.begin(), problem.dampers.end(),
+                                                            [](const Damper& d) { return d.is_stop(); }));
     p.list(problem.contacts, [&](Contact& contact) {
         p.integer(contact.damper), p.integer(contact.below), p.integer(contact.above);
         p.number(contact.mass);

@@ -3,6 +3,7 @@
 // endless loops.
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -90,7 +91,11 @@ inline void check(const rattlebox::Problem& problem, const Component& component)
     int first_ball = 0, first_contact = 0;
     for (std::size_t d = 0; d < problem.dampers.size(); ++d) {
         const Damper& damper = problem.dampers[d];
-        check(damper.first_ball == first_ball && damper.first_contact == first_contact && damper.balls >= 1);
+        // Stops, which have no balls, come after all dampers, and act on points that move.
+        check(damper.first_ball == first_ball && damper.first_contact == first_contact && damper.balls >= 0);
+        check(damper.is_stop() == (d >= problem.first_stop()));
+        check(!damper.is_stop() || std::any_of(damper.shape.begin(), damper.shape.end(),
+                                               [](real s) { return std::fabs(s) >= smallest_number; }));
         check(static_cast<std::size_t>(damper.balls) <= balls - static_cast<std::size_t>(first_ball));
         check(static_cast<std::size_t>(damper.balls) <
               problem.contacts.size() - static_cast<std::size_t>(first_contact));
@@ -100,11 +105,11 @@ inline void check(const rattlebox::Problem& problem, const Component& component)
             const Contact& contact = problem.contacts[static_cast<std::size_t>(first_contact + i)];
             check(contact.damper == static_cast<int>(d));
             check(contact.below == (i == 0 ? wall : first_ball + i - 1));
-            check(contact.above == (i == damper.balls ? wall : first_ball + i));
+            check(contact.above == (i < damper.balls ? first_ball + i : damper.is_stop() ? ground : wall));
             // An effective mass is at most that of the lighter body.
             check_positive(contact.mass);
             for (const int ball : {contact.below, contact.above})
-                if (ball != wall)
+                if (ball >= 0)
                     check(contact.mass <= 1.000001 * problem.ball_mass[static_cast<std::size_t>(ball)]);
             check_contact(contact.normal, contact.restitution);
             if (i < damper.balls)

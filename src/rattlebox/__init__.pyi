@@ -143,6 +143,7 @@ from rattlebox.studies.kinds.sweep import check_step as check_step
 from rattlebox.studies.kinds.sweep import compare as compare
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.maps.response_from_map import response_from_map as response_from_map
+from rattlebox.studies.notching import notch_with_dampers as notch_with_dampers
 from rattlebox.studies.orbits.find import find_orbit as find_orbit
 from rattlebox.studies.orbits.orbit import Orbit as Orbit
 from rattlebox.studies.run.stored import open_study as open_study

@@ -159,7 +159,8 @@ def fmu_and_notes(
     model = re.sub(r"\W", "_", path.stem)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
     signals = () if alone else (*case.loads, *case.base_acceleration())
-    variables = list(_variables(packed, input, tuple(map(_described, signals))))
+    stops = tuple(stop.name for stop in case.each_stop)
+    variables = list(_variables(packed, input, tuple(map(_described, signals)), stops))
     words: dict[str, object] = {"name": model, "variables": variables, "version": rattlebox.__version__, "token": token}
     words |= {"base_units": BASE_UNITS, "input_time": INPUT_TIME, "notes": packed.notes, "systems": list(libraries)}
     content = {
@@ -204,7 +205,9 @@ def _described(signal: Signal) -> str:
     return words
 
 
-def _variables(packed: PackedComponent, quantity: str, signals: tuple[str, ...]) -> Iterator[Variable]:
+def _variables(
+    packed: PackedComponent, quantity: str, signals: tuple[str, ...], stops: tuple[str, ...] = ()
+) -> Iterator[Variable]:
     """Yield the variables in their order in the file; `quantity` is the input of a damper alone."""
     if len(packed.inputs) > MOST_INPUTS or len(packed.dampers) > MOST_DAMPERS:
         raise Hint(f"an FMU has at most {MOST_INPUTS} inputs and {MOST_DAMPERS} dampers", "a smaller case")
@@ -236,7 +239,8 @@ def _variables(packed: PackedComponent, quantity: str, signals: tuple[str, ...])
             yield Variable(name, INPUT + number, unit, f"{description}{where}", "input", start=0.0)
     for number, damper in enumerate(packed.dampers):
         label = "" if packed.alone else f"_{_plain(damper)}"
-        yield from each(f"force{label}", FORCE + 3 * number, "N", "mean force on the structure in the last step")
+        text = "mean force with which the stop pushes" if damper in stops else "mean force on the structure"
+        yield from each(f"force{label}", FORCE + 3 * number, "N", f"{text} in the last step")
         if packed.alone and packed.axes == 3:
             yield from each("moment", MOMENT, "N.m", "mean moment on the structure in the last step")
     for number, point in enumerate(packed.outputs):

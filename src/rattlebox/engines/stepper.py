@@ -34,7 +34,8 @@ class StepResult:
     ----------
     force
         Mean force of the damper on the structure: impulse / length of the step [N]. A number for an impact damper alone,
-        (3,) for a particle damper alone; with a structure (dampers,) or (dampers, 3).
+        (3,) for a particle damper alone; with a structure (dampers,) or (dampers, 3), and behind the dampers the stops of
+        the case, each with the force on its point.
     moment
         Mean moment on the structure about the attachment [N m], (3,); zero for impact dampers, whose balls move along a line
         through it. Only for a damper alone.
@@ -342,6 +343,8 @@ class Stepper:
         force: Any = self._core.force[:, 0] if self._packed.axes == 1 else self._core.force
         if self._packed.alone:
             force = float(force[0]) if self._packed.axes == 1 else force[0]
+        elif stops := self._case.each_stop:  # the core returns how strongly each pushes
+            force = np.concatenate([force[: -len(stops)], [-stop.sign for stop in stops] * force[-len(stops) :]])
         moment = self._core.moment[0] if len(self._core.moment) else np.zeros(3)  # a structure may have no damper
         return StepResult(force, moment, self._core.work, self._core.loss, self._core.stored)
 
@@ -368,6 +371,7 @@ class Stepper:
             number = member + sum(each.contents.radius.size for each in particles[:damper])
             where = f"Particle {number}, in {particles[damper].label(damper)!r},"
         else:
-            where = contact_name([balls[damper].label(damper)], [len(balls[damper].balls)], member)
+            counts = [len(each.balls) for each in balls] + [0] * len(self._case.each_stop)
+            where = contact_name([self._packed.dampers[damper]], [counts[damper]], member)
         softened = damper >= 0 and bool(particles) and particles[damper].softening_factor > 1
         return describe(status, self.time, where, value, self._case.method.kind, softened=softened)[1]

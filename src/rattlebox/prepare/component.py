@@ -59,7 +59,7 @@ class PackedComponent:
     alone: bool
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    dampers: tuple[str, ...]
+    dampers: tuple[str, ...]  # and behind them the stops
     axes: int
     notes: tuple[str, ...]
     prepared: Prepared | None = None
@@ -97,9 +97,12 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     """
     if not case.method.has_stepper:
         raise Hint(f"the method {case.method.kind} has no stepper", "method = EventDriven(), or Newton()")
-    refuse_stops(
-        case.stops, "a stepper has dampers and a structure without stops", "simulate(case), or a stepper without stops"
-    )
+    if alone:
+        refuse_stops(
+            case.stops,
+            "a damper alone has no structure that could meet a stop",
+            "alone=False, for the structure with them",
+        )
     if alone and len(_dampers(case)) != 1:
         raise Hint(f"a damper alone is needed, but the case has {len(_dampers(case))}", "a stepper for each of them")
     return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)
@@ -221,7 +224,8 @@ def _idle(problem: Any) -> Any:
 
 
 def _names(case: Case) -> tuple[str, ...]:
-    return tuple(damper.label(index) for index, damper in enumerate(_dampers(case)))
+    names = [damper.label(index) for index, damper in enumerate(_dampers(case))]
+    return (*names, *(stop.name for stop in case.each_stop))
 
 
 def _dampers(case: Case) -> Sequence[Damper]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.narrow import instance
+from rattlebox._util.phrases import counted
 from rattlebox._util.quantities import quantity
 from rattlebox.analysis.signals import first_harmonic, trapezoid_weights
 from rattlebox.model.errors import Hint
@@ -42,6 +43,10 @@ _PHASE_ERROR = math.radians(1)
 """Largest difference of the phase from that of resonance at which a search ends [rad]."""
 _TRIALS = 12
 """Largest number of runs for one amplitude and one start."""
+_APART = 0.1
+"""Difference of the effective masses of two starts, over the larger one, from which they may be different motions."""
+_ERRORS = 3
+"""Standard errors of two starts by which different motions must lie further apart."""
 _RANGE = 0.5
 """Largest relative change of the frequency in which a resonance is sought."""
 
@@ -88,15 +93,17 @@ def backbone(
     xarray.Dataset
         Over `amplitude` [m]: `frequency` [Hz], `damping_ratio`, `force` [N], the amplitude of the load, `work` [J] of the
         load in a cycle, each the mean of the starts, with `..._lower` and `..._upper` limit of its 95 % interval (NaN with
-        fewer than two starts). Over `start`, too: `frequencies`, `damping_ratios` and `found`, whether the search has ended
-        with less than 1 % of error of the amplitude and 1 degree of the phase; values that were not found are NaN.
-        Attributes: point, frequency and damping ratio of the mode, the text of the case and `warnings`.
+        fewer than two starts); `motions`, the number of different motions that the starts found. Over `start`, too:
+        `frequencies`, `damping_ratios` and `found`, whether the search has ended with less than 1 % of error of the
+        amplitude and 1 degree of the phase; values that were not found are NaN. Attributes: point, frequency and damping
+        ratio of the mode, the text of the case and `warnings`.
 
     Raises
     ------
     CaseError
-        If the case has not exactly one load, a harmonic force; if it has a base motion or stops; if it has no such mode, the
-        load does not excite it, the initial state has no random part, the amplitudes do not rise, or a run fails.
+        If the case has not exactly one load, a harmonic force; if it has a base motion, stops or a damper in a tuned mass;
+        if it has no such mode, the load does not excite it, the initial state has no random part, the amplitudes do not
+        rise, or a run fails.
 
     See Also
     --------
@@ -116,6 +123,11 @@ def backbone(
     The damping ratio is that of a linear mode with the same loss, with its shape phi at the point of the load,
 
     .. math:: \zeta = \frac{\phi^2 F}{2 \omega^2 X}.
+
+    Starts whose effective masses differ by more than 10 % and three standard errors of both have found different motions.
+    Where several coexist, no start has the mean of all: a warning lists them, and the limits include the 95 % interval of
+    each, with their common scatter. Where one was found, the interval is that of this motion: one that is found from the
+    share s of the initial states is missed by all of n starts with the probability (1 - s)^n.
 
     The interval covers the scatter of the starts (Student's t) and, in quadrature, the drift of the response from the first
     to the second half of the cycles that the starts have in common, which is the rest of a transient. The limits of 1 % and
@@ -193,6 +205,13 @@ class _Target:
                 'load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")',
             )
         refuse_stops(case.stops, "a search starts on the motion without them", "rb.frequency_response")
+        for damper in case.dampers:
+            if damper.point in case.modes.attached:
+                # A search assumes that the effective mass depends little on the frequency.
+                raise Hint(
+                    f"a damper is in {damper.point!r}, near whose resonance its effective mass depends on the frequency",
+                    "rb.frequency_response, or rb.damping_curve with way = 'decay'",
+                )
         modes = case.structure.modes()
         index = whole_number(mode, "mode", 1) - 1
         if index >= modes.stiffness.size or modes.stiffness[index] <= 0:
@@ -252,9 +271,15 @@ class _Search:
     omega: float = math.nan
     force: float = math.nan
     drift: complex = complex(math.nan)
+    error: float = math.nan  # standard error of the effective mass [kg]
     masses: list[tuple[float, complex]] = field(default_factory=list)  # amplitudes and effective masses of the runs
     is_found: bool = False
     is_over: bool = False
+
+    def is_near(self, other: _Search) -> bool:
+        """Return whether another search may have found the same motion."""
+        apart = _APART * max(abs(self.mass), abs(other.mass)) + _ERRORS * (self.error + other.error)
+        return abs(self.mass - other.mass) <= apart
 
     def mass_at_amplitude(self) -> complex:
         """Return the effective mass at the wanted amplitude X from those of the runs so far.
@@ -308,6 +333,7 @@ class _Search:
         phase = abs(math.remainder(np.angle(stiffness) - math.pi / 2, 2 * math.pi))
         amplitude = abs(reached / self.amplitude - 1)
         self.drift = row.drift
+        self.error = 0.5 * row.error * abs(stiffness) / self.omega**2
         self.is_found = amplitude < max(_AMPLITUDE_ERROR, row.error) and phase < max(_PHASE_ERROR, row.error)
         self.aim(target)
         self.is_over = self.is_over or self.is_found
@@ -357,6 +383,54 @@ def _guess(
     masses = evaluate(variants, partial(_effective_mass, frequency=frequency, kept=window[1])) if variants else []
     for (search, size), mass in zip(owners, masses, strict=True):
         search.mass += size**2 * mass
+
+
+def _motions(searches: Sequence[_Search]) -> list[int]:
+    """Return the number of the motion that each search found, counted from 0; -1 if it found none."""
+    labels = [-1] * len(searches)
+    found = [k for k, search in enumerate(searches) if search.is_found]
+    for first in found:
+        if labels[first] >= 0:
+            continue
+        labels[first] = max(labels) + 1
+        reached = [first]
+        # Motions that scatter form a chain of neighbours.
+        while reached:
+            one = searches[reached.pop()]
+            for k in found:
+                if labels[k] < 0 and one.is_near(searches[k]):
+                    labels[k] = labels[first]
+                    reached.append(k)
+    return labels
+
+
+def _limits_of_motions(values: FloatArray, motions: NDArray[np.int64]) -> tuple[float, float]:
+    """Return the smallest and the largest limit of the 95 % intervals of the motions, which have a common scatter."""
+    from scipy import stats
+
+    groups = [values[motions == motion] for motion in range(motions.max() + 1)]
+    freedom = sum(group.size - 1 for group in groups)
+    squares = sum(float(np.sum((group - group.mean()) ** 2)) for group in groups)
+    half = stats.t.ppf(0.975, freedom) * math.sqrt(squares / freedom) if freedom else 0.0
+    ends = [
+        (group.mean() - half / math.sqrt(group.size), group.mean() + half / math.sqrt(group.size)) for group in groups
+    ]
+    return min(low for low, _ in ends), max(high for _, high in ends)
+
+
+def _several_motions(level: xarray.Dataset, motions: NDArray[np.int64]) -> str:
+    """Return the warning about the different motions of the starts at an amplitude."""
+    some = []
+    for motion in range(motions.max() + 1):
+        inside = motions == motion
+        hertz, ratio = (float(level[name].values[inside].mean()) for name in ("frequencies", "damping_ratios"))
+        some.append(
+            f"{quantity(hertz, 'Hz')} with {100 * ratio:.3g} % ({counted(int(np.count_nonzero(inside)), 'start')})"
+        )
+    return (
+        f"warning: at {quantity(float(level.amplitude), 'm')} the starts found {len(some)} motions: {', '.join(some)}; "
+        "their mean is none of them; try: frequencies and damping_ratios of each start, and more starts"
+    )
 
 
 def _effective_mass(run: Run, frequency: float, kept: int) -> complex:
@@ -410,6 +484,7 @@ def _dataset(
     }
     result = xarray.Dataset(coords={"amplitude": ("amplitude", levels, {"units": "m", "long_name": "amplitude"})})
     count = found.sum(axis=0)
+    motions = np.array([_motions(searches[level :: levels.size]) for level in range(levels.size)]).T
     for name, (units, long_name) in _QUANTITIES.items():
         about = {"units": units, "long_name": long_name}
         part = np.ma.masked_invalid(values[name])
@@ -419,13 +494,22 @@ def _dataset(
         scatter = part.std(axis=0, ddof=1).filled(np.nan)[several] / np.sqrt(count[several])
         bias = mean * error * (result.damping_ratio.values if name == "frequency" else 1)
         half[several] = np.hypot(stats.t.ppf(0.975, count[several] - 1) * scatter, bias[several])
+        lower, upper = mean - half, mean + half
+        # The interval of the mean of many starts in several motions is narrower than the distance of these.
+        for level in np.flatnonzero(motions.max(axis=0) > 0):
+            ends = _limits_of_motions(values[name][:, level], motions[:, level])
+            lower[level], upper[level] = min(lower[level], ends[0]), max(upper[level], ends[1])
         result[name] = "amplitude", mean, about
-        result[f"{name}_lower"] = "amplitude", mean - half, {**about, "long_name": f"lower limit of the {long_name}"}
-        result[f"{name}_upper"] = "amplitude", mean + half, {**about, "long_name": f"upper limit of the {long_name}"}
+        result[f"{name}_lower"] = "amplitude", lower, {**about, "long_name": f"lower limit of the {long_name}"}
+        result[f"{name}_upper"] = "amplitude", upper, {**about, "long_name": f"upper limit of the {long_name}"}
     for name, plural in (("frequency", "frequencies"), ("damping_ratio", "damping_ratios")):
         units, long_name = _QUANTITIES[name]
         result[plural] = ("start", "amplitude"), values[name], {"units": units, "long_name": f"{long_name}, each start"}
     result["found"] = ("start", "amplitude"), found, {"long_name": "whether the search has ended"}
+    number = motions.max(axis=0) + 1
+    result["motions"] = "amplitude", number, {"long_name": "number of different motions that the starts found"}
+    for level in np.flatnonzero(number > 1):
+        messages = [*messages, _several_motions(result.isel(amplitude=level), motions[:, level])]
     missing = [
         f"{quantity(level, 'm')} ({starts - n} of {starts})"
         for level, n in zip(levels, count, strict=True)

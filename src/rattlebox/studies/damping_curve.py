@@ -237,6 +237,12 @@ def _prepared(
         "a damping curve starts or shakes the structure at each amplitude",
         "a sweep over the initial velocity or the load, or the case without stops",
     )
+    hung = [damper.point for damper in case.dampers if damper.point in case.modes.attached]
+    if way == "shaking" and hung:
+        raise Hint(
+            f"way = 'shaking' moves each cavity as the mode of the structure does, and {hung[0]!r} moves otherwise",
+            "way = 'decay'",
+        )
     count, about = whole_number(packings, "packings", 1), mode_of(case, mode, point)
     return read_amplitudes(amplitudes, about.omega), about, random_starts(case, count)
 

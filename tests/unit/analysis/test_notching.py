@@ -1,5 +1,6 @@
 """Notches of profiles by a limit of the force on the base."""
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,31 @@ def test_a_sweep_with_a_notch_runs() -> None:
     assert peaks[0] > 3 * 60 and peaks[1] == pytest.approx(60, rel=0.02)
 
 
+def test_a_fast_sweep_warns_of_its_transients() -> None:
+    """The largest force of a fast sweep over a narrow notch is that of a run, and the advice keeps it within the limit.
+
+    The only sweep of the tests was slow, and the limit of the method was a sentence of the docstring.
+    """
+    narrow = rb.Case(structure=rb.SDOF(mass="3 kg", frequency="140 Hz", damping_ratio=0.006), duration="1 s")
+    given = {"amplitude": "0.5 g", "first_frequency": "60 Hz", "last_frequency": "300 Hz"}
+    fast = rb.SineSweep(**given, sweep_rate="8 oct/min")
+    with pytest.warns(UserWarning, match=r"reaches .* times its limit; try: a lower sweep_rate, or force = ") as caught:
+        found = notch(fast, narrow, force="400 N")
+
+    def largest(base: Any) -> float:
+        run = narrow.model_copy(update={"base": (base,), "duration": fast.length, "output": rb.Output(rate="8 kHz")})
+        return float(np.abs(rb.simulate(run).arrays.interface_force).max())
+
+    assert found.swept_force == pytest.approx(largest(found.profile), rel=0.01) and found.swept_force > 1.05 * 400
+    advised = float(str(caught[0].message).rpartition("force = ")[2])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        assert largest(notch(fast, narrow, force=advised).profile) < 400
+    slow = notch(rb.SineSweep(**given, sweep_rate="0.25 oct/min"), narrow, force="400 N")
+    assert slow.swept_force == pytest.approx(400, rel=0.05)
+    assert np.isnan(notch(FLAT, BOX, force="500 N").swept_force)
+
+
 def test_a_transfer_function_of_a_damped_structure() -> None:
     """The force over the acceleration of a run with a ball is a structure, within the frequencies that it covers."""
     ball = rb.ImpactDamper(
@@ -122,7 +148,7 @@ def test_a_transfer_function_of_a_damped_structure() -> None:
     shaking = rb.Random([("30 Hz", "0.02 g^2/Hz"), ("200 Hz", "0.02 g^2/Hz")], "20 s", seed=1)
     output = rb.Output(rate="1 kHz")
     case = BOX.model_copy(update={"dampers": (ball,), "base": (shaking,), "duration": 20.0, "output": output})
-    motion = rb.simulate(case).motion
+    motion = rb.simulate(case).along()
     measured = transfer_function(motion.time, motion.base_acceleration, motion.interface_force, resolution=1.0)
     found = notch([("40 Hz", "1 g"), ("150 Hz", "1 g")], measured, force="100 N")
     assert found.levels.force_after.values.max() == pytest.approx(100, rel=1e-9)

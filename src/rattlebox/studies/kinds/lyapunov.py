@@ -23,7 +23,6 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.batch import BlockOutput, run_block
-from rattlebox.model.stops import refuse_stops
 from rattlebox.model.units import Number, Whole
 from rattlebox.studies.grid.axes import read_axes
 from rattlebox.studies.grid.grid import Grid
@@ -79,11 +78,6 @@ class PairEngine:
 
     def validate(self) -> None:
         """Raise if the arguments are not valid for the case."""
-        refuse_stops(
-            self.case.stops,
-            "exponents are those of balls in gaps",
-            "rattlebox.analysis.lyapunov_exponent with pairs of runs, or a bifurcation diagram",
-        )
         packed = self.sweep.packed
         if self.count < 2:
             raise CaseError("one evaluated cycle is one step; at least two steps are required", "steps = 100")
@@ -225,8 +219,18 @@ class _Pairs:
         modes = np.stack([np.ones_like(q), slow + 0 * q], axis=1).reshape(-1, self._count, 1, 1)
         self._weights = np.moveaxis(np.concatenate([modes, root, root * slow]), 0, -1)
         norm = np.linalg.norm(self._start * self._weights, axis=-1)[..., 0]
-        balls = (root * reach)[0, ..., 0] if len(root) else np.where(norm > 0, norm, 1.0)
-        self._scale = np.broadcast_to(balls, norm.shape)
+        # Distances are measured by the first gap: that of a ball, or of a stop with the effective mass of its contact.
+        size = (root * reach)[0, ..., 0] if len(root) else self._stop_size()
+        self._scale = np.broadcast_to(np.where(size > 0, size, np.where(norm > 0, norm, 1.0)), norm.shape)
+
+    def _stop_size(self) -> Array:
+        """Return the gap of the first stop times the root of its effective mass, (variants, 1); 0 without a stop."""
+        for damper, contact in zip(
+            self._packed.dampers, self._packed.contacts, strict=False
+        ):  # no balls: one contact each
+            mass = np.reshape(np.asarray(contact.mass), (-1, 1))
+            return np.asarray(np.sqrt(mass) * 0.5 * np.reshape(np.asarray(damper.clearance), (-1, 1)))
+        return np.zeros((1, 1))
 
     def growth(self) -> Array | None:
         """Return the logarithmic growth in each evaluated step, (variants, pairs, steps).
@@ -320,6 +324,9 @@ class _Pairs:
         first, dampers, wait = 2 * self._modes, [], time[..., None]
         balls = (len(rows) - first) // 2
         for damper in self._packed.dampers:
+            if not len(damper.mass):  # a stop
+                dampers.append(damper)
+                continue
             own = slice(first, first := first + len(damper.mass))
             speeds = slice(own.start + balls, own.stop + balls)
             dampers.append(damper.replace(position=rows[own], velocity=rows[speeds]))
@@ -371,6 +378,9 @@ class _Pairs:
             places = state[..., first : (first := first + len(damper.mass))]
             centre = np.sum(np.moveaxis(damper.shape, 0, -1) * state[..., 0 : 2 * self._modes : 2], axis=-1)
             clearance = np.asarray(damper.clearance)
+            if not places.shape[-1]:  # a stop, whose gap may be zero
+                found = np.minimum(found, (0.5 * clearance - centre) / np.where(clearance > 0, clearance, 1.0))
+                continue
             ends = [places[..., 0] - centre + clearance / 2, centre + clearance / 2 - places[..., -1]]
             found = np.minimum(found, np.minimum(*ends) / clearance)
             if places.shape[-1] > 1:
