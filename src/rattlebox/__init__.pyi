@@ -96,6 +96,7 @@ from rattlebox.model.walls import Wall as Wall
 from rattlebox.plots.backbone import plot_backbone as plot_backbone
 from rattlebox.plots.basins import plot_basins as plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation as plot_bifurcation
+from rattlebox.plots.branches import plot_branches as plot_branches
 from rattlebox.plots.calibration import plot_calibration as plot_calibration
 from rattlebox.plots.case import plot_case as plot_case
 from rattlebox.plots.compare import plot_comparison as plot_comparison
@@ -144,8 +145,12 @@ from rattlebox.studies.kinds.sweep import compare as compare
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.maps.response_from_map import response_from_map as response_from_map
 from rattlebox.studies.notching import notch_with_dampers as notch_with_dampers
+from rattlebox.studies.orbits.branch import Branch as Branch
+from rattlebox.studies.orbits.branch import SpecialPoint as SpecialPoint
+from rattlebox.studies.orbits.continuation import continue_orbit as continue_orbit
 from rattlebox.studies.orbits.find import find_orbit as find_orbit
 from rattlebox.studies.orbits.orbit import Orbit as Orbit
+from rattlebox.studies.orbits.special_curve import continue_point as continue_point
 from rattlebox.studies.run.stored import open_study as open_study
 from rattlebox.studies.run.stored import study_remarks as study_remarks
 from rattlebox.studies.run.stored import to_mat as to_mat

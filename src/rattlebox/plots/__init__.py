@@ -3,6 +3,7 @@
 from .backbone import plot_backbone
 from .basins import plot_basins
 from .bifurcation import plot_bifurcation
+from .branches import plot_branches
 from .calibration import plot_calibration
 from .case import plot_case
 from .compare import plot_comparison
@@ -54,6 +55,7 @@ __all__ = [
     "plot_backbone",
     "plot_basins",
     "plot_bifurcation",
+    "plot_branches",
     "plot_calibration",
     "plot_case",
     "plot_comparison",

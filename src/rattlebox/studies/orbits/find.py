@@ -13,7 +13,7 @@ from rattlebox.model.errors import Hint, several
 from rattlebox.model.units import whole_number
 from rattlebox.results.run import Run
 from rattlebox.studies.orbits.forcing import Forcing
-from rattlebox.studies.orbits.motion import motion_of
+from rattlebox.studies.orbits.motion import Motion, motion_of
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
 from rattlebox.studies.orbits.shooting import ReturnMap, Shot, solve
 from rattlebox.studies.orbits.symmetry import is_mirrored
@@ -134,11 +134,15 @@ def size_of(returns: ReturnMap, state: Vector, periods: int | None = None) -> Ve
     """Return the largest values of the components of a motion, (n,); None if it cannot be computed."""
     cycles = periods or returns.cycles
     motion = motion_of(returns.forcing.shifted(returns.phase), state, cycles * returns.forcing.period)
-    if motion is None:
-        return None
+    return None if motion is None else sizes_in(motion)
+
+
+def sizes_in(motion: Motion) -> Vector:
+    """Return the largest values of the components of the state in a motion, (n,)."""
+    modes = motion.modes
     largest = np.abs(motion.state).max(axis=0)
     # A mode that is hardly excited has the size of the others, or its rounding error would count.
-    for part in (slice(0, 2 * returns.modes, 2), slice(1, 2 * returns.modes, 2), slice(2 * returns.modes, None)):
+    for part in (slice(0, 2 * modes, 2), slice(1, 2 * modes, 2), slice(2 * modes, None)):
         if largest[part].size:
             largest[part] = np.maximum(largest[part], 1e-3 * largest[part].max())
     floor = max((float(damper.clearance) for damper in motion.dampers), default=1.0) or 1.0
@@ -295,7 +299,7 @@ def _simplest(returns: ReturnMap, states: Vector, shot: Shot, scale: Vector) -> 
         if _is_fixed(shorter, states[0], scale, _SHORTER) and (found := solve(shorter, states[:1], scale)) is not None:
             returns, (states, shot) = shorter, found
             break
-    if returns.cycles % 2 and not shot.has_rest and is_mirrored(returns.forcing):
+    if returns.cycles % 2 and is_mirrored(returns.forcing):
         half = returns.with_(mirrored=True, segments=1)
         if _is_fixed(half, states[0], scale, _SYMMETRIC) and (found := solve(half, states[:1], scale)) is not None:
             return half, *found, scale

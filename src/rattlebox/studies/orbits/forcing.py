@@ -13,6 +13,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import TwoStep
 from rattlebox.model.paths import get, place_of, replaced, spelt
+from rattlebox.model.restitutions import Restitution
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 LARGEST_RATIO = 32
 """Largest numerator and denominator of a ratio of two frequencies with a common period."""
 _SAME_RATIO = 1e-9
+_WITHOUT_EFFECT = {"duration", "start", "velocity", "displacement", "tolerance", "stick"}
+"""Fields of initial states and of the computation, on which a periodic motion does not depend."""
 
 
 @dataclass(frozen=True)
@@ -96,12 +99,7 @@ class Forcing:
     def check_parameter(self, path: str) -> None:
         """Raise if a path cannot be the parameter of a continuation."""
         place = place_of(self.case, path)
-        try:
-            value = get(self.case, path)
-            usable = not isinstance(value, (bool, int, str)) and math.isfinite(float(value))
-        except (TypeError, ValueError):
-            usable = False
-        if not usable:
+        if number_at(self.case, path) is None:
             raise Hint(
                 f"{path} is not a number that can vary continuously",
                 "the path of a number, such as load.frequency, load.amplitude or damper.gap",
@@ -113,7 +111,7 @@ class Forcing:
                 f"{path} is one of {len(self.cycles)} frequencies; if it varies alone, the loads have no common period",
                 "an amplitude, or a case with one load",
             )
-        if place[-1] == "duration" or place[0] in ("output", "method") or place[-1] in ("start", "velocity"):
+        if place[0] == "output" or _WITHOUT_EFFECT.intersection(map(str, place)):
             raise Hint(f"{spelt(self.case, place)} has no effect on a periodic motion", "a gap, a mass, or a load")
 
     def shifted(self, phase: float) -> Case:
@@ -127,6 +125,16 @@ class Forcing:
                 for path, count in self.cycles.items()
             },
         )
+
+
+def number_at(case: Case, path: str) -> float | None:
+    """Return the number at a path that can vary continuously, also in place of a law; None if there is none."""
+    value = get(case, path)
+    if isinstance(value, tuple) and len(value) == 1:
+        (value,) = value
+    if isinstance(value, Restitution):
+        value = value.constant_value
+    return float(value) if isinstance(value, float) and math.isfinite(value) else None
 
 
 def _common_cycles(signals: Mapping[str, Harmonic]) -> dict[str, int]:

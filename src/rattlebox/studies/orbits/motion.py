@@ -42,6 +42,7 @@ class Motion:
     impacts: _core.Impacts
     dampers: tuple[_core.Damper, ...]
     modes: int
+    sticks: bool  # whether bodies stick together for a time
 
     def extremes(self, shape: Vector) -> tuple[float, float]:
         """Return the smallest and the largest displacement of a point with mode shapes (m,) [m]."""
@@ -115,7 +116,8 @@ def motion_of(case: Case, state: Vector, duration: float) -> Motion | None:
     if raw.status != Status.finished:
         return None
     size = 2 * (int(problem.mode_decay.size) + sum(int(np.size(damper.mass)) for damper in problem.dampers))
-    return Motion(raw.time, raw.state[:, :size], raw.impacts, tuple(problem.dampers), int(problem.mode_decay.size))
+    dampers, modes = tuple(problem.dampers), int(problem.mode_decay.size)
+    return Motion(raw.time, raw.state[:, :size], raw.impacts, dampers, modes, raw.counts.sticks > 0)
 
 
 def _turning_points(time: Vector, x: Vector, v: Vector, *, rising: bool = False) -> tuple[Vector, Vector]:

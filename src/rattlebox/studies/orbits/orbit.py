@@ -251,6 +251,14 @@ def orbit_of(
     returns: ReturnMap, shot: Shot, state: Vector, scale: Vector, values: Sequence[float] = ()
 ) -> Orbit | None:
     """Return the periodic motion of a fixed point; None if its motion cannot be computed."""
+    found = orbit_and_motion(returns, shot, state, scale, values)
+    return None if found is None else found[0]
+
+
+def orbit_and_motion(
+    returns: ReturnMap, shot: Shot, state: Vector, scale: Vector, values: Sequence[float] = ()
+) -> tuple[Orbit, Motion] | None:
+    """Return the periodic motion of a fixed point, and its samples; None if its motion cannot be computed."""
     case = returns.forcing.case
     if len(returns.parameters):
         case = case.replaced(dict(zip(returns.parameters, map(float, values), strict=True)))
@@ -284,7 +292,7 @@ def orbit_of(
         miss = misses[0]
         phase = (miss.time / period + shift) % 1.0
         nearest = Approach(contact_name(names, counts, miss.contact), phase, miss.gap, miss.contact)
-    return Orbit(
+    orbit = Orbit(
         case=case,
         cycles=returns.cycles,
         period=period,
@@ -296,9 +304,10 @@ def orbit_of(
         nearest_miss=nearest,
         is_symmetric=returns.mirrored,
         amplitudes=_amplitudes(case, motion),
-        determinant_error=_determinant_error(case, motion, matrix, period) if not shot.has_rest else math.nan,
-        sticks=shot.has_rest,
+        determinant_error=_determinant_error(case, motion, matrix, period) if not motion.sticks else math.nan,
+        sticks=motion.sticks,
     )
+    return orbit, motion
 
 
 def _impact(

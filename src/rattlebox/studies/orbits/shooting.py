@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.core._core import Status
 from rattlebox.prepare.pack import pack
 from rattlebox.studies.orbits.flow import Flow
 
@@ -47,12 +46,7 @@ class Shot:
     @property
     def is_complete(self) -> bool:
         """Whether all segments have been computed to their end."""
-        return all(end.status == Status.finished for end in self.ends) and bool(np.isfinite(self.residual).all())
-
-    @property
-    def has_rest(self) -> bool:
-        """Whether bodies stick together at some time."""
-        return any(end.has_rest for end in self.ends)
+        return all(end.ok for end in self.ends) and bool(np.isfinite(self.residual).all())
 
     def jacobian(self) -> Vector:
         """Return the derivative of the residual with respect to all states, (m n, m n)."""
@@ -123,7 +117,7 @@ class ReturnMap:
         for k, flow in enumerate(self._flows):
             end = flow.over(states[k], length, chosen, derivatives=derivatives)
             ends.append(end)
-            if end.status != Status.finished:
+            if not end.ok:
                 residual[k:] = np.nan
                 return Shot(residual, tuple(ends), np.zeros((0, n, n)), np.zeros((0, n, 0)))
             last = k == self.segments - 1
@@ -134,6 +128,14 @@ class ReturnMap:
                 stretch = np.outer(end.by_time, self.length(1.0) * np.array(slopes)) if self.parameters else 0.0
                 by.append(turn @ (end.by_parameter + stretch) if self.parameters else np.zeros((n, 0)))
         return Shot(residual, tuple(ends), np.array(blocks), np.array(by))
+
+    def part(self, duration: float, state: Vector, value: float, share: float) -> tuple[Vector, Vector, Vector] | None:
+        """Return the state after a share of the period of the loads, and its derivatives by state and parameter."""
+        end = self._flows[0].over(state, duration, (value,))
+        if not end.ok:
+            return None
+        slope = self.forcing.period_of(self.parameters, (value,))[1][0]
+        return end.state, end.matrix, end.by_parameter[:, 0] + end.by_time * share * slope
 
     def states_from(self, state: Vector, values: Sequence[float] = ()) -> Vector:
         """Return the states at the beginnings of the segments of the motion from one state."""

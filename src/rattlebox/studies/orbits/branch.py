@@ -1,0 +1,284 @@
+"""Branches of periodic motions over a parameter: points, special points, files and figures."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder, require_readable
+from rattlebox._util.exceptions import DataError
+from rattlebox._util.quantities import quantity
+from rattlebox.model.case import Case
+from rattlebox.model.errors import Hint, several
+from rattlebox.studies.orbits.branch_data import KINDS, STUDY
+from rattlebox.studies.orbits.find import size_of
+from rattlebox.studies.orbits.forcing import Forcing
+from rattlebox.studies.orbits.orbit import Orbit, orbit_of
+from rattlebox.studies.orbits.shooting import ReturnMap, solve
+from rattlebox.studies.orbits.switching import switched
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class SpecialPoint:
+    """A special point of a branch.
+
+    Attributes
+    ----------
+    kind : str
+        "fold", "flip", "pitchfork", "torus" (Neimark-Sacker), "branch point", "grazing", "impact lost" or "sticking".
+    parameter : str
+        Path of the parameter of the branch.
+    value : float
+        Value of the parameter.
+    index : int
+        Index of the point in the branch.
+    orbit : Orbit
+        Periodic motion at the point.
+    """
+
+    kind: str
+    parameter: str
+    value: float
+    index: int
+    orbit: Orbit
+
+    def __str__(self) -> str:
+        return f"{KINDS[self.kind]} at {self.parameter} = {self.value:.9g}"
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A branch of periodic motions along a parameter, from `rattlebox.continue_orbit`.
+
+    Attributes
+    ----------
+    data : xarray.Dataset
+        Points in their order along the branch: `value` of the parameter; `amplitude` of each point of the structure [m];
+        `multiplier_real` and `multiplier_imaginary`; `stable`; `impacts` in a period; `slowest_impact` [m/s];
+        `nearest_miss` [m]; `symmetric`; `sticks`; `special`, the name of a special point or ""; `located`, the value of
+        the parameter there; `state` and `phase`, from which the motion can be computed again; `determinant_error`.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.Case(
+    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    ...     ),
+    ...     load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
+    ...     method=rb.Newton(),
+    ...     duration="3 s",
+    ... )
+    >>> branch = rb.continue_orbit(rb.find_orbit(case), "load.frequency", ("32 Hz", "34 Hz"), progress=False)
+    >>> [point.kind for point in branch.specials]
+    ['pitchfork']
+    """
+
+    data: xarray.Dataset
+
+    @property
+    def parameter(self) -> str:
+        """Path of the parameter."""
+        return str(self.data.attrs["parameter"])
+
+    @property
+    def case(self) -> Case:
+        """Case at the start of the continuation."""
+        return Case.from_toml(str(self.data.attrs["case"]))
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the branch is a closed curve, an isola."""
+        return bool(self.data.attrs["closed"])
+
+    @property
+    def specials(self) -> tuple[SpecialPoint, ...]:
+        """Special points in their order along the branch."""
+        found = np.flatnonzero(self.data.special.values.astype(str) != "")
+        return tuple(
+            SpecialPoint(
+                str(self.data.special[k].item()),
+                self.parameter,
+                float(self.data.located[k]),
+                int(k),
+                self.orbit(int(k)),
+            )
+            for k in found
+        )
+
+    def __len__(self) -> int:
+        return int(self.data.sizes["point"])
+
+    def orbit(self, index: int) -> Orbit:
+        """Compute the periodic motion of a point.
+
+        Parameters
+        ----------
+        index
+            Index of the point, from 0.
+
+        Returns
+        -------
+        Orbit
+            Periodic motion.
+
+        Raises
+        ------
+        CaseError
+            If there is no such point, or the motion cannot be computed.
+        """
+        if not -len(self) <= index < len(self):
+            raise Hint(f"there is no point {index}; the branch has {several(len(self), 'point')}", "branch.orbit(0)")
+        row = self.data.isel(point=index)
+        forcing = Forcing.of(self.case.replaced({self.parameter: float(row.value)}))
+        returns = ReturnMap(
+            forcing, int(self.data.attrs["cycles"]), phase=float(row.phase), mirrored=bool(row.symmetric.item())
+        )
+        state = np.ascontiguousarray(row.state.values, dtype=float)
+        scale = size_of(returns, state)
+        found = None if scale is None else solve(returns, state[None], scale)
+        if found is None or scale is None:  # at a singular point the stored state is the best there is
+            shot = returns.shoot(state[None])
+            found = (state[None], shot) if shot.is_complete else None
+            scale = np.ones_like(state) if scale is None else scale
+        orbit = None if found is None else orbit_of(returns, found[1], found[0][0], scale)
+        if orbit is None:
+            raise Hint(f"the motion of point {index} cannot be computed", "a neighbouring point")
+        return orbit
+
+    def switch(self, point: SpecialPoint, limits: Sequence[Any] | None = None, **options: Any) -> Branch:
+        """Follow the branch that begins at a flip or a pitchfork.
+
+        Parameters
+        ----------
+        point
+            Special point of this branch, of kind "flip" or "pitchfork".
+        limits
+            Smallest and largest value of the parameter; default those of this branch.
+        **options
+            Other options of `rattlebox.continue_orbit`.
+
+        Returns
+        -------
+        Branch
+            Motions of twice the period after a flip, motions without the symmetry after a pitchfork.
+
+        Raises
+        ------
+        CaseError
+            If no branch begins at a point of this kind, or the branch is not found.
+        """
+        if not isinstance(point, SpecialPoint) or point.kind not in ("flip", "pitchfork"):
+            kind = getattr(point, "kind", point)
+            raise Hint(
+                f"no branch begins at a point of kind {kind!r:.40}; it must be a flip or a pitchfork",
+                "branch.specials, a list of the special points",
+            )
+        value = float(self.data.value[point.index])
+        limits = tuple(self.data.attrs["limits"]) if limits is None else limits
+        return Branch(switched(point.orbit, point.kind, self.parameter, value, limits, **options))
+
+    def plot(self, **options: Any) -> Figure:
+        """Draw the amplitude over the parameter: stable motions solid, unstable ones dashed, special points marked.
+
+        Parameters
+        ----------
+        **options
+            Those of `rattlebox.plot_branches`.
+
+        Returns
+        -------
+        Figure
+            Figure with one panel.
+        """
+        # studies must not import the figures statically, which are above them
+        figure: Figure = import_module("rattlebox.plots.branches").plot_branches(self, **options)
+        return figure
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the branch to a netCDF file.
+
+        Parameters
+        ----------
+        path
+            File to write (.nc); the new file replaces an existing one when it is complete.
+
+        Returns
+        -------
+        Path
+            The file; `Branch.load` reads an equal branch.
+
+        Raises
+        ------
+        DataError
+            If the file cannot be written.
+        ResourceError
+            If no space is left on the disk.
+        """
+        file = Path(path)
+        check_suffix(file, ".nc")
+        require_folder(file)
+        with atomic_write(file, "make room and save the branch again") as name:
+            self.data.to_netcdf(name, engine="h5netcdf")
+        return file
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Branch:
+        """Read a branch that `save` wrote.
+
+        Parameters
+        ----------
+        path
+            netCDF file.
+
+        Returns
+        -------
+        Branch
+            The branch.
+
+        Raises
+        ------
+        DataError
+            If the file cannot be read or is not a branch.
+        """
+        import xarray
+
+        file = Path(path)
+        require_readable(file)
+        try:
+            data = xarray.load_dataset(file, engine="h5netcdf")
+        except HDF5_ERRORS as error:
+            raise DataError(f"{file} cannot be read: {error!s:.80}", "a file that Branch.save wrote") from None
+        if data.attrs.get("study") != STUDY:
+            raise DataError(f"{file} is not a branch of periodic motions", "a file that Branch.save wrote")
+        return cls(data)
+
+    def __str__(self) -> str:
+        return "\n".join(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        value, unit = self.data.value.values, str(self.data.attrs["unit"])
+        ends = " to ".join(quantity(float(end), unit) for end in (value.min(), value.max()))
+        closed = ", closed" if self.is_closed else ""
+        yield f"branch of {several(len(self), 'point')} over {self.parameter}, {ends}{closed}"
+        yield f"stable         {int(self.data.stable.sum())} of {len(self)}"
+        for point in self._special_rows():
+            yield f"special        {point}"
+        if message := str(self.data.attrs.get("ended", "")):
+            yield f"ended          {message}"
+
+    def _special_rows(self) -> Iterator[str]:
+        for k in np.flatnonzero(self.data.special.values.astype(str) != ""):
+            row = self.data.isel(point=int(k))
+            yield f"{KINDS[str(row.special.item())]} at {quantity(float(row.located), str(self.data.attrs['unit']), 8)}"

@@ -1,0 +1,142 @@
+"""Continuation of a periodic motion along a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rattlebox._util.narrow import present
+from rattlebox._util.progress import Report, progress_bar
+from rattlebox._util.quantities import quantity
+from rattlebox.model.errors import Hint
+from rattlebox.model.units import whole_number
+from rattlebox.studies.orbits.branch import Branch
+from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of, data_of
+from rattlebox.studies.orbits.corrector import Point
+from rattlebox.studies.orbits.find import size_of
+from rattlebox.studies.orbits.follow import Follower
+from rattlebox.studies.orbits.forcing import number_at
+from rattlebox.studies.orbits.orbit import Orbit
+from rattlebox.studies.orbits.shooting import ReturnMap
+
+
+def continue_orbit(
+    orbit: Orbit,
+    axis: str,
+    limits: Sequence[Any],
+    *,
+    points: int = 500,
+    step: float = LONGEST_STEP,
+    progress: bool | Callable[[int, int], object] = True,
+) -> Branch:
+    r"""Follow a periodic motion along a parameter, through folds and where it is unstable, and locate its bifurcations.
+
+    Parameters
+    ----------
+    orbit
+        Periodic motion from `rattlebox.find_orbit`.
+    axis
+        Path of a number of the case, such as "load.frequency", "load.amplitude", "damper.gap" or "method.restitution".
+    limits
+        Smallest and largest value of the parameter, numbers in SI units or text.
+    points
+        Largest number of points in each of both directions.
+    step
+        Longest step, as part of the range of the parameter and of the size of the motion. Shorter steps are taken where
+        the branch turns.
+    progress
+        True for a progress bar after 2 s, False for none, or a function of the number of points and of the largest number;
+        the continuation stops if it returns False.
+
+    Returns
+    -------
+    Branch
+        Periodic motions in their order along the branch, with the special points.
+
+    Raises
+    ------
+    CaseError
+        If the path is not a number that changes the motion, the motion is not between the limits, or the loads have no
+        common period when it varies.
+
+    See Also
+    --------
+    find_orbit : Find the first motion.
+    frequency_response : Motion that a slow sweep of the frequency reaches, for any damper.
+
+    Notes
+    -----
+    With the return map :math:`P(x, p)`, the points :math:`(x, p)` with :math:`P(x, p) = x` form curves. From each point
+    a step along the tangent is followed by Newton's method in the plane normal to it (pseudo-arclength continuation), so
+    that the curve may turn back in :math:`p`. Special points are zeros of test functions of the derivative :math:`M` of
+    the map:
+
+    - fold: the component of the tangent along :math:`p`;
+    - flip: :math:`\det(M + 1)`; for a symmetric motion, whose map covers half a period, this is the pitchfork in which it
+      loses its symmetry;
+    - Neimark-Sacker: :math:`\prod_{i < j} (\mu_i \mu_j - 1)` for a complex pair;
+    - grazing: the smallest gap of a near miss, or the approach speed of the slowest impact. There :math:`M` is singular
+      as one over that speed, and :math:`p` is extrapolated.
+
+    A branch ends at the limits, at a grazing behind which no motion is found, or after the largest number of points.
+
+    References
+    ----------
+    H. B. Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems, in: P. H. Rabinowitz (ed.),
+    Applications of Bifurcation Theory, Academic Press, 359-384.
+
+    M. di Bernardo, C. J. Budd, A. R. Champneys, P. Kowalczyk (2008), Piecewise-smooth Dynamical Systems, Springer,
+    doi:10.1007/978-1-84628-708-4.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.Case(
+    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    ...     ),
+    ...     load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
+    ...     method=rb.Newton(),
+    ...     duration="3 s",
+    ... )
+    >>> branch = rb.continue_orbit(rb.find_orbit(case), "load.frequency", ("32 Hz", "38 Hz"), progress=False)
+    >>> [point.kind for point in branch.specials]
+    ['pitchfork', 'torus']
+    """
+    if not isinstance(orbit, Orbit):
+        raise Hint(f"orbit = {orbit!r:.60} is not a periodic motion", "orbit = rb.find_orbit(case)")
+    corrector, unit = corrector_of(orbit.case, axis, limits, step)
+    corrector.returns = ReturnMap(
+        corrector.returns.forcing, orbit.cycles, (axis,), phase=orbit.phase, mirrored=orbit.is_symmetric
+    )
+    value = present(number_at(orbit.case, axis))
+    low, high = corrector.limits
+    if not low <= value <= high:
+        raise Hint(
+            f"the motion has {axis} = {quantity(value, unit, 6)}, which is not between the limits "
+            f"{quantity(low, unit, 6)} and {quantity(high, unit, 6)}",
+            "limits around it, or a motion between the limits",
+        )
+    scale = size_of(corrector.returns, orbit.state)
+    starts = [None if scale is None else corrector.point(orbit.state, value, scale, side) for side in (-1.0, 1.0)]
+    if starts[0] is None or starts[1] is None:
+        raise Hint(f"the motion cannot be computed along {axis}", "rb.find_orbit(case) at another value")
+    most, follower = whole_number(points, "points", 1), Follower(corrector)
+    with progress_bar(progress, "points") as report:
+        row = _two_sides(follower, starts[0], starts[1], most, report)
+    return Branch(data_of(row, orbit.case, axis, unit, follower))
+
+
+def _two_sides(follower: Follower, down: Point, up: Point, most: int, report: Report) -> list[Point]:
+    """Return the points of a branch on both sides of a start, in their order along the branch."""
+    count = 0
+
+    def proceed() -> bool:
+        nonlocal count
+        count += 1
+        return report(count, 2 * most) is not False
+
+    after = list(follower.follow(up, most, proceed))
+    before = [] if follower.is_closed else list(follower.follow(down, most, proceed))
+    return [*before[::-1], up, *after]

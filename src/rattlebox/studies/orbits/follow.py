@@ -1,0 +1,129 @@
+"""Pseudo-arclength continuation of a periodic motion in one parameter.
+
+References
+----------
+H. B. Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue problems, in: P. H. Rabinowitz (ed.),
+Applications of Bifurcation Theory, Academic Press, 359-384.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from rattlebox.studies.orbits.corrector import TESTS, Corrector, Point
+from rattlebox.studies.orbits.grazing import approach, beyond
+
+_FEW, _MANY = 3, 5
+"""Numbers of corrections at which a step becomes longer or shorter."""
+_SHORTEST = 1e-7
+"""Shortest step along the branch, where the size of the motion and the range of the parameter are 1."""
+_TINY = 1e-3
+"""Length of a step over the longest one, that counts as tiny."""
+_MOST_TINY = 40
+"""Largest number of tiny steps one after the other, after which the branch ends."""
+_LOOP = 10
+"""Number of points after which a branch may be closed."""
+
+
+class Follower:
+    """Continuation of a periodic motion along one parameter between limits."""
+
+    def __init__(self, corrector: Corrector) -> None:
+        self.corrector = corrector
+        self.is_closed = False
+
+    def follow(self, start: Point, most: int, proceed: Callable[[], bool]) -> Iterator[Point]:
+        """Yield the points after a start, with special points, up to the limits or the end of the branch."""
+        corrector = self.corrector
+        limits, longest = corrector.limits, corrector.longest
+        point, length, count, tiny = corrector.resection(start), longest / 4, 0, 0
+        before: Point | None = None
+        while count < most and proceed():
+            tiny = tiny + 1 if length < _TINY * longest else 0
+            taken = corrector.step(point, length)
+            is_near = taken is not None and corrector.is_near(point, taken[0])
+            if taken is None or not is_near or taken[0].contacts != point.contacts:
+                # Near grazing the map is a square root, which no step crosses.
+                event = None if before is None else approach(corrector, before, point, longest)
+                if event is not None:
+                    points, indicator = event
+                    yield from points
+                    there = beyond(corrector, points[-1], indicator)
+                    if there is None:
+                        return
+                    yield there
+                    count += len(points) + 1
+                    before, point, length = None, corrector.resection(there), longest / 64
+                    continue
+                if taken is None or not is_near:
+                    length /= 2
+                    if length < _SHORTEST or tiny > _MOST_TINY:
+                        return
+                    continue
+            after, corrections = taken
+            if not limits[0] <= after.value <= limits[1]:
+                if (last := corrector.at_limit(point, after)) is not None:
+                    yield from self._special(point, last)
+                    yield last
+                return
+            if not point.orbit.sticks and after.orbit.sticks:
+                after = _named(after, "sticking")
+            yield from self._special(point, after)
+            yield after
+            count += 1
+            if corrections <= _FEW:
+                length = min(1.4 * length, longest)
+            elif corrections >= _MANY:
+                length /= 2
+            if count > _LOOP and self._has_returned(start, point, after):
+                self.is_closed = True
+                return
+            moved = corrector.resection(after)
+            # Distances are between points whose maps begin at the same phase.
+            before, point = (point if moved is after else None), moved
+
+    def _has_returned(self, start: Point, point: Point, after: Point) -> bool:
+        """Return whether the branch passes its start between two points, in the same direction."""
+        low, high = sorted((point.value, after.value))
+        if not low <= start.value <= high or after.tangent[-1] * start.tangent[-1] <= 0:
+            return False
+        share = (start.value - point.value) / (after.value - point.value) if high > low else 0.5
+        for name, size in start.orbit.amplitudes.items():
+            one, other = point.orbit.amplitudes[name], after.orbit.amplitudes[name]
+            if abs(one + share * (other - one) - size) > 0.01 * size:
+                return False
+        old, new = (np.sort([impact.approach_speed for impact in each.orbit.impacts]) for each in (start, after))
+        return old.size == new.size and bool(np.allclose(old, new, rtol=0.1))
+
+    def _special(self, point: Point, after: Point) -> Iterator[Point]:
+        """Yield the special points between two points in their order."""
+        found = []
+        for name, test in TESTS.items():
+            low, high = test(point), test(after)
+            if low * high < 0 and (located := self.corrector.locate(point, after, test)) is not None:
+                kind = _kind(name, located)
+                if kind:
+                    found.append(_named(located, kind))
+        yield from sorted(found, key=lambda each: self.corrector.distance(point, each))
+
+
+def _kind(name: str, point: Point) -> str:
+    """Return the name of a special point; empty if it is none."""
+    values = point.multipliers()
+    if name == "flip" and point.returns.mirrored:
+        return "pitchfork"
+    if name == "torus":
+        angles = np.abs(np.angle(values[np.abs(np.abs(values) - 1) < 1e-4]))
+        # Two real multipliers with the product 1 change no stability.
+        return "torus" if angles.size >= 2 and (np.sin(angles) > 1e-3).any() else ""
+    if name == "branch point":
+        return "branch point" if np.abs(values - 1).min() < 1e-3 else ""
+    return name
+
+
+def _named(point: Point, kind: str) -> Point:
+    """Return a special point with its name."""
+    return replace(point, special=kind, located=point.value)

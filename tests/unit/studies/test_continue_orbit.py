@@ -1,0 +1,125 @@
+"""Branches of periodic motions: arguments, files, words and figures."""
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    """Return a symmetric motion with two impacts a cycle."""
+    return rb.find_orbit(
+        rb.Case(
+            structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+            damper=rb.ImpactDamper(
+                ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+            ),
+            load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
+            method=rb.Newton(),
+            duration="2 s",
+        )
+    )
+
+
+@pytest.fixture(scope="module")
+def branch(orbit):
+    """Return a branch over the frequency with a pitchfork and a torus."""
+    return rb.continue_orbit(orbit, "load.frequency", ("31 Hz", "38 Hz"), progress=False)
+
+
+WRONG = {
+    "a phase": ("load.phase", (0.0, 1.0), "only shifts"),
+    "a duration": ("duration", (1.0, 3.0), "no effect"),
+    "a start": ("damper.start", (-0.5, 0.5), "not a number|no effect"),
+    "a name": ("name", (0.0, 1.0), "not a number"),
+    "no such path": ("damper.gapp", (0.0, 1.0), "no 'gapp'"),
+    "limits in the wrong order": ("load.frequency", ("38 Hz", "31 Hz"), "smaller one"),
+    "limits elsewhere": ("load.frequency", ("50 Hz", "60 Hz"), "not between the limits"),
+    "an invalid limit": ("damper.gap", (-1e-3, 2e-3), "gap"),
+    "one limit": ("load.frequency", ("38 Hz",), "smallest and the largest"),
+    "not a path": (3, (0.0, 1.0), "not a path"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_arguments(orbit, name):
+    """A parameter or limits that cannot be used are refused with the reason."""
+    axis, limits, words = WRONG[name]
+    with pytest.raises(rb.CaseError, match=words):
+        rb.continue_orbit(orbit, axis, limits, progress=False)
+
+
+def test_not_a_motion():
+    """A run in place of a motion is refused with the function that finds one."""
+    with pytest.raises(rb.CaseError, match="not a periodic motion") as raised:
+        rb.continue_orbit("run", "load.frequency", ("31 Hz", "38 Hz"))
+    assert "find_orbit" in raised.value.suggestion
+
+
+def test_points_and_words(branch):
+    """The points go from limit to limit, and the text names the special points."""
+    values = branch.data.value.values
+    assert sorted((values[0], values[-1])) == pytest.approx([31.0, 38.0])
+    assert [point.kind for point in branch.specials] == ["pitchfork", "torus"]
+    for words in ("load.frequency", "pitchfork", "Neimark-Sacker", "stable"):
+        assert words in str(branch)
+
+
+def test_orbit_of_a_point(branch):
+    """The motion of a point is computed again with the same multipliers."""
+    for index in (0, 5, len(branch) // 2, -1):
+        row, orbit = branch.data.isel(point=index), branch.orbit(index)
+        assert orbit.amplitudes["mass"] == pytest.approx(float(row.amplitude[0]), rel=1e-9)
+        np.testing.assert_allclose(np.abs(orbit.multipliers[0]), np.hypot(*row_multipliers(row)), rtol=1e-7)
+    with pytest.raises(rb.CaseError, match="no point"):
+        branch.orbit(len(branch))
+
+
+def row_multipliers(row):
+    """Return real and imaginary part of the largest multiplier."""
+    return float(row.multiplier_real[0]), float(row.multiplier_imaginary[0])
+
+
+def test_file(branch, tmp_path):
+    """A branch that is read from its file is the same, and other files are refused."""
+    again = rb.Branch.load(branch.save(tmp_path / "branch.nc"))
+    assert again.parameter == branch.parameter
+    for name in branch.data:
+        np.testing.assert_array_equal(again.data[name].values, branch.data[name].values)
+    assert str(again) == str(branch)
+    (tmp_path / "other.nc").write_bytes(b"nothing")
+    with pytest.raises(rb.DataError, match="cannot be read"):
+        rb.Branch.load(tmp_path / "other.nc")
+    with pytest.raises(rb.DataError, match="no file"):
+        rb.Branch.load(tmp_path / "missing.nc")
+
+
+def test_branch_of_motions_without_symmetry(branch):
+    """At the pitchfork a branch of motions begins that are not symmetric; at a torus none is computed."""
+    pitchfork, torus = branch.specials
+    other = branch.switch(pitchfork, ("31 Hz", "33 Hz"), points=5, progress=False)
+    assert not other.data.symmetric.values.astype(bool)[2:].any()
+    with pytest.raises(rb.CaseError, match="flip or a pitchfork"):
+        branch.switch(torus)
+
+
+def test_progress_stops(orbit):
+    """The continuation ends with the points so far if the function of the progress returns False."""
+    branch = rb.continue_orbit(orbit, "load.frequency", ("31 Hz", "38 Hz"), progress=lambda done, _: done < 4)
+    assert 1 <= len(branch) < 12
+
+
+def test_figure(branch):
+    """The figure has lines for stable and unstable motions and marks of the special points."""
+    figure = branch.plot()
+    names = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert {"stable", "unstable", "pitchfork", "torus"} <= set(names)
+
+
+def test_same_branch_over_a_linked_parameter(orbit):
+    """The motion at another restitution is on the branch over the restitution."""
+    branch = rb.continue_orbit(orbit, "damper.contact.restitution", (0.55, 0.65), progress=False)
+    end = branch.orbit(-1)
+    again = rb.find_orbit(end.case, near=end)
+    assert again.amplitudes["mass"] == pytest.approx(end.amplitudes["mass"], rel=1e-9)

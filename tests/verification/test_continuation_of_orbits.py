@@ -1,0 +1,157 @@
+"""Branches of periodic motions: limits of stability, branches that begin there, and grazing, against closed forms.
+
+A slow sweep shows the stable part of a branch only, so that no test compared a bifurcation with theory.
+"""
+
+import math
+import time
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from tests.support import impact_cases
+from tests.support.exact import impact_oscillator, masri_caughey, shaken
+
+import rattlebox as rb
+
+AMPLITUDE = "structure.motion[0].amplitude"
+
+
+def table_branch(restitution, limits):
+    """Return the branch of a ball that bounces on a table, one impact a cycle, over the amplitude."""
+    exact = shaken.table_orbit(restitution, 1.02 * shaken.table_bounds(restitution, 1)[0], 1)
+    case = impact_cases.table(exact, 1.0)
+    damper = case.impact_dampers[0]
+    start = [float(damper.positions0[0]), float(damper.velocities0[0])]
+    return rb.continue_orbit(rb.find_orbit(case, near=start, period=1), AMPLITUDE, limits, progress=False)
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.8])
+def test_bouncing_ball(restitution):
+    """The ball on a table appears in a fold and doubles its period at the values of the textbook."""
+    fold, flip = shaken.table_bounds(restitution, 1)
+    branch = table_branch(restitution, (0.9 * fold, 1.3 * flip))
+    located = {point.kind: point.value for point in branch.specials}
+    assert located["fold"] == pytest.approx(fold, abs=1e-8)
+    assert located["flip"] == pytest.approx(flip, abs=1e-8)
+    assert not branch.is_closed
+    # Beyond the flip the motion goes on as an unstable one with the same approach speed.
+    beyond = branch.data.where(branch.data.value > 1.1 * flip, drop=True)
+    speed = 2 * math.pi / (1 + restitution)
+    assert beyond.point.size > 5
+    assert not beyond.stable.values.astype(bool).any()
+    np.testing.assert_allclose(beyond.slowest_impact.values, speed, rtol=1e-9)
+    # Multipliers have the sum and the product of the exact map.
+    one = beyond.isel(point=-1)
+    gamma = float(one.value)
+    phase = -math.acos(fold / gamma) if float(one.multiplier_real.max()) > 1 else math.acos(fold / gamma)
+    trace = 1 + restitution**2 - (1 + restitution) ** 2 * gamma * math.sin(phase)
+    assert float(one.multiplier_real.sum()) == pytest.approx(trace, rel=1e-7)
+
+
+def test_doubled_period_of_the_ball():
+    """The branch that begins at the flip has twice the period and is stable at first."""
+    flip = shaken.table_bounds(0.5, 1)[1]
+    branch = table_branch(0.5, (1.0, 2.0))
+    point = next(each for each in branch.specials if each.kind == "flip")
+    doubled = branch.switch(point, (1.0, 1.6), progress=False)
+    assert doubled.data.attrs["cycles"] == 2
+    assert doubled.data.special.values[0] == "flip"
+    assert doubled.data.stable.values[2]
+    near = doubled.orbit(3)
+    assert near.period == pytest.approx(4 * math.pi)
+    speeds = [impact.approach_speed for impact in near.impacts]
+    assert len(speeds) == 2
+    assert abs(speeds[0] - speeds[1]) > 1e-3
+    assert float(doubled.data.value.values[1:].min()) > flip
+
+
+def largest_multiplier(clearance):
+    """Return the largest multiplier of two impacts a cycle, less 1."""
+    (exact,) = masri_caughey.orbits(0.1, 0.5, clearance)
+    return float(np.abs(exact.multipliers()).max()) ** 2 - 1
+
+
+def test_limits_of_stability_of_two_impacts():
+    """Both limits of stability of two impacts a cycle over the gap are those of the closed form."""
+    (exact,) = masri_caughey.orbits(0.1, 0.5, 20.0)
+    case = impact_cases.impact_damper(exact, 2.0)
+    branch = rb.continue_orbit(rb.find_orbit(case, period=1), "damper.gap", (4.0, 18.0), progress=False)
+    assert branch.data.symmetric.values.astype(bool).all()
+    values = branch.data.value.values
+    changes = [p for p in branch.specials if p.kind in ("pitchfork", "torus", "fold")]
+    assert changes
+    for point in changes:
+        near = 2 * point.value
+        limit = brentq(largest_multiplier, near * 0.99, near * 1.01, xtol=1e-13)
+        assert point.value == pytest.approx(limit / 2, rel=1e-8)
+    # Amplitudes of all points, stable or not, are those of the closed form.
+    for k in range(0, values.size, 7):
+        (exact,) = masri_caughey.orbits(0.1, 0.5, 2 * float(values[k]))
+        assert float(branch.data.slowest_impact[k]) == pytest.approx(exact.approach, rel=1e-9)
+    assert float(branch.data.determinant_error.max()) < 1e-7
+
+
+def test_limit_of_stability_over_gap_and_restitution():
+    """The curve on which two impacts a cycle lose stability is that of the closed form over gap and restitution."""
+    (exact,) = masri_caughey.orbits(0.1, 0.5, 20.0)
+    orbit = rb.find_orbit(impact_cases.impact_damper(exact, 2.0), period=1)
+    branch = rb.continue_orbit(orbit, "damper.gap", (4.0, 18.0), progress=False)
+    axes = ("damper.gap", "method.restitution")
+    for point in branch.specials:
+        curve = rb.continue_point(point, axes, [(4.0, 18.0), (0.4, 0.6)], step=0.05, points=12, progress=False)
+        assert curve.point.size > 8
+        assert float(curve[axes[1]].max() - curve[axes[1]].min()) > 0.02
+        for gap, restitution in zip(curve[axes[0]].values, curve[axes[1]].values, strict=True):
+            (exact,) = masri_caughey.orbits(0.1, float(restitution), 2 * float(gap))
+            values = exact.multipliers()
+            nearest = values[np.argmin(np.abs(np.abs(values) - 1))]
+            assert abs(nearest) == pytest.approx(1, abs=1e-8)
+
+
+def oscillator(amplitude=1.0, gap=0.3):
+    """Return an oscillator with a stop, and a state of its motion with one impact a cycle."""
+    (exact, *_) = impact_oscillator.orbits(0.05, 2.0, gap / amplitude, 0.5)
+    x, v = (amplitude * value for value in exact.state(1.0))
+    return rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio=0.05, displacement=x, velocity=v),
+        stop=rb.Stop(gap=gap, contact=rb.Linear(stiffness=1.0, restitution=0.5)),
+        load=rb.Harmonic(amplitude=amplitude, frequency="2 rad/s", phase=2.0 + exact.load_phase + math.pi / 2),
+        duration=30.0,
+        method=rb.Newton(restitution=0.5),
+    ), [x, v]
+
+
+def test_grazing():
+    """An impact vanishes where the motion without a stop just reaches it, and a multiplier grows as one over its speed."""
+    case, start = oscillator()
+    branch = rb.continue_orbit(rb.find_orbit(case, near=start, period=1), "stop.gap", (0.2, 0.4), progress=False)
+    reach = 1 / abs(1 - 4 + 2j * 0.05 * 2)
+    lost = next(point for point in branch.specials if point.kind == "impact lost")
+    assert lost.value == pytest.approx(reach, abs=1e-7)
+    # The derivative of the map is singular as one over the approach speed: their product has a limit.
+    data = branch.data.isel(point=np.argsort(branch.data.slowest_impact.values)[:6])
+    product = np.hypot(data.multiplier_real, data.multiplier_imaginary).max("multiplier") * data.slowest_impact
+    np.testing.assert_allclose(product, product[0], rtol=0.05)
+
+
+def test_near_miss_becomes_an_impact():
+    """Without impacts the motion is that of the structure alone, up to the grazing."""
+    case, _ = oscillator()
+    wide = case.replaced({"stop.gap": 0.5})
+    rest = rb.find_orbit(wide, near=[0.1, 0.1], period=1)
+    assert not rest.impacts
+    branch = rb.continue_orbit(rest, "stop.gap", (0.2, 0.6), progress=False)
+    reach = 1 / abs(1 - 4 + 2j * 0.05 * 2)
+    grazing = next(point for point in branch.specials if point.kind == "grazing")
+    assert grazing.value == pytest.approx(reach, abs=1e-9)
+
+
+def test_three_hundred_points():
+    """A branch of 300 points takes less than 10 s of processor time."""
+    (exact,) = masri_caughey.orbits(0.1, 0.5, 20.0)
+    orbit = rb.find_orbit(impact_cases.impact_damper(exact, 2.0), period=1)
+    begin = time.process_time()
+    branch = rb.continue_orbit(orbit, "damper.gap", (4.0, 18.0), step=0.004, progress=False)
+    used = time.process_time() - begin
+    assert used / len(branch) * 300 < 10
