@@ -719,7 +719,7 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector, allowed: 
     room = cavity.room(positions, radii)
     # The centre of a particle is inside of periodic faces, too; the image of its other half is on the other side.
     period = cavity.period
-    beyond = np.where(period > 0, np.abs(positions) - 0.5 * period * (1 + allowed), -np.inf).max(axis=1)
+    beyond = np.where(period > 0, np.abs(positions) - 0.5 * period * (1 + TOUCHING), -np.inf).max(axis=1)
     room = np.where(beyond > 0, np.minimum(room, -beyond), room)
     worst = int((room / radii).argmin())
     if room[worst] < -allowed * radii[worst]:

@@ -111,8 +111,8 @@ def wrapped(positions: Vector, period: Vector) -> Vector:
         return positions
     length = np.where(period > 0, period, np.inf)
     inside = positions - period * np.floor(positions / length + 0.5)
-    # Rounding may leave a position at the upper end, which is the image of the lower one.
-    return np.where(inside >= 0.5 * length, -0.5 * period, inside)
+    # Rounding may leave a position beyond an end; both ends are images of each other.
+    return np.where((inside >= 0.5 * length) | (inside < -0.5 * length), -0.5 * period, inside)
 
 
 def to_nearest_image(branch: Vector, period: Vector) -> Vector:

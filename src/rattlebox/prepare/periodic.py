@@ -37,9 +37,9 @@ def periodic_notes(case: Case, damper: ParticleDamper, shape: NDArray[np.float64
     if along:
         words = " and ".join(along)
         yield (
-            f"warning: the cavity of {name} moves along {words}, in which it is periodic: no wall pushes the particles along "
-            f"{words}, only friction at the other walls does, as in the middle of a bed that is much longer than the motion; "
-            f"try: walls along {words}, if the real cavity ends there"
+            f"warning: the cavity of {name} moves along {words}, in which it is periodic: no wall pushes the particles "
+            f"along {words}, only friction at the other walls does, as in the middle of a bed that is much longer than the "
+            f"motion; try: walls along {words}, if the real cavity ends there"
         )
     diameter = 2 * float(damper.contents.radius.max())
     for axis, length in zip(AXES, period, strict=True):
