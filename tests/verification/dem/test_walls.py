@@ -224,3 +224,106 @@ def test_a_shift_along_a_periodic_direction_changes_nothing() -> None:
         case = shaken(cavity=SLICE, particles=particles, walls={}, packing=packing).replaced({"duration": 0.004})
         losses.append(rb.simulate(case).ledger.contact_loss[-1])
     assert losses[0] > 0 and losses == pytest.approx([losses[0]] * 3, rel=1e-6)
+
+
+# ---- beds at rest and shaken beds
+
+BALL = 4e-3
+PRESSED = 100.0
+"""Acceleration of the base that presses a bed down and mobilises its friction at the walls [m/s^2]."""
+
+
+def pressed(cavity: Any, count: int, by: float = PRESSED, duration: float = 0.1, **options: Any) -> Any:
+    """Return the mean forces at the end of a run in which a bed is slowly pressed down, over the force on it, by wall."""
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="glass", diameter=BALL, count=count),
+        cavity=cavity,
+        contact=rb.Tsuji(restitution=0.3),
+        packing=rb.Settled(seed=1),
+        softening=3e4,
+        **options,
+    )
+    ramp = rb.Record(times=[0, 0.08, 1.0], values=[0, by, by], unit="m/s^2", direction="z")
+    output = rb.Output(rate="400 Hz", walls=True)
+    run = dem_cases.run(rb.Case(structure=rb.Fixed(), damper=damper, duration=duration, base=ramp, output=output))
+    load = run.arrays.particle_mass[0] * (9.81 + by)
+    assert run.arrays.kinetic_energy[-1, 0] < 1e-3 * load * BALL
+    # Means over the last part of the run, of all time steps in it.
+    arrays, first = run.arrays, -40 if duration > 0.2 else -5
+    length = arrays.time[-1] - arrays.time[first]
+    force = (arrays.wall_impulse[-1] - arrays.wall_impulse[first]) / length / load
+    normal = (arrays.wall_normal_impulse[-1] - arrays.wall_normal_impulse[first]) / length / load
+    return dict(zip(run.arrays.walls, zip(force, normal, strict=True), strict=True)), run
+
+
+def test_a_bed_without_friction_has_hydrostatic_pressure() -> None:
+    """Without friction the floor carries all of a bed, sides have no vertical force, and their pressure is that of a fluid.
+
+    Spheres without friction carry a small difference of pressures: the sides have 0.8 to 1.1 of the vertical pressure.
+    """
+    width, count = 5 * BALL, 200
+    walls, run = pressed(rb.Box(size=(width, width, 14 * BALL)), count, by=0.0, duration=0.3)
+    assert -walls["-z"][0][2] == pytest.approx(1, abs=2e-3)
+    damper = run.case.particle_dampers[0]
+    height = rb.measure_bed(damper).height
+    for face in ("-x", "+x", "-y", "+y"):
+        force, normal = walls[face]
+        assert force[2] == 0 and np.delete(force, "xy".index(face[1])).tolist() == [0, 0]
+        # The mean vertical pressure over the depth is half of that on the floor.
+        assert 0.8 < normal / (0.5 * height / width) < 1.1
+    for axis in range(2):
+        opposite = walls["-" + "xy"[axis]][0][axis] + walls["+" + "xy"[axis]][0][axis]
+        assert abs(opposite) < 2e-3
+
+
+def test_side_walls_carry_a_deep_bed_as_in_janssen_s_law() -> None:
+    """The load on the floor of a pressed column saturates as (1 - exp(-n/N)) N/n, with one fitted number N.
+
+    N and the measured ratio of friction to pressure at the side give K, the ratio of horizontal to vertical pressure,
+    between 0.35 and 0.65. Vertical forces on all walls add up to the force on the bed.
+    """
+    counts, loads, friction = np.array([100, 200, 400]), [], []
+    for count in counts:
+        side = rb.Wall(friction=0.2, rolling=0.5)  # wall balls slide, and do not roll off the load
+        cavity = rb.Cylinder(diameter=5 * BALL, length=max(8, count / 12) * BALL)
+        walls, _ = pressed(cavity, int(count), friction=0.3, walls={"side": side})
+        (side_force, side_normal), (floor, _) = walls["side"], walls["first end"]
+        assert -(side_force + floor)[2] == pytest.approx(1, abs=5e-3)
+        loads.append(-floor[2])
+        friction.append(-side_force[2] / side_normal)
+    assert min(friction) > 0.7 * 0.2 and max(friction) <= 0.2 * (1 + 1e-9)
+
+    def law(saturated: Any) -> Any:
+        return (1 - np.exp(-counts / saturated)) * saturated / counts
+
+    choices = np.linspace(100, 1000, 9001)
+    saturated = choices[np.argmin([np.sum((law(n) - loads) ** 2) for n in choices])]
+    assert np.abs(law(saturated) - loads).max() < 0.03  # other packings of a column differ by 0.015
+    filled = 0.55  # volume of the balls over that of their bed in a can of five diameters
+    depth = saturated * BALL / (6 * filled * (5 / 2) ** 2)
+    assert 0.35 < 5 * BALL / (4 * np.mean(friction) * depth) < 0.65
+
+
+@pytest.mark.slow
+def test_a_periodic_slice_has_the_loss_of_a_wide_bed() -> None:
+    """The loss per mass of a slice of eight diameters is that of a box five times as wide, within the 95 % intervals."""
+    loss: dict[str, list[float]] = {"slice": [], "wide": []}
+    for name, width, periodic, count in (("slice", 8, "xy", 160), ("wide", 40, "y", 800)):
+        for seed in range(1, 5):
+            damper = rb.ParticleDamper(
+                particles=rb.Particles(material="steel", diameter=BALL, count=count),
+                cavity=rb.Box(size=(width * BALL, 6 * BALL, 10 * BALL), periodic=periodic),
+                contact=rb.Tsuji(restitution=0.7),
+                friction=0.3,
+                walls={} if name == "slice" else {"-x": "frictionless", "+x": "frictionless"},
+                packing=rb.Settled(seed=seed),
+                softening=100,
+            )
+            shaker = rb.Shaker(motion=rb.Harmonic(amplitude="40 m/s^2", frequency="40 Hz", direction="z"))
+            case = rb.Case(structure=shaker, damper=damper, duration=1)
+            study = rb.sweep(case, {"seed": [0]}, ["reduced_loss"], cycles=(4, 16), progress=False)
+            loss[name].append(study.reduced_loss.values.item())
+    means = {name: np.mean(values) for name, values in loss.items()}
+    errors = {name: 3.18 * np.std(values, ddof=1) / 2 for name, values in loss.items()}  # Student, four values
+    assert abs(means["slice"] - means["wide"]) < np.hypot(*errors.values())
+    assert max(errors.values()) < 0.03 * means["wide"]
