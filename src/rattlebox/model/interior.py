@@ -93,6 +93,16 @@ class Interior(Cavity):
         return self.shape.frame
 
     @property
+    def face_areas(self) -> Vector:
+        """Area of each face of the cavity, then of each body, (f,) [m^2]; the bodies of an array are one face."""
+        labels = self.walls().labels
+        areas = np.zeros(len(labels))
+        areas[: len(self.shape.walls().labels)] = self.shape.face_areas
+        for share, solid in zip(self._shares, self.solids, strict=True):
+            areas[labels.index(solid.name)] += share * solid.area
+        return areas
+
+    @property
     def period(self) -> Vector:
         """That of the cavity, (3,) [m]."""
         return self.shape.period
