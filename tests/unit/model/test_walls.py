@@ -149,10 +149,12 @@ def test_a_case_file_with_faces_is_read_back_equal() -> None:
     walls = true
     """
     case = rb.Case.from_toml(text)
-    assert case.particle_dampers[0].walls["-z"].material.young == 2e9
+    floor: Any = case.particle_dampers[0].walls["-z"]
+    assert floor.material.young == 2e9
     assert rb.Case.from_toml(case.to_toml()) == case
     changed = case.replaced({"damper.walls.-z.friction": 0.1, "damper.cavity.periodic": ""})
-    assert changed.particle_dampers[0].walls["-z"].friction.coefficient == 0.1
+    floor = changed.particle_dampers[0].walls["-z"]
+    assert floor.friction.coefficient == 0.1
     assert "-x" in changed.particle_dampers[0].cavity.walls().names
 
 
@@ -185,7 +187,7 @@ def test_packings_of_periodic_boxes_touch_across_the_faces_without_overlap(packi
         packing=packing,
     )
     centres = rb.simulate(
-        rb.Case(structure=rb.Fixed(), damper=made.model_copy(update={"softening": 100.0}), duration=1e-6)
+        rb.Case(structure=rb.Fixed(), dampers=made.model_copy(update={"softening": 100.0}), duration=1e-6)
     ).arrays.particles.position
     images = np.array([(i, j, 0) for i in (-1, 0, 1) for j in (-1, 0, 1)]) * 0.02
     apart = np.linalg.norm(centres[:, None, None] - centres[None, :, None] + images, axis=-1)
