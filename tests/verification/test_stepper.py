@@ -631,7 +631,7 @@ def test_packed_case_is_read_by_an_independent_reader() -> None:
     data = pack_component(damper_case(damper, None, None, None, "1 s"), alone=True).data
     assert data[:8] == b"RATTLEBX"
     version, engine, size = struct.unpack_from("<3q", data, 8)
-    assert (version, engine, size) == (1, 1, len(data) - 40)
+    assert (version, engine, size) == (2, 1, len(data) - 40)
     hashed = 14695981039346656037
     for byte in data[40:]:
         hashed = (hashed ^ byte) * 1099511628211 % 2**64

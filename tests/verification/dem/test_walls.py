@@ -179,6 +179,16 @@ def test_a_ball_that_crosses_a_face_flies_on() -> None:
         assert run.counts["first_touches_wall"] == 0
 
 
+def test_a_stepper_of_a_periodic_box_lets_balls_through() -> None:
+    """A ball that crosses periodic faces exerts no force in a stepper, and loses nothing."""
+    ball = Ball(2e-3, velocity=(3.0, 0.0, 0.0))
+    stepper = rb.Stepper(dem_cases.damper([ball], cavity=SLICE, **LAWS))
+    for k in range(1, 31):
+        result = stepper.advance(k * 1e-3, acceleration=(0, 0, 0))
+        assert np.abs(result.force).max() < 1e-12 and result.loss == 0
+    assert result.stored == pytest.approx(0.5 * ball.mass * 9.0)
+
+
 def test_balls_collide_across_a_face_as_inside() -> None:
     """Two balls that meet at a periodic face, or astride of it, collide as in the middle of the box."""
     runs = []
