@@ -127,6 +127,7 @@ from rattlebox.studies.calibration.measurements import Drops as Drops
 from rattlebox.studies.calibration.measurements import RingDown as RingDown
 from rattlebox.studies.calibration.measurements import ShakerLoss as ShakerLoss
 from rattlebox.studies.damping_curve import damping_curve as damping_curve
+from rattlebox.studies.gradient import gradient as gradient
 from rattlebox.studies.grid.sampling import geomspace as geomspace
 from rattlebox.studies.grid.sampling import linspace as linspace
 from rattlebox.studies.grid.sampling import random_design as random_design

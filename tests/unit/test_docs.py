@@ -47,6 +47,7 @@ PAGES = (
     "how-to/continue",
     "how-to/fills",
     "how-to/fmu",
+    "how-to/gradients",
     "how-to/loads",
     "how-to/record_sets",
     "how-to/map_on_structure",

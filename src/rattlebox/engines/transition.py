@@ -14,7 +14,7 @@ from rattlebox.core import _core
 from rattlebox.model.base import Part
 from rattlebox.model.errors import Hint
 from rattlebox.model.paths import get, replaced
-from rattlebox.prepare.pack import pack_columns, pack_parts
+from rattlebox.prepare.pack import pack_columns, pack_parts, shape_columns
 from rattlebox.prepare.variants import is_number
 
 if TYPE_CHECKING:
@@ -78,12 +78,14 @@ class Transition:
     @property
     def state(self) -> NDArray[np.float64]:
         """State at the end."""
-        return self.states[-1]
+        last: NDArray[np.float64] = self.states[-1]
+        return last
 
     @property
     def by_time(self) -> NDArray[np.float64]:
         """Rate of the state at the end."""
-        return self.rates[-1]
+        last: NDArray[np.float64] = self.rates[-1]
+        return last
 
     @property
     def matrix(self) -> NDArray[np.float64]:
@@ -224,6 +226,24 @@ class Flow:
         status = REFUSALS.get(raw.refused) or raw.status.name
         hard = self.case.method.kind == "newton"
         return Transition(raw.time, raw.state, raw.rate, slopes, status, raw, hard, self._first_contacts)
+
+    def variants(self, values: ArrayLike | None = None) -> _core.Problem:
+        """Return the packed case in the variants of the differences in its parameters, the case itself first."""
+        return pack_columns(
+            self.case, self._columns(self.values if values is None else np.asarray(values, dtype=float))
+        )
+
+    def shape(self, point: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the mode shapes at a point, (m,), and their derivatives in the parameters, (m, p)."""
+        shapes = shape_columns(self.case, self._columns(self.values), point)
+        return shapes[:, 0], self.slopes(shapes)
+
+    def slopes(self, variants: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the derivatives in the parameters of numbers in all variants, (..., p)."""
+        fine, _ = self._weights()
+        whole = np.broadcast_to(variants, (*variants.shape[:-1], fine.shape[1]))
+        slopes: NDArray[np.float64] = (whole - whole[..., :1]) @ fine.T / self._sizes(self.values)
+        return slopes
 
     def _sizes(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(values == 0, 1.0, np.abs(values))

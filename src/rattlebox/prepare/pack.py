@@ -190,6 +190,11 @@ def pack_columns(case: Case, columns: Columns) -> _core.Problem:
     return _problem(with_columns(case, columns), 1)
 
 
+def shape_columns(case: Case, columns: Columns, point: str) -> NDArray[np.float64]:
+    """Return the mode shapes at a point in the variants over columns of numbers, (m, variants)."""
+    return _points(with_columns(case, columns), 1)[point]
+
+
 def with_columns(batch: Case, columns: Columns) -> Case:
     """Return a copy of a case with arrays in place of numbers."""
     # Fields are replaced without validation, which would refuse arrays; lengths that are given in another way are
