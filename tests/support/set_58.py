@@ -3,7 +3,16 @@
 import numpy as np
 
 
-def set58(kind: int, values: np.ndarray, unit: str, *, name: str = "Head", step: float = 5.0, over: int = 18) -> str:
+def set58(
+    kind: int,
+    values: np.ndarray,
+    unit: str,
+    *,
+    name: str = "Head",
+    step: float = 5.0,
+    over: int = 18,
+    under: str = "NONE",
+) -> str:
     """Return a set 58 of real or complex values at even steps, written anew."""
     is_complex = np.iscomplexobj(values)
     numbers = np.column_stack((values.real, values.imag)).ravel() if is_complex else values
@@ -18,7 +27,7 @@ def set58(kind: int, values: np.ndarray, unit: str, *, name: str = "Head", step:
             f"{5 if is_complex else 2:10d}{values.size:10d}{1:10d}{0:13.5E}{step:13.5E}{0:13.5E}",
             f"{over:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20} {'Hz' if over == 18 else 's':<20}",
             f"{12:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20} {unit:<20}",
-            *[f"{0:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20} {'NONE':<20}"] * 2,
+            *(f"{0:10d}{0:5d}{0:5d}{0:5d} {'NONE':<20} {label:<20}" for label in (under, "NONE")),
             *("".join(f"{number:13.5E}" for number in row) for row in rows),
             "    -1\n",
         ]

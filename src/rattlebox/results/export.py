@@ -24,6 +24,7 @@ from rattlebox.exchange.write.universal import (
     function_set,
     write_universal,
 )
+from rattlebox.model.space import unit_vector
 
 from .datasets import labelled_parts, parts
 from .schema import AXES, groups
@@ -146,10 +147,28 @@ def to_uff(run: Record, path: Path, variables: Iterable[str] | None, nodes: Mapp
         kind = TIME_RESPONSE if unit in _LETTERS else GENERAL
         axis = label.rpartition(" ")[2]
         node = numbers.get(label, (0, AXES.index(axis) + 1 if axis in AXES else 0))
+        if name == "load":
+            node = _node_of_load(run, label, numbers)
         full, quantity = f"{name} {label}".strip(), EXCITATION_FORCE if name == "load" else None
         function = Function(full, kind, run.arrays.time, "s", values, unit, response=node, quantity=quantity)
         sets.append(function_set(function))
     return write_universal(path, sets)
+
+
+def _node_of_load(run: Record, label: str, numbers: Mapping[str, Node]) -> Node:
+    """Return node and direction of the point on which a load acts; the direction is 0 if it is along no axis."""
+    signal = run.case.loads[run.arrays.loads.index(label)]
+    point = run.case.modes.point(signal.point)
+    if signal.direction is None or point in numbers:
+        node, direction = numbers.get(point, (0, 0))
+    else:  # its components are points of the run
+        node, direction = numbers.get(f"{point} x", (0, 0))[0], 0
+    if signal.direction is not None:
+        axis = unit_vector(signal.direction)
+        k = int(np.argmax(np.abs(axis)))
+        own = numbers.get(f"{point} {AXES[k]}", (node, k + 1))[1]
+        direction = int(np.sign(axis[k])) * own if abs(axis[k]) == 1 else 0
+    return node, direction
 
 
 def to_sep005(run: Record, variables: Iterable[str] | None) -> list[dict[str, Any]]:

@@ -76,6 +76,35 @@ def test_variables_and_nodes(tmp_path: Path) -> None:
         rb.to_uff(two, tmp_path / "two.uff", nodes={"a": 2})
 
 
+def test_loads_are_at_the_nodes_of_their_points(tmp_path: Path) -> None:
+    """A load has the node of its point, on a line and in 3-D, against an axis and along none.
+
+    All loads were at node 0: the tests read their values only.
+    """
+    line = rb.Case(
+        structure=rb.ShearBuilding(masses=["2 t"] * 2, stiffnesses=["1 MN/m"] * 2),
+        loads=[
+            rb.Harmonic(amplitude="1 kN", frequency="2 Hz", point="storey 2"),
+            rb.HalfSine(amplitude="1 kN", duration="0.1 s", point="storey 1"),
+        ],
+        duration="0.1 s",
+    )
+    spatial = rb.Case(
+        structure=rb.Modal(frequencies=["40 Hz"], damping_ratios=[0.0], shapes={"tip": [[1.0, 0.5, 2.0]]}),
+        loads=[
+            rb.Harmonic(amplitude="1 N", frequency="9 Hz", direction=direction) for direction in ("z", "-y", (1, 1, 0))
+        ],
+        duration="0.1 s",
+    )
+    places = []
+    for case, nodes in ((line, {"storey 1": "7 x", "storey 2": "9 -x"}), (spatial, {"tip": 8})):
+        file = rb.simulate(case, progress=False).to_uff(
+            tmp_path / f"{len(places)}.uff", variables=["load"], nodes=nodes
+        )
+        places.append([(each["rsp_node"], each["rsp_dir"]) for each in sets(file) if each["type"] == 58])
+    assert places == [[(9, -1), (7, 1)], [(8, 3), (8, -2), (8, 0)]]
+
+
 def test_a_run_in_three_dimensions(tmp_path: Path) -> None:
     """Components of vectors have the directions of their axes, and variables that a run cannot know are left out."""
     damper = rb.ParticleDamper(

@@ -181,6 +181,20 @@ def test_times_in_the_unit_of_the_label(tmp_path: Path) -> None:
         np.testing.assert_allclose(rb.Record.from_file(path).times, 2.5 * factor * np.arange(4), rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("over", "under", "factor"),
+    [("g^2", "Hz", G**2), ("(m/s^2)^2", "HZ", 1), ("g^2/Hz", "Hz", G**2), ("g^2/Hz", "g", G**2)],
+)
+def test_numerator_and_denominator_of_a_density(tmp_path: Path, over: str, under: str, factor: float) -> None:
+    """Labels g^2 and Hz of numerator and denominator are g^2/Hz; only whole units in one label had been tried."""
+    path = tmp_path / "level.uff"
+    path.write_text(set58(9, np.full(4, 0.02), over, under=under))
+    assert rb.Random.from_file(path, "1 s").corners[0, 1] == pytest.approx(0.02 * factor)
+    path.write_text(set58(9, np.full(4, 0.02), "g", under="Hz"))
+    with pytest.raises(rb.DataError, match="'g/Hz' is no unit of a density"):
+        rb.Random.from_file(path, "1 s")
+
+
 def test_exponents_of_fortran(tmp_path: Path) -> None:
     """Universal files with exponents D ended in "Error when reading data-set(s)", without the reason."""
     path = tmp_path / "a.uff"

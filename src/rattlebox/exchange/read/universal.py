@@ -546,12 +546,18 @@ def densities(path: Path) -> list[DensityInFile]:
             each.abscissa,
             np.real(each.values).astype(float),
             each.name,
-            each.unit,
+            _unit_of_density(each),
             each.abscissa_unit,
             tuple(enumerate(each.texts, start=1)),
         )
         for each in chosen
     ]
+
+
+def _unit_of_density(density: Function) -> str:
+    """Return the unit of a density; some programs write its numerator, g^2, and its denominator, Hz, as two labels."""
+    unit = density.unit
+    return f"{unit}/Hz" if unit and "hz" not in unit.lower() and density.source_unit.lower() == "hz" else unit
 
 
 def frequency_responses(path: Path) -> list[Function]:
