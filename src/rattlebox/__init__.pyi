@@ -146,9 +146,12 @@ from rattlebox.studies.kinds.sweep import compare as compare
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.maps.response_from_map import response_from_map as response_from_map
 from rattlebox.studies.notching import notch_with_dampers as notch_with_dampers
+from rattlebox.studies.orbits.basin_stability import BasinStability as BasinStability
+from rattlebox.studies.orbits.basin_stability import basin_stability as basin_stability
 from rattlebox.studies.orbits.branch import Branch as Branch
 from rattlebox.studies.orbits.branch import SpecialPoint as SpecialPoint
 from rattlebox.studies.orbits.continuation import continue_orbit as continue_orbit
+from rattlebox.studies.orbits.exponents import lyapunov_spectrum as lyapunov_spectrum
 from rattlebox.studies.orbits.find import find_orbit as find_orbit
 from rattlebox.studies.orbits.orbit import Orbit as Orbit
 from rattlebox.studies.orbits.special_curve import continue_point as continue_point

@@ -18,6 +18,16 @@ ENOUGH_DECAY = 2 * _LEAST_DECAY
 """Length of a window that suffices for most intervals, times the decay rate: 10 cycles over the damping ratio."""
 
 
+def smooth_weights(part: ArrayLike) -> FloatArray:
+    """Return the weights exp(-1 / (s (1 - s))) of values at parts s of a window, 0 outside of 0 < s < 1.
+
+    Means with them converge much faster for regular motion than even ones (Das et al. 2017, doi:10.1088/1361-6544/aa84c2).
+    """
+    s = np.asarray(part, dtype=float)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        return np.where((s > 0) & (s < 1), np.exp(-1 / (s * (1 - s))), 0.0)
+
+
 def shortest_window(decay: ArrayLike) -> float:
     """Return the shortest window in which a linear motion has an interval [s].
 

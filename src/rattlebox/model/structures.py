@@ -120,6 +120,10 @@ class StructurePart(Part):
     def modes(self) -> ModalModel:
         """Return the modes."""
 
+    def started(self, displacement: Vector, velocity: Vector) -> StructurePart:
+        """Return the structure with these initial modal displacements and velocities, (m,) [kg^1/2 m], [kg^1/2 m/s]."""
+        return Modal.of(self.modes(), displacement=displacement, velocity=velocity) if displacement.size else self
+
     def words(self) -> str:
         """Return a phrase about the structure with its first natural frequency."""
         return self._with_first_mode(f"a structure of {counted(len(self.modes().stiffness), 'mode')}")
@@ -197,6 +201,13 @@ class SDOF(StructurePart):
         if self.damping_ratio and self.stiffness == 0:
             raise Hint("a damping ratio has no meaning without stiffness", 'damping = "5 N s/m"')
         return self
+
+    def started(self, displacement: Vector, velocity: Vector) -> SDOF:
+        """Return the oscillator with this initial displacement and velocity; see `StructurePart.started`."""
+        root = math.sqrt(self.mass)
+        return self.model_copy(
+            update={"displacement": float(displacement[0]) / root, "velocity": float(velocity[0]) / root}
+        )
 
     def words(self) -> str:
         """Return a phrase with mass and natural frequency."""

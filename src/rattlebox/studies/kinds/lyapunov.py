@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from rattlebox._util.batch_means import smooth_weights
 from rattlebox._util.exceptions import CaseError
 from rattlebox.core import _core
 from rattlebox.core._core import Status
@@ -401,9 +402,7 @@ def _start_later(load: _core.Load, wait: Array) -> _core.Load:
 def _weights(steps: int) -> NDArray[np.float64]:
     """Return the weights of the steps in the averages over the first 1, 2, ... steps, (steps, steps)."""
     count, step = np.arange(1, steps + 1)[:, None], np.arange(steps)
-    with np.errstate(divide="ignore", over="ignore"):
-        part = (step + 0.5) / count
-        weights = np.where(step < count, np.exp(-1 / (part * (1 - part))), 0.0)
+    weights = smooth_weights((step + 0.5) / count)
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
@@ -453,13 +452,13 @@ class Lyapunov(Study):
 
     Notes
     -----
-    With impacts a motion is only piecewise smooth. A variational equation would require the jump condition of each impact
-    for every contact law, and is not valid for grazing impacts. The method therefore runs a second motion at a small, finite
-    distance, and rescales the distance repeatedly along the line between both states, so that impacts, sticking and grazing
-    are included. The distance is measured at times at which all contacts of both motions are open and both have had the
-    same impacts; if this is not so at the end of a step, another time is used. Pairs without rescaling, which
-    `rattlebox.analysis.lyapunov_exponent` evaluates, cover only the few decades between rounding and clearance; they suit a
-    single transient, such as the time after a pulse of a record.
+    With impacts a motion is only piecewise smooth. The variational equation, which `lyapunov_spectrum` uses, is not valid
+    for grazing impacts. This method runs a second motion at a small, finite distance, and rescales the distance repeatedly
+    along the line between both states, so that impacts, sticking and grazing are included. The distance is measured at
+    times at which all contacts of both motions are open and both have had the same impacts; if this is not so at the end of
+    a step, another time is used. Pairs without rescaling, which `rattlebox.analysis.lyapunov_exponent` evaluates, cover
+    only the few decades between rounding and clearance; they suit a single transient, such as the time after a pulse of a
+    record.
 
     The distance is the norm of positions times the square root of the mass, and of velocities times the same factor over
     the angular frequency of the cycle or of the fastest mode. With the distance d_k to which d_0 grows in step k of the

@@ -21,6 +21,7 @@ from rattlebox.prepare.pack import pack
 from rattlebox.studies.orbits.forcing import Forcing
 from rattlebox.studies.orbits.motion import Motion, motion_of, started
 from rattlebox.studies.orbits.stability import ON_CIRCLE, stability_words
+from rattlebox.studies.orbits.starting import case_on
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -191,6 +192,26 @@ class Orbit:
     def _shifted(self) -> Case:
         """Return the case whose time begins at the phase of the state."""
         return Forcing.of(self.case).shifted(self.phase)
+
+    def as_case(self) -> Case:
+        """Return the case that starts on the motion, for studies that begin there.
+
+        Studies, such as `rattlebox.lyapunov`, `rattlebox.frequency_response` and `rattlebox.basins`, also take the motion
+        itself in place of a case.
+
+        Returns
+        -------
+        Case
+            Case whose initial state is that of the motion, with the loads at the phase that belongs to it. Structures
+            other than an oscillator, and those with tuned masses, become a `Modal` with the same points; identical dampers
+            (`number`) are listed one by one.
+
+        Raises
+        ------
+        CaseError
+            If the case has tuned masses on a prescribed motion.
+        """
+        return case_on(self)
 
     def plot(self, **options: Any) -> Figure:
         """Draw the motion over a period and its multipliers in the complex plane.

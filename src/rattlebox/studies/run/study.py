@@ -14,7 +14,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, ParamSpec, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, ParamSpec, Protocol, cast, runtime_checkable
 
 from pydantic import (
     AfterValidator,
@@ -56,6 +56,21 @@ it is built: after all modules of this package that the plug-ins import."""
 Parameters = ParamSpec("Parameters")
 
 
+@runtime_checkable
+class StartsCase(Protocol):
+    """A motion from which the case of a study starts."""
+
+    def as_case(self) -> Case:
+        """Return the case that starts on the motion."""
+
+
+def _case_of(value: object) -> object:
+    return value.as_case() if isinstance(value, StartsCase) else value
+
+
+StudiedCase = Annotated[InstanceOf[Case], BeforeValidator(_case_of)]
+
+
 @dataclass(frozen=True, config=CONFIG)
 class Study(ABC):
     """A study of a case: the fields that all kinds share.
@@ -63,7 +78,7 @@ class Study(ABC):
     Parameters
     ----------
     case
-        Base case.
+        Base case, or a periodic motion of `rb.find_orbit`, from which the variants start.
     workers
         Number of threads or processes; default one per core. Results are bitwise independent of it.
     backend
@@ -90,7 +105,7 @@ class Study(ABC):
     Figure and report are named, not imported: a study runs without them.
     """
 
-    case: InstanceOf[Case]
+    case: StudiedCase
     _: KW_ONLY
     workers: Annotated[Whole, Field(ge=1)] | None = None
     backend: Any = "threads"
@@ -235,6 +250,7 @@ _SIMPLE = {
     "Robust": "Literal['worst', 'mean', 'median']",
     "Samples": "int",
     "Seconds": "float | str",
+    "StudiedCase": "Case",
     "Seed": "int",
     "TimeLimit": "float | str",
     "Values": "Sequence[float | str]",
