@@ -1,5 +1,5 @@
 """Walls that carry a bed, and a slice of a wide one
-================================================
+=================================================
 
 For engineers with a deep or a wide bed: side walls with friction carry most of a deep bed, and a slice between periodic
 faces has the loss of a bed that is much wider.

@@ -208,6 +208,10 @@ class Case(Part):
             self._check_particles()
             self._check_snapshots()
             return
+        if self.output.walls:
+            raise Hint(
+                "walls are recorded of a particle damper, and the case has none", "walls = false", ["output", "walls"]
+            )
         if self.output.snapshots is not None:
             raise Hint(
                 "snapshots need a particle damper, and the case has none", "rate or times", ["output", "snapshots"]

@@ -122,6 +122,14 @@ def test_invalid_faces_are_refused(pattern: str) -> None:
         damper(**ERRORS[pattern])
 
 
+def test_walls_are_recorded_of_particle_dampers_only() -> None:
+    """A case without particles that asks for the walls is refused, and so is their measure in a study."""
+    with pytest.raises(rb.CaseError, match=r"output\.walls.*\n  walls are recorded of a particle damper"):
+        rb.reference_case(output=rb.Output(walls=True))
+    with pytest.raises(rb.CaseError, match="largest_wall_wear is that of the walls around particles"):
+        rb.sweep(rb.reference_case(), {"damper.gap": [1e-3]}, ["largest_wall_wear"], progress=False)
+
+
 def test_advice_of_refusals_was_followed() -> None:
     """What the messages suggest is accepted."""
     damper(walls={"-z": "frictionless"})
