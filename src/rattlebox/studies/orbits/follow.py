@@ -107,6 +107,11 @@ class Follower:
                 kind = _kind(name, located)
                 if kind:
                     found.append(_named(located, kind))
+        names = [each.special for each in found]
+        if "fold" in names and "branch point" in names and not point.returns.mirrored:
+            # Motions without the symmetry turn back where they meet the symmetric ones, their mirror images.
+            found = [each for each in found if each.special != "branch point"]
+            found[names.index("fold")] = replace(found[names.index("fold")], special="pitchfork")
         yield from sorted(found, key=lambda each: self.corrector.distance(point, each))
 
 
