@@ -232,14 +232,6 @@ def test_other_loads_are_refused(changes, words):
         rb.backbone(case, ["1 mm", "2 mm"], progress=False)
 
 
-def test_stops_are_refused() -> None:
-    """A case with stops is refused by name: with a damper it ended in a division by zero, and no test had both."""
-    stop = rb.Stop(gap="1 mm", contact=rb.Linear(stiffness="1 MN/m", restitution=0.6))
-    case = case_of(rb.SDOF(mass="1 kg", frequency="10 Hz", damping_ratio=0.01), ball_damper(0.01, 1e-3, 0.5), stop=stop)
-    with pytest.raises(rb.CaseError, match="but the case has 1 stop"):
-        rb.backbone(case, ["1 mm", "2 mm"], progress=False)
-
-
 def test_a_mode_that_the_load_does_not_excite_is_refused():
     """A load at a node of the mode, and a mode that does not exist, are refused by name."""
     beam = rb.Modal(frequencies=[10, 40], damping_ratios=[0.01, 0.01], shapes={"tip": [1, 0.0]})

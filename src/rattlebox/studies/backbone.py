@@ -15,10 +15,10 @@ from rattlebox._util.narrow import instance
 from rattlebox._util.phrases import counted
 from rattlebox._util.quantities import quantity
 from rattlebox.analysis.signals import first_harmonic, trapezoid_weights
+from rattlebox.core import _core
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
-from rattlebox.model.stops import refuse_stops
 from rattlebox.model.structures import Modal
 from rattlebox.model.units import whole_number
 from rattlebox.studies.damping_curve import merged_warnings, on_shaker, random_starts, read_amplitudes, warnings_of
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
+    from rattlebox.model.stops import Stop
     from rattlebox.results.run import Run
 
 FloatArray = NDArray[np.float64]
@@ -47,6 +48,20 @@ _APART = 0.1
 """Difference of the effective masses of two starts, over the larger one, from which they may be different motions."""
 _ERRORS = 3
 """Standard errors of two starts by which different motions must lie further apart."""
+_FALLEN = 0.6
+"""Amplitude over the wanted one below which a motion with stops has fallen beside the resonance."""
+_USUAL_RESTITUTION = 0.7
+"""Restitution of a stop whose law states none, for the first run."""
+_BEYOND = math.radians(20)
+"""Phase beyond that of resonance from which it has."""
+_SIMILAR = 0.25
+"""Stiffness of stops over that at the wanted amplitude from which both scale alike."""
+_RETREAT = 0.9
+"""Factor of the stiffness of stops after that."""
+_LEAD = math.radians(40)
+"""Distance of the phase from that of resonance in runs with stops [rad]."""
+_HALVINGS = 100
+"""Number of bisections of a speed."""
 _RANGE = 0.5
 """Largest relative change of the frequency in which a resonance is sought."""
 
@@ -118,7 +133,10 @@ def backbone(
 
     .. math:: \operatorname{Re} [D(f) - \omega^2 m] = 0, \qquad F = X \operatorname{Im} [D(f) - \omega^2 m].
 
-    For a linear structure this is exact. The first m comes from a run in which the cavities move harmonically, as in
+    For a linear structure this is exact. Stops are springs rather than masses: with them omega^2 m is one number k that depends
+    on the amplitude only, the first one from the duration of an impact, and the runs are made 40 degrees before resonance
+    with the force for the wanted amplitude, because a bent resonance is next to a fold. Hard stops leave no amplitude above
+    their gap, and a search there ends without a result. The first m comes from a run in which the cavities move harmonically, as in
     the mode.
     The damping ratio is that of a linear mode with the same loss, with its shape phi at the point of the load,
 
@@ -204,7 +222,6 @@ class _Target:
                 f"the case has loads and base motions: {kinds}; a backbone needs one harmonic force and no base motion",
                 'load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")',
             )
-        refuse_stops(case.stops, "a search starts on the motion without them", "rb.frequency_response")
         for damper in case.dampers:
             if damper.point in case.modes.attached:
                 # A search assumes that the effective mass depends little on the frequency.
@@ -224,13 +241,28 @@ class _Target:
         force = np.asarray(case.modes.shape(load.point, load.direction))
         return cls(case, load, index, omega, float(modes.decay[index]) / omega, shape, force)
 
+    @property
+    def phase(self) -> float:
+        """Phase of the load at the start: with stops a run starts in the middle between them, not at a deflection."""
+        return math.pi / 2 if self.case.stops else 0.0
+
     def motion(self, omega: float) -> NDArray[np.complex128]:
         """Return the complex amplitudes of the modes for a force of 1 N, without dampers."""
         return self.case.modes.harmonic_response(np.array([omega]), self.force[:, None])[0, :, 0]
 
     def stiffness(self, omega: float, mass: complex) -> complex:
         """Return the dynamic stiffness at the point of the load, with the effective mass of the dampers there [N/m]."""
-        return complex(1 / (self.force @ self.motion(omega))) - omega**2 * mass
+        return complex(1 / (self.force @ self.motion(omega))) - self.weight(omega) * mass
+
+    def before_resonance(self, omega: float, mass: complex) -> float:
+        """Return the angular frequency below a resonance at which the displacement leads by `_LEAD` [rad/s]."""
+        grid = omega * np.linspace(1.0, 1 - _RANGE, 4001)
+        phase = np.array([np.angle(self.stiffness(each, mass)) for each in grid])
+        return float(grid[np.argmax(phase < math.pi / 2 - _LEAD)])
+
+    def weight(self, omega: float) -> float:
+        """Return the dynamic stiffness per effective mass; with stops, which are springs rather than masses, 1."""
+        return 1.0 if self.case.stops else omega**2
 
     def resonance(self, near: float, mass: complex) -> float:
         """Return the angular frequency nearest to `near` at which the stiffness is imaginary; NaN if there is none."""
@@ -275,6 +307,9 @@ class _Search:
     masses: list[tuple[float, complex]] = field(default_factory=list)  # amplitudes and effective masses of the runs
     is_found: bool = False
     is_over: bool = False
+    # Frequency and force of the next run: those of the resonance, except with stops
+    run_omega: float = math.nan
+    run_force: float = math.nan
 
     def is_near(self, other: _Search) -> bool:
         """Return whether another search may have found the same motion."""
@@ -295,6 +330,19 @@ class _Search:
         share = (self.amplitude - last) / (other - last)
         return (last * mass + share * (other * mass_there - last * mass)) / self.amplitude
 
+    def with_stops(self, mass: complex, reached: float, phase: float, target: _Target) -> complex:
+        """Return the effective mass at the wanted amplitude from that at the amplitude that was reached.
+
+        `phase`: phase of the dynamic stiffness beyond that of resonance [rad].
+        """
+        there, here = (_added_stiffness(self, amplitude, target) for amplitude in (self.amplitude, reached))
+        if there and reached < _FALLEN * self.amplitude and phase > _BEYOND:
+            # Stops bend the resonance: a frequency that is a little too high ends in the small motion beside it.
+            return _RETREAT * self.mass
+        if here.real > _SIMILAR * there.real > 0:  # force and loss of the stops rise alike
+            return mass * there.real / here.real
+        return mass - (there - here)
+
     def aim(self, target: _Target) -> None:
         """Choose frequency and force for the present effective mass."""
         near = target.omega if math.isnan(self.omega) else self.omega
@@ -302,17 +350,30 @@ class _Search:
         stiffness = target.stiffness(self.omega, self.mass) if math.isfinite(self.omega) else complex(math.nan)
         self.force = self.amplitude * stiffness.imag
         self.is_over = not self.force > 0
+        self.run_omega, self.run_force = self.omega, self.force
+        if target.case.stops and not self.is_over:
+            # Stops bend the resonance, which is then next to a fold: run below it, where the motion is safe.
+            self.run_omega = target.before_resonance(self.omega, self.mass)
+            self.run_force = self.amplitude * abs(target.stiffness(self.run_omega, self.mass))
 
     def case_of(self, target: _Target, window: tuple[int, int]) -> Case:
         """Return the case that starts on the expected motion."""
-        frequency = self.omega / (2 * math.pi)
+        frequency = self.run_omega / (2 * math.pi)
         modes = self.case.structure.modes()
         of_load = np.asarray(modes.shape(target.load.point, target.load.direction))
-        motion = modes.harmonic_response(np.array([self.omega]), of_load[:, None])[0, :, 0]
-        motion = motion * (-1j * self.amplitude / (of_load @ motion))  # velocity in phase with the force
-        structure = Modal.of(modes, displacement=motion.imag, velocity=(1j * self.omega * motion).imag)
+        motion = modes.harmonic_response(np.array([self.run_omega]), of_load[:, None])[0, :, 0]
+        # Velocity in phase with the force.
+        motion = motion * (-1j * np.exp(1j * target.phase) * self.amplitude / (of_load @ motion))
+        displacement = 0 * motion.imag if self.case.stops else motion.imag
+        structure = Modal.of(modes, displacement=displacement, velocity=(1j * self.run_omega * motion).imag)
         load = target.load.model_copy(
-            update={"amplitude": self.force, "frequency": frequency, "phase": 0.0, "start": 0.0, "stop": None}
+            update={
+                "amplitude": self.run_force,
+                "frequency": frequency,
+                "phase": target.phase,
+                "start": 0.0,
+                "stop": None,
+            }
         )
         return self.case.model_copy(
             update={
@@ -326,15 +387,19 @@ class _Search:
     def learn(self, row: _Row, target: _Target) -> None:
         """Correct the effective mass by a run, and choose the next frequency and force."""
         stiffness = 1 / row.receptance
-        mass = (target.stiffness(self.omega, 0j) - stiffness) / self.omega**2
-        reached = abs(row.receptance) * self.force
+        mass = (target.stiffness(self.run_omega, 0j) - stiffness) / target.weight(self.run_omega)
+        reached = abs(row.receptance) * self.run_force
         self.masses.append((reached, mass))
-        self.mass = self.mass_at_amplitude()
+        if self.case.stops:
+            self.mass = self.with_stops(mass, reached, float(np.angle(stiffness)) - math.pi / 2, target)
+        else:
+            self.mass = self.mass_at_amplitude()
         phase = abs(math.remainder(np.angle(stiffness) - math.pi / 2, 2 * math.pi))
         amplitude = abs(reached / self.amplitude - 1)
         self.drift = row.drift
-        self.error = 0.5 * row.error * abs(stiffness) / self.omega**2
-        self.is_found = amplitude < max(_AMPLITUDE_ERROR, row.error) and phase < max(_PHASE_ERROR, row.error)
+        self.error = 0.5 * row.error * abs(stiffness) / target.weight(self.run_omega)
+        is_in_phase = phase < max(_PHASE_ERROR, row.error) or bool(self.case.stops)
+        self.is_found = amplitude < max(_AMPLITUDE_ERROR, row.error) and is_in_phase
         self.aim(target)
         self.is_over = self.is_over or self.is_found
 
@@ -346,9 +411,10 @@ def _response(run: Run, target: _Target, window: tuple[int, int]) -> _Row:
     load = instance(run.case.loads[0], Harmonic)
     time, frequency, kept = run.arrays.time, load.frequency, window[1]
     motion = run.arrays.modal_displacement @ target.force
-    # The load is A sin(w t) and the fit has Re(x exp(i w t)), so that the load is -i A there.
+    # The load is A sin(w t + p) and the fit has Re(x exp(i w t)), so that the load is -i A exp(i p) there.
     per_force = [
         1j
+        * np.exp(-1j * target.phase)
         * first_harmonic(time[inside], motion[inside], trapezoid_weights(time[inside], start), frequency)
         / load.amplitude
         for start, inside in _parts(time, frequency, kept)
@@ -382,7 +448,40 @@ def _guess(
                 owners.append((search, size))
     masses = evaluate(variants, partial(_effective_mass, frequency=frequency, kept=window[1])) if variants else []
     for (search, size), mass in zip(owners, masses, strict=True):
-        search.mass += size**2 * mass
+        search.mass += size**2 * mass * (target.omega**2 / target.weight(target.omega))
+    for search in searches:
+        if added := _added_stiffness(search, search.amplitude, target):
+            search.mass -= added
+            search.omega = math.sqrt(target.omega**2 + added.real * target.shape**2)
+
+
+def _added_stiffness(search: _Search, amplitude: float, target: _Target) -> complex:
+    """Return the stiffness that the stops add at the point of the load in a harmonic motion of the mode [N/m]."""
+    return sum((_stop_stiffness(search, stop, target, amplitude) for stop in search.case.each_stop), 0j)
+
+
+def _stop_stiffness(search: _Search, stop: Stop, target: _Target, amplitude: float) -> complex:
+    """Return the stiffness that a stop adds at the point of the load in a harmonic motion of the mode [N/m].
+
+    The contact is taken as a spring with the duration that an impact with the same overlap has, and with its loss.
+    """
+    modes = search.case.structure.modes()
+    share = float(stop.shape(modes)[target.number]) / target.shape
+    size = abs(share) * amplitude
+    pair = stop.pair(modes)
+    if size <= stop.gap or search.case.method.hard_restitution(stop.contact, pair) is not None:
+        return 0j
+    law = _core.normal_law(*stop.contact.coefficients(pair))
+    low, high = 1e-9 * target.omega * size, 1e6 * target.omega * size
+    for _ in range(_HALVINGS):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if law.largest_overlap(middle) < size - stop.gap else (low, middle)
+    spring = law.effective_mass * (math.pi / law.contact_time(low)) ** 2
+    part = stop.gap / size
+    restitution = getattr(getattr(stop.contact, "restitution", None), "constant_value", None) or _USUAL_RESTITUTION
+    lost = 0.5 * law.effective_mass * target.omega**2 * (size**2 - stop.gap**2) * (1 - restitution**2)
+    elastic = spring * (math.acos(part) - part * math.sqrt(1 - part**2)) / math.pi
+    return share**2 * complex(elastic, lost / (math.pi * size**2))
 
 
 def _motions(searches: Sequence[_Search]) -> list[int]:

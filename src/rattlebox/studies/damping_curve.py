@@ -532,6 +532,7 @@ def on_shaker(case: Case, damper: Any, frequency: float, moved: FloatArray, cycl
             "structure": Shaker(motion=Harmonic(**motion)),
             "dampers": (damper.model_copy(update={"point": None}),),
             "tuned_masses": (),
+            "stops": (),
             "loads": (),
             "duration": cycles / frequency,
             "output": Output(rate=_SAMPLES * frequency),

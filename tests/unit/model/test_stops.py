@@ -117,12 +117,11 @@ def test_stops_with_particles_are_refused() -> None:
 
 
 def test_computations_without_stops_refuse_them_by_name() -> None:
-    """Damping curves and backbones, and steppers of a damper alone, name the stops that they do not know."""
+    """Damping curves, and steppers of a damper alone, name the stops that they do not know."""
     driven = case(load=rb.Harmonic(amplitude=5.0, frequency=7.0))
     for call in (
         lambda: rb.Stepper(driven, alone=True),
         lambda: rb.damping_curve(driven, amplitudes=["1 mm", "2 mm"]),
-        lambda: rb.backbone(driven, amplitudes=["1 mm", "2 mm"]),
     ):
         with pytest.raises(rb.CaseError, match="but the case has 1 stop"):
             call()
