@@ -1,7 +1,7 @@
 """Walls that carry a bed, and a slice of a wide one
 =================================================
 
-For engineers with a deep or a wide bed: side walls with friction carry most of a deep bed, and a slice between periodic
+For engineers with a deep or a wide bed: side walls with friction carry much of a deep bed, and a slice between periodic
 faces has the loss of a bed that is much wider.
 
 Columns of glass balls are slowly pressed down, and the load on the floor is compared with Janssen's law. Beds of steel balls
