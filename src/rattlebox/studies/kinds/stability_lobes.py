@@ -156,7 +156,7 @@ class StabilityLobes(Study):
     >>> lobes = rb.stability_lobes(bar, cutting_coefficient="2000 N/mm^2", speeds=rb.linspace("500 rpm", "9000 rpm", 5))
     >>> print(lobes.attrs["answer"])
     The structure alone is stable at all spindle speeds up to a depth of cut of 38.76 µm; deeper cuts chatter at 181.8 Hz.
-    The deepest stable cut at the given speeds is 0.5679 mm, at 9000 rpm.
+    The deepest stable cut at the given speeds is 0.5679 mm, at 9000 rpm, the highest of them.
     """
 
     kind: ClassVar[str] = "stability_lobes"
@@ -783,6 +783,8 @@ def answer(result: xarray.Dataset) -> Iterator[str]:
         k = int(np.nanargmax(np.where(np.isfinite(depth), depth, -np.inf)))
         where = "" if linear else f", with vibrations of {amount(float(result.amplitude[best]), 'm', 3)}"
         speed = amount(float(result.speed[k]), "rpm")
+        if result.speed.size > 1 and k in (0, result.speed.size - 1):
+            speed += f", the {'highest' if k else 'lowest'} of them"
         yield f"The deepest stable cut at the given speeds is {amount(float(depth[k]), 'm')}, at {speed}{where}."
 
 
