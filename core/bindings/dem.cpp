@@ -35,6 +35,7 @@ class Dem {
             return at(b.touched, k) ? at(b.rates, k) : Rates{simulation_->output_body_acceleration(), {}};
         };
         const std::vector<int> number(b.id.begin(), b.id.end());
+        if (b.frame.turns() && dt > 0) return turning_state(b, number, dt);
         return {{},
                 in_order(number,
                          [&](std::size_t i) {
@@ -42,6 +43,28 @@ class Dem {
                          }),
                 in_order(number, [&](std::size_t i) { return b.velocity[i] - rates(i).velocity * dt; }),
                 in_order(number, [&](std::size_t i) { return b.spin[i] - rates(i).spin * dt; }),
+                owned<Doubles<1>>(std::vector<real>{b.output_displacement[0], b.output_displacement[1],
+                                                    b.output_displacement[2]})};
+    }
+
+    // The same in a cavity that turns; velocities and spins are relative to it.
+    static CavityState turning_state(const Bed& b, const std::vector<int>& number, real dt) {
+        const Frame& frame = b.frame;
+        const auto motion = [&](std::size_t i) {
+            const int k = static_cast<int>(i);
+            Rates rates = b.predicted_rates(k);
+            return frame.undo(at(b.position, k), at(b.velocity, k), at(b.spin, k), rates, dt);
+        };
+        return {{},
+                in_order(number, [&](std::size_t i) { return motion(i).position; }),
+                in_order(number,
+                         [&](std::size_t i) {
+                             const AbsoluteMotion m = motion(i);
+                             return m.velocity -
+                                    frame.point_velocity(frame.radius(m.position), frame.before.speed);
+                         }),
+                in_order(number,
+                         [&](std::size_t i) { return motion(i).spin - frame.axis() * frame.before.speed; }),
                 owned<Doubles<1>>(std::vector<real>{b.output_displacement[0], b.output_displacement[1],
                                                     b.output_displacement[2]})};
     }

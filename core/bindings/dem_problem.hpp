@@ -14,8 +14,17 @@ struct WallShape : Node {
     int material = 0, label = 0;
 };
 
+struct RotationNumbers : Node {
+    Input<1> axis, arm;
+    bool carries_structure = false;
+    Table knots;
+    Input<2> coefficients;
+    double amplitude = 0, frequency = 0, phase = 0;
+};
+
 struct CavityContents : Node {
     Input<2> shape;
+    std::optional<RotationNumbers> rotation;
     std::vector<WallShape> walls;
     std::vector<SolidShape> solids; // after the walls
     Input<1> period;
@@ -70,6 +79,19 @@ template <class Array> std::vector<int> indices(const Array& array, std::size_t 
     return {array.data(), array.data() + array.size()};
 }
 
+inline dem::Rotation rotation(const RotationNumbers& given) {
+    const std::size_t n = given.knots.shape(0);
+    require(n > 0 && given.coefficients.shape(0) == n && given.coefficients.shape(1) == 4,
+            "each knot of an angle needs four coefficients");
+    dem::Rotation r;
+    r.axis = one_row(given.axis), r.arm = one_row(given.arm), r.knots = view(given.knots);
+    r.carries_structure = given.carries_structure;
+    require(std::fabs(dot(r.axis, r.axis) - 1) < 1e-9, "an axis of rotation needs the length 1");
+    r.coefficients = {given.coefficients.data(), static_cast<int>(4 * n)};
+    r.amplitude = given.amplitude, r.frequency = given.frequency, r.phase = given.phase;
+    return r;
+}
+
 inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::size_t modes,
                         std::size_t pairs) {
     require(given.walls.size() <= 32, "a cavity has 32 walls at most");
@@ -101,6 +123,7 @@ inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::s
         require(target.period[a] >= 0 && target.period[a] < infinity, "a period is a length, or 0 for none");
         require(target.period[a] == 0 || given.solids.empty(), "a periodic cavity cannot hold bodies");
     }
+    if (given.rotation) target.rotation = rotation(*given.rotation);
     target.position = rows(given.position, n, "positions have three components");
     target.velocity = rows(given.velocity, n, "each particle needs a velocity");
     target.spin = rows(given.spin, n, "each particle needs a spin");
@@ -145,6 +168,7 @@ inline dem::Problem dem_problem(const DemNumbers& given) {
 struct RecordArrays : Node {
     Doubles<1> time;
     Doubles<2> q, p, load_work, base_work, viscous_loss, kinetic, rotation, potential, elastic;
+    Doubles<2> angle, speed, drive_work;
     Doubles<3> centre, momentum, force, moment, normal_loss, plastic_loss, sliding_loss, rolling_loss;
     Integers<3> contacts;
     // by sample and name of a wall
@@ -169,6 +193,8 @@ struct RecordArrays : Node {
         load_work = each(r.load_work, loads), base_work = each(r.base_work, loads);
         kinetic = each(r.kinetic, cavities), rotation = each(r.rotation, cavities);
         potential = each(r.potential, cavities), elastic = each(r.stored, cavities);
+        angle = each(r.angle, cavities), speed = each(r.speed, cavities);
+        drive_work = each(r.drive_work, cavities);
         centre = three(r.centre, 3), momentum = three(r.momentum, 3);
         force = three(r.force, 3), moment = three(r.moment, 3);
         normal_loss = three(r.normal, 2), plastic_loss = three(r.plastic, 2);
@@ -245,6 +271,14 @@ inline void add_dem_problem(nb::module_& module) {
               "results.",
               field("form", &W::form), field("axis", &W::axis), field("offset", &W::offset),
               field("material", &W::material), field("label", &W::label, 0));
+    using Q = RotationNumbers;
+    define<Q>(
+        module, "Rotation",
+        "Rotation of a cavity about an axis at the distance `-arm` from its centre. From each knot on, the "
+        "angle is a cubic polynomial with four coefficients, plus a sine.",
+        field("axis", &Q::axis), field("arm", &Q::arm), field("carries_structure", &Q::carries_structure),
+        field("knots", &Q::knots), field("coefficients", &Q::coefficients), field("amplitude", &Q::amplitude),
+        field("frequency", &Q::frequency), field("phase", &Q::phase));
     using C = CavityContents;
     define<C>(
         module, "Cavity",
@@ -256,7 +290,7 @@ inline void add_dem_problem(nb::module_& module) {
         field("position", &C::position), field("velocity", &C::velocity), field("spin", &C::spin),
         field("radius", &C::radius), field("mass", &C::mass), field("inertia", &C::inertia),
         field("species", &C::species), field("particle_pair", &C::particle_pair),
-        field("wall_pair", &C::wall_pair));
+        field("wall_pair", &C::wall_pair), field("rotation", &C::rotation, std::nullopt));
     using L = PairLaws;
     define<L>(
         module, "PairLaws",
@@ -286,7 +320,8 @@ inline void add_dem_problem(nb::module_& module) {
         "partners.",
         field("time", &R::time), field("q", &R::q), field("p", &R::p), field("load_work", &R::load_work),
         field("base_work", &R::base_work), field("viscous_loss", &R::viscous_loss),
-        field("kinetic", &R::kinetic), field("rotation", &R::rotation), field("potential", &R::potential),
+        field("kinetic", &R::kinetic), field("rotation", &R::rotation), field("angle", &R::angle),
+        field("speed", &R::speed), field("drive_work", &R::drive_work), field("potential", &R::potential),
         field("elastic", &R::elastic), field("centre", &R::centre), field("momentum", &R::momentum),
         field("force", &R::force), field("moment", &R::moment), field("normal_loss", &R::normal_loss),
         field("plastic_loss", &R::plastic_loss), field("sliding_loss", &R::sliding_loss),

@@ -7,6 +7,7 @@
 #include "dem/contact_list.hpp"
 #include "dem/contact_start.hpp"
 #include "dem/diagnostics.hpp"
+#include "dem/frame.hpp"
 #include "dem/problem.hpp"
 #include "dem/structure.hpp"
 
@@ -47,7 +48,8 @@ struct alignas(64) ChunkMotion {
     // Force on the cavity, and the largest displacement of a particle in the step relative to the reference
     // velocity; infinite if a particle stops the run.
     real force_on_cavity[3] = {}, moved = 0;
-    real momentum[3] = {}, approach = 0; // of the chunk
+    // Of the chunk; the momentum in a cavity that turns is the absolute one, along the axes of the cavity.
+    real momentum[3] = {}, approach = 0;
 };
 
 // Acceleration and angular acceleration; one cache line.
@@ -80,10 +82,16 @@ struct Bed {
     Row reference_velocity{};
     real cavity_moved = 0; // displacement of the cavity in the last step relative to the reference velocity
     CavityMotion motion;
+    Frame frame;               // of a cavity that turns
     Row output_displacement{}; // displacement of the cavity at the last step whose forces are known
 
     int particles() const { return static_cast<int>(position.size()); }
     int chunk_count() const { return static_cast<int>(chunks.size()); }
+
+    // Accelerations that were predicted for the next step of a particle in a cavity that turns.
+    Rates predicted_rates(int i) const {
+        return at(touched, i) ? at(rates, i) : Rates{frame.body_ahead(frame.before), Row{}};
+    }
 
     std::size_t memory() const {
         std::size_t bytes = touched.capacity() + (id.capacity() + species.capacity()) * sizeof(int);
@@ -96,6 +104,7 @@ struct Bed {
     template <class Archive> void serialize(Archive& a) {
         a(position, velocity, spin, rates, touched, id, species, chunk_motion, reach, reference_velocity,
           cavity_moved, output_displacement);
+        if (frame.turns()) frame.serialize(a);
         for (Chunk& c : chunks) c.serialize(a);
     }
 };

@@ -53,7 +53,8 @@ class ContactLoop {
         }
         const WallPoint near = wall_point(list, k);
         real mobility = a.velocity[3];
-        for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, near.normal));
+        const Row across = bed_.frame.to_structure(near.normal);
+        for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, across));
         return new_contact(wall_law(i, j), a, near, bed_.motion.velocity, mobility);
     }
 
@@ -267,7 +268,9 @@ public:
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
         if (!bed_.cavity->solids.empty()) find_wall_points(chunk.walls, bed_, true);
         compute(chunk.walls, wall_view(chunk), wall_, wall, sampled, chunk, Prefetch());
-        // The reaction on the cavity; its moment is a result only, and is computed for samples.
+        // The reaction on the cavity. Its moment is a result, computed for samples, unless a drive turns the
+        // cavity against it.
+        const bool needs_moment = sampled || bed_.frame.turns();
         Row total{}, moment{};
         const ContactList& list = chunk.walls;
         for (int a = 0; a < list.touching_count; ++a) {
@@ -275,18 +278,18 @@ public:
             const Row f = at(list.contact_forces.all, a).force;
             total -= f;
             WallTotals* const of_wall = totals_of(chunk, list, k, wall);
-            if (!sampled && !of_wall) continue;
+            if (!needs_moment && !of_wall) continue;
             const WallPoint near = wall_point(list, k);
             if (of_wall) {
                 of_wall->normal_impulse -= problem_.dt * dot(f, near.normal);
                 for (int x = 0; x < 3; ++x) of_wall->impulse[x] -= problem_.dt * f[x];
             }
-            if (!sampled) continue;
+            if (!needs_moment) continue;
             const Row turn = cross(place(list, k) + near.normal * near.distance, f),
                       twist = wall_.rolls ? at(list.contact_forces.torque, a) : Row{};
             moment -= turn;
             if (wall_.rolls) moment -= twist;
-            if (of_wall) {
+            if (sampled && of_wall) {
                 of_wall->normal_force -= dot(f, near.normal);
                 for (int x = 0; x < 3; ++x)
                     of_wall->force[x] -= f[x], of_wall->moment[x] -= turn[x] + twist[x];

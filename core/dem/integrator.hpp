@@ -133,6 +133,110 @@ class Integrator {
         }
     }
 
+    // The same in a cavity that turns (frame.hpp).
+    template <bool sampled> void advance_turning(ForceSums& sums, Chunk& chunk, bool first) {
+        const Frame& frame = bed_.frame;
+        const FrameStep& now = frame.now;
+        const Row body = now.body, body_after = frame.body_ahead(now);
+        const Verlet step(problem_.dt, body, frame.body_ahead(frame.before), first);
+        // The velocity at the start is given relative to the cavity.
+        const real rate = first ? now.speed : now.rate, per_step = 1 / problem_.dt;
+        Row momentum{}, mass_moment{};
+        real max_speed_squared = 0, kinetic = 0, rotation = 0;
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            Row &x = at(bed_.position, i), &u = at(bed_.velocity, i), &w = at(bed_.spin, i);
+            Rates& rates = at(bed_.rates, i);
+            ContactForce& sum = sums.of(i);
+            const bool before = at(bed_.touched, i), had_contact = sum.force[3] > 0;
+            const Row r = frame.radius(x);
+            const Rates last = before ? rates : Rates{step.body_before, Row{}};
+            rates.velocity = body, rates.spin = Row{};
+            if (had_contact) {
+                rates.velocity += sum.force * u[3];
+                if (spins_) rates.spin = sum.couple;
+                if (rolls_) {
+                    rates.spin += sums.torque(i) / x[3];
+                    sums.torque(i) = Row{};
+                }
+                rates.spin *= w[3];
+                sum = ContactForce{};
+            }
+            at(bed_.touched, i) = had_contact;
+            const Row v = step.corrected(u + frame.point_velocity(r, rate), rates.velocity, last.velocity);
+            const Row spin = step.corrected(w + frame.axis() * rate, rates.spin, last.spin);
+            momentum += v / u[3], mass_moment += x / u[3];
+            if constexpr (sampled) {
+                kinetic += dot(v, v / u[3]);
+                rotation += dot(spin, spin) * x[3] / w[3];
+            }
+            const auto moved = drift(step, i, r, v, spin, body_after - body);
+            const Row velocity = moved * per_step - bed_.reference_velocity;
+            max_speed_squared = larger(max_speed_squared, dot(velocity, velocity));
+        }
+        ChunkMotion& motion = at(bed_.chunk_motion, chunk.begin / Bed::chunk_size);
+        const bool continues = chunk.stop_reason.status == Status::finished;
+        motion.moved = continues ? moved_in_step(max_speed_squared) : infinity;
+        motion.approach = chunk.approach;
+        for (int a = 0; a < 3; ++a) motion.momentum[a] = momentum[a];
+        chunk.diagnostics.mass_moment = mass_moment;
+        if constexpr (sampled) {
+            chunk.diagnostics.kinetic = 0.5 * kinetic;
+            chunk.diagnostics.rotation = 0.5 * rotation;
+        }
+    }
+
+    // Predicts the next step of a particle from its distance from the axis, its absolute velocity and spin,
+    // and the rates of this step, which are those predicted for the next one afterwards. Contact forces are
+    // predicted to turn with the cavity, others to change by `body_change`. Returns the motion relative to
+    // the cavity.
+    Row drift(const Verlet& step, int i, Row r, Row v, Row spin, Row body_change) {
+        const Frame& frame = bed_.frame;
+        const FrameStep& now = frame.now;
+        Row &x = at(bed_.position, i), &u = at(bed_.velocity, i), &w = at(bed_.spin, i);
+        Rates& rates = at(bed_.rates, i);
+        const Row middle = step.half_step(v, rates.velocity), spin_middle = step.half_step(spin, rates.spin);
+        const Row path = step.step * middle, moved = path + frame.ahead(r + path, now);
+        x += moved;
+        rates.velocity += body_change;
+        u = step.half_step(middle + frame.ahead(middle, now), rates.velocity) -
+            frame.point_velocity(frame.radius(x), now.next_rate);
+        w = step.half_step(spin_middle + frame.ahead(spin_middle, now), rates.spin) -
+            frame.axis() * now.next_rate;
+        return moved;
+    }
+
+    void go_back_turning(const Chunk& chunk, real dt) {
+        const Frame& frame = bed_.frame;
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            Row &x = at(bed_.position, i), &u = at(bed_.velocity, i), &w = at(bed_.spin, i);
+            Rates rates = bed_.predicted_rates(i);
+            const AbsoluteMotion m = frame.undo(x, u, w, rates, dt);
+            const Row r = frame.radius(m.position), fourth = row(0, 0, 0, 1);
+            x = m.position + fourth * x;
+            u = m.velocity - frame.point_velocity(r, frame.before.rate) + fourth * u;
+            w = m.spin - frame.axis() * frame.before.rate + fourth * w;
+            at(bed_.rates, i) = rates;
+        }
+    }
+
+    void predict_turning(const Chunk& chunk) {
+        const Frame& frame = bed_.frame;
+        const Row body = frame.now.body, body_before = frame.before.body;
+        const Verlet step(problem_.dt, body, body, true);
+        real max_speed_squared = 0;
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            const Row r = frame.radius(at(bed_.position, i));
+            at(bed_.rates, i).velocity += body - body_before;
+            // The drive may have another speed from now on.
+            const Row v = at(bed_.velocity, i) + frame.point_velocity(r, frame.before.rate),
+                      spin = at(bed_.spin, i) + frame.axis() * frame.before.rate;
+            const Row moved = drift(step, i, r, v, spin, frame.body_ahead(frame.now) - body);
+            const Row velocity = moved * (1 / problem_.dt) - bed_.reference_velocity;
+            max_speed_squared = larger(max_speed_squared, dot(velocity, velocity));
+        }
+        at(bed_.chunk_motion, chunk.begin / Bed::chunk_size).moved = moved_in_step(max_speed_squared);
+    }
+
 public:
     Integrator(Bed& bed, const Problem& problem, bool spins, bool rolls)
         : bed_(bed), problem_(problem), spins_(spins), rolls_(rolls), far_(bed.particles() > Bed::cached) {}
@@ -142,6 +246,7 @@ public:
     // Returns the particles of a chunk to the last step, from which the next one was predicted with the step
     // dt and the acceleration `body` without contacts.
     void go_back(const Chunk& chunk, real dt, Row body) {
+        if (bed_.frame.turns()) return go_back_turning(chunk, dt);
         const Verlet step(dt, body, body, true);
         for (int i = chunk.begin; i < chunk.end; ++i) {
             Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
@@ -156,6 +261,7 @@ public:
     // Predicts the next step of the particles of a chunk from the last one, with another acceleration without
     // contacts.
     void predict(const Chunk& chunk, Row body_before, Row body) {
+        if (bed_.frame.turns()) return predict_turning(chunk);
         const Verlet step(problem_.dt, body, body, true);
         real max_speed_squared = 0;
         for (int i = chunk.begin; i < chunk.end; ++i) {
@@ -178,6 +284,9 @@ public:
 
     void advance(ForceSums& sums, Chunk& chunk, int until, Row body, Row body_before, bool first,
                  bool sampled) {
+        if (bed_.frame.turns())
+            return sampled ? advance_turning<true>(sums, chunk, first)
+                           : advance_turning<false>(sums, chunk, first);
         const auto with = [&](auto sampled, auto far) {
             advance<sampled.value, far.value>(sums, chunk, until, body, body_before, first);
         };

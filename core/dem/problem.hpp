@@ -1,13 +1,15 @@
 // The problem of the 3-D engine: modes, signals, and cavities filled with spheres.
 //
-// The frame of reference is the base. A cavity does not rotate; the displacement of its centre is the sum of
-// the modal displacements times its mode shapes (three components each). Positions are measured from the rest
-// position of the centre. A base acceleration b'' acts on a mass m as the force -m b''.
+// The frame of reference is the base, for a cavity that turns its own axes (frame.hpp). The displacement of
+// its centre is the sum of the modal displacements times its mode shapes (three components each). Positions
+// are measured from the rest position of the centre. A base acceleration b'' acts on a mass m as the force -m
+// b''.
 #pragma once
 
 #include <stdexcept>
 #include <vector>
 
+#include "dem/frame.hpp"
 #include "dem/pair_laws.hpp"
 #include "dem/periodic.hpp"
 #include "dem/solids.hpp"
@@ -22,6 +24,7 @@ struct Cavity {
     std::vector<Wall> walls; // those of solids come last
     Solids solids;
     Row period{}; // distance of the images of a particle along each axis; 0 if it is not periodic
+    Rotation rotation;
     std::vector<Row> position, velocity, spin; // by particle; the fourth number of a position is the radius
     std::vector<real> mass, inertia;
     std::vector<int> species;

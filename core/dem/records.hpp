@@ -50,6 +50,7 @@ struct Records {
     std::vector<real> time, q, p, load_work, base_work, viscous;
     // by sample and cavity
     std::vector<real> kinetic, rotation, potential, stored, centre, momentum, force, moment;
+    std::vector<real> angle, speed, drive_work;          // of a cavity that turns; else zero
     std::vector<real> normal, plastic, sliding, rolling; // particles, walls
     std::vector<std::int64_t> contacts;
     // by sample and name of a wall, cavity after cavity; empty unless they are computed
@@ -96,7 +97,7 @@ struct Records {
                 }
             }
             sum.mass = bed.mass;
-            add_sample(sum, gravity);
+            add_sample(sum, bed.frame, gravity);
         }
         add_walls(each_wall(beds));
     }
@@ -119,9 +120,14 @@ struct Records {
         }
     }
 
-    void add_sample(const Totals& sum, Row gravity) {
+    // Momentum, force and moment become vectors in the machine frame; the centre of mass stays in that of the
+    // cavity. The potential energy of a cavity that turns is zero on the axis.
+    void add_sample(Totals& sum, const Frame& frame, Row gravity) {
+        for (Row* v : {&sum.momentum, &sum.force_on_cavity, &sum.moment_on_cavity}) *v = frame.to_machine(*v);
+        angle.push_back(frame.now.angle), speed.push_back(frame.now.speed);
+        drive_work.push_back(frame.drive_work);
         kinetic.push_back(sum.kinetic), rotation.push_back(sum.rotation), stored.push_back(sum.stored);
-        potential.push_back(-dot(gravity, sum.mass_moment));
+        potential.push_back(-dot(gravity, frame.moment_about_axis(sum.mass_moment, sum.mass)));
         for (int a = 0; a < 3; ++a) {
             centre.push_back(sum.mass_moment[a] / sum.mass), momentum.push_back(sum.momentum[a]);
             force.push_back(sum.force_on_cavity[a]), moment.push_back(sum.moment_on_cavity[a]);

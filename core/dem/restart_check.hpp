@@ -124,6 +124,7 @@ public:
             for (int a = 0; a < 3; ++a) require(std::fabs(at(bed.position, i)[a]) < 1e30);
         }
         require(bed.reach >= 0 && bed.reach < infinity && !(bed.cavity_moved < 0));
+        require(bed.frame.is_finite());
         for (const ChunkMotion& motion : bed.chunk_motion)
             require(!(motion.moved < 0) && !(motion.approach < 0));
         for (const Chunk& chunk : bed.chunks) check(bed, chunk, has_forces);

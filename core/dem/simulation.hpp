@@ -84,6 +84,7 @@ class Simulation {
     void fill_bed(Bed& bed, Cavity& cavity, bool rolls) {
         bed.cavity = &cavity;
         bed.periods = Periods(cavity.period);
+        bed.frame.start(cavity.rotation);
         const int n = cavity.particles();
         const auto size = static_cast<std::size_t>(n);
         bed.velocity.reserve(size), bed.spin.reserve(size), bed.id.reserve(size);
@@ -172,7 +173,40 @@ class Simulation {
             if (chunk.each_wall.size() != labels) chunk.each_wall.assign(labels, WallTotals{});
     }
 
-    void update_cavity_motion(Bed& bed) { bed.motion = structure().cavity_motion(bed.cavity->shape.data()); }
+    void update_cavity_motion(Bed& bed) {
+        bed.motion = bed.frame.moved(structure().cavity_motion(bed.cavity->shape.data()));
+    }
+
+    // Adds half of the work of the base and of the drives of cavities in this step.
+    void work_on_particles() {
+        Row momentum{};
+        for (Bed& bed : beds_) {
+            momentum += bed.frame.to_machine(momentum_of(bed));
+            if (!bed.frame.turns()) continue;
+            Row moment{};
+            for (const Chunk& c : bed.chunks) moment += c.diagnostics.wall_moment;
+            bed.frame.drive_work +=
+                0.5 * problem_.dt * bed.frame.drive_power(force_on(bed), moment, bed.motion.displacement);
+        }
+        structure().work_on_particles(momentum);
+    }
+
+    // Returns the mean velocity of the particles, relative to the cavity.
+    Row mean_velocity(const Bed& bed) const {
+        const Row mean = momentum_of(bed) / bed.mass;
+        if (!bed.frame.turns()) return row(mean[0], mean[1], mean[2]);
+        Row centre{};
+        for (const Chunk& c : bed.chunks) centre += c.diagnostics.mass_moment / bed.mass;
+        return row(mean[0], mean[1], mean[2]) -
+               bed.frame.point_velocity(bed.frame.radius(centre), bed.frame.now.rate);
+    }
+
+    // Acceleration by gravity and the base in cavities that turn.
+    void set_body_accelerations() {
+        const Row body = structure().body_acceleration();
+        for (Bed& bed : beds_)
+            if (bed.frame.turns()) bed.frame.now.body = bed.frame.to_cavity(body);
+    }
 
     Row force_on(const Bed& bed) const {
         Row total{};
@@ -189,7 +223,8 @@ class Simulation {
     void compute_modal_force() {
         Structure s = structure();
         s.clear_forces();
-        for (const Bed& bed : beds_) s.add_force(bed.cavity->shape.data(), force_on(bed));
+        for (const Bed& bed : beds_)
+            s.add_force(bed.cavity->shape.data(), bed.frame.to_structure(force_on(bed)));
         s.add_loads();
     }
 
@@ -380,11 +415,12 @@ class Simulation {
         for (Bed& bed : beds_) {
             // What matters for neighbours is the motion of particles relative to each other: the mean
             // velocity of the bed is subtracted from all.
-            const Row before = bed.motion.displacement, momentum = momentum_of(bed);
+            const Row before = bed.motion.displacement, mean = mean_velocity(bed);
+            if (bed.frame.turns()) bed.frame.advance(problem_.time_at(step_ + 1), problem_.dt);
             update_cavity_motion(bed);
             const Row apart = bed.motion.displacement - before - bed.reference_velocity * problem_.dt;
             bed.cavity_moved = std::sqrt(dot(apart, apart)) * (1 + 1e-9);
-            bed.reference_velocity = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
+            bed.reference_velocity = mean;
             const real since = approach_since_rebuild(bed);
             // Written so that NaN asks for a rebuild as well.
             needs_rebuild_ |= !(since < bed.reach);
@@ -403,16 +439,18 @@ class Simulation {
         --step_, --steps_since_;
         structure().clear_forces(); // the velocity of the cavities is then that at the last step
         for (std::size_t b = 0; b < beds_.size(); ++b) {
+            beds_[b].frame.now = beds_[b].frame.before;
             update_cavity_motion(beds_[b]);
             for (const Chunk& c : beds_[b].chunks) integrators_[b].go_back(c, dt_before, body_before_);
             if (dt_before != problem_.dt)
                 for (Chunk& c : beds_[b].chunks) contact_loops_[b].change_step(c, dt_before, has_forces);
         }
         structure().load_values(now());
+        for (Bed& bed : beds_)
+            if (bed.frame.turns()) bed.frame.restart(now(), problem_.dt);
         compute_modal_force();
-        Row momentum{};
-        for (const Bed& bed : beds_) momentum += momentum_of(bed);
-        structure().work_on_particles(momentum);
+        work_on_particles();
+        set_body_accelerations();
         const Row body = structure().body_acceleration();
         for (std::size_t b = 0; b < beds_.size(); ++b)
             for (const Chunk& c : beds_[b].chunks) integrators_[b].predict(c, body_before_, body);
@@ -423,6 +461,7 @@ class Simulation {
     // Computes the data of the next step that all workers need. Called by one worker.
     void prepare_step() {
         structure().load_values(now());
+        set_body_accelerations();
         if (sampled(step_)) records_.begin_sample(beds_);
     }
 
@@ -439,10 +478,10 @@ class Simulation {
         }
         // The sum of the momentum is a cheap sign of numbers that are not finite anywhere in the bed.
         if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
-        if (!first) structure().work_on_particles(momentum);
+        if (!first) work_on_particles();
         if (sample)
             records_.add_sample(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
-        structure().work_on_particles(momentum);
+        work_on_particles();
         check_chunks();
         body_before_ = structure().body_acceleration();
         advance_structure();
@@ -524,6 +563,7 @@ public:
         }
         partition_.start(beds_);
         for (Bed& bed : beds_) {
+            if (bed.frame.turns()) bed.frame.set(now(), problem_.dt);
             update_cavity_motion(bed);
             bed.output_displacement = bed.motion.displacement;
         }
@@ -616,6 +656,7 @@ public:
         serialize(reader);
         for (auto* sums : {&load_work_, &base_work_}) sums->assign(signals_.size(), 0); // of other loads
         viscous_.assign(viscous_.size(), 0);
+        for (Bed& bed : beds_) bed.frame.drive_work = 0;
         check_state(reader, fixed);
         for (Bed& bed : beds_) clear_wall_totals(bed), update_cavity_motion(bed);
         require(step_ > 0 && status_ == Status::finished && dt_before > 0 && dt_before < infinity);

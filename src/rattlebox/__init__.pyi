@@ -82,6 +82,7 @@ from rattlebox.model.restitutions import JacksonGreen as JacksonGreen
 from rattlebox.model.restitutions import Johnson as Johnson
 from rattlebox.model.restitutions import Tabulated as Tabulated
 from rattlebox.model.restitutions import ThorntonRestitution as ThorntonRestitution
+from rattlebox.model.rotation import Rotation as Rotation
 from rattlebox.model.shear_buildings import ShearBuilding as ShearBuilding
 from rattlebox.model.shocks import HalfSine as HalfSine
 from rattlebox.model.shocks import Sawtooth as Sawtooth

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox.model.space import unit_vector
+
 from .signals import FloatArray
 
 if TYPE_CHECKING:
@@ -143,6 +145,19 @@ def _trend_score(x: FloatArray) -> float:
     return math.copysign(max(0.0, abs(total) - 1), total) / math.sqrt(max(1, n * (n - 1) * (2 * n + 5)) / 18)
 
 
+def _turning_velocity(run: Run, dampers: list[int]) -> FloatArray:
+    """Return the velocities of the centres of cavities by their rotation, (T, D, 3) [m/s]."""
+    arrays = run.arrays
+    velocity = np.zeros((arrays.time.size, len(dampers), 3))
+    for index, number in enumerate(dampers):
+        rotation = run.case.particle_dampers[number].rotation
+        if rotation is not None:
+            arm = np.broadcast_to(rotation.radial, (arrays.time.size, 3))
+            across = np.cross(unit_vector(rotation.axis), rotation.to_machine(arm, arrays.cavity_angle[:, number]))
+            velocity[:, index] = arrays.cavity_speed[:, number, None] * across
+    return velocity
+
+
 def _energies(
     run: Run, dampers: list[int]
 ) -> tuple[Any, Any, Any, Callable[[FloatArray], FloatArray], FloatArray, float]:
@@ -157,7 +172,12 @@ def _energies(
     # Gravity counts as stored energy: a bed that sinks pays for a part of the loss, which the walls have not supplied.
     raised = arrays.gravity_energy[:, dampers].sum(axis=1)
     still = raised + arrays.contact_energy[:, dampers].sum(axis=1)
+    turning = np.zeros((1, 1, 1))
     if arrays.engine == "dem":
+        # The drive of a turning cavity raises its bed and lowers it again; what it supplies is not work of the vibration.
+        still = still - arrays.drive_work[:, dampers].sum(axis=1)
+        raised = arrays.gravity_energy[:, [k for k in dampers if not np.any(arrays.cavity_speed[:, k])]].sum(axis=1)
+        turning = _turning_velocity(run, dampers)
         parts = (arrays.normal_loss, arrays.plastic_loss, arrays.sliding_loss, arrays.rolling_loss)
         lost = sum(part[:, dampers].sum(axis=(1, 2)) for part in parts)
         moving = (arrays.kinetic_energy + arrays.rotation_energy)[:, dampers].sum(axis=1)
@@ -176,8 +196,9 @@ def _energies(
         cavities = base[:, None] + (arrays.ball_velocity - arrays.relative_velocity)[:, balls, None]
     # In the inertial frame, whose velocity the base adds to that of the ledger.
     energy = still + moving + np.einsum("tdi,ti->t", momenta, base) + 0.5 * masses.sum() * np.sum(base**2, axis=1)
-    energy = energy - 0.5 * np.sum(cavities**2, axis=2) @ masses
-    smooth = CubicSpline(arrays.time, cavities) if arrays.time.size > 1 else None
+    carriers = cavities + turning
+    energy = energy - 0.5 * np.sum(carriers**2, axis=2) @ masses
+    smooth = CubicSpline(arrays.time, carriers) if arrays.time.size > 1 else None
 
     def carried(times: FloatArray) -> FloatArray:
         return np.asarray(0.0 if smooth is None else 0.5 * np.sum(smooth(times) ** 2, axis=2) @ masses)

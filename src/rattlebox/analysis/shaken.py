@@ -108,6 +108,11 @@ def harmonic_loss(run: Run, *, frequency: float, damper: str | None = None, afte
     number = arrays.dampers.index(damper)
     frequency = positive("frequency", frequency, "Hz")
     times, mass = arrays.time, float(particle_mass[number])
+    rotation = run.case.particle_dampers[number].rotation if run.case.particle_dampers else None
+    if rotation is not None and rotation.vibration == "cavity":
+        raise ValueError(
+            f"{damper} vibrates along its turning axes; the loss of a cycle needs a rotation with vibration='machine'"
+        )
     cycles = _whole_cycles(times, frequency, after)
     start = times[-1] - cycles / frequency
     # The ledger is relative to the base; the harmonic balance holds in the inertial frame.

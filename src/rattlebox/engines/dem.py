@@ -25,6 +25,7 @@ from rattlebox.engines.status import describe, final_status
 from rattlebox.model.methods import Dem
 from rattlebox.model.particle_case import direction_of_base
 from rattlebox.model.plausibility import plausibility_notes
+from rattlebox.model.space import unit_vector
 from rattlebox.prepare.particles import Prepared, pack_particles, prepare
 from rattlebox.prepare.softening import effects
 from rattlebox.prepare.time_step import Step, step_diagnostics
@@ -212,6 +213,8 @@ def _relative_speeds(arrays: RunArrays) -> Array:
     mass, cavity = arrays.particle_mass, arrays.cavity_velocity
     carried = np.sum(arrays.momentum * cavity, axis=2) - 0.5 * mass * np.sum(cavity**2, axis=2)
     energy = np.maximum(arrays.kinetic_energy - carried, 0.0).mean(axis=0)
+    # Most of the energy is that of the rotation in a cavity that turns; whether balls roll through it is unknown.
+    energy[np.any(arrays.cavity_speed, axis=0)] = 0.0
     return np.asarray(2 * np.sqrt(energy / mass))
 
 
@@ -220,6 +223,21 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
     dampers, time = case.particle_dampers, raw.time
     shapes = [cavity.shape for cavity in packed.cavities]
     displacement = np.stack([raw.q @ shape for shape in shapes], axis=1)
+    # In a cavity that turns, the core measures positions along its axes and forces along those of the machine.
+    inside, turning_force, on_structure = displacement.copy(), raw.force.copy(), raw.force.copy()
+    torque = np.zeros(raw.angle.shape)
+    for index, damper in enumerate(dampers):
+        if (rotation := damper.rotation) is None:
+            continue
+        angle, carries = raw.angle[:, index], rotation.vibration == "cavity"
+        turning_force[:, index] = rotation.to_cavity(raw.force[:, index], angle)
+        arm = np.asarray(rotation.arm) + carries * displacement[:, index]
+        if not carries:
+            inside[:, index] = rotation.to_cavity(displacement[:, index], angle)
+        elif case.modes.decay.size:
+            on_structure[:, index] = turning_force[:, index]
+        moment = rotation.to_cavity(raw.moment[:, index], angle) + np.cross(arm, turning_force[:, index])
+        torque[:, index] = -moment @ unit_vector(rotation.axis)
     base = np.zeros((3, time.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.multiply.outer(acceleration.motion(time), direction_of_base(dampers, signal))
@@ -227,13 +245,18 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
     contents = [damper.contents for damper in dampers]
     fixed = {name: np.concatenate([getattr(part, name) for part in contents]) for name in ("radius", "mass", "species")}
     return RunArrays(
-        **structure_arrays(case, time, raw.q, raw.p, base, raw.force, shapes),
+        **structure_arrays(case, time, raw.q, raw.p, base, on_structure, shapes) | {"cavity_force": raw.force},
         engine="dem",
         dampers=tuple(damper.label(index) for index, damper in enumerate(dampers)),
         cavity_displacement=displacement,
         cavity_velocity=np.stack([raw.p @ shape for shape in shapes], axis=1),
         cavity_moment=raw.moment,
-        centre_of_mass=raw.centre - displacement,
+        centre_of_mass=raw.centre - inside,
+        cavity_angle=raw.angle,
+        cavity_speed=raw.speed,
+        turning_force=turning_force,
+        drive_torque=torque,
+        drive_work=raw.drive_work,
         momentum=raw.momentum,
         contacts=raw.contacts,
         particle_mass=np.array([part.mass.sum() for part in contents]),

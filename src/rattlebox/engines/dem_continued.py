@@ -157,6 +157,13 @@ def _differences(cavity: _core.Cavity, other: _core.Cavity) -> Iterator[tuple[st
     own, others = ({"": [each.walls, each.solids, each.period]} for each in (cavity, other))
     if fingerprint(own) != fingerprint(others):
         yield "walls", "the cavity"
+    turning, turned = cavity.rotation, other.rotation
+    if (turning is None) != (turned is None):
+        yield "rotation", "whether the cavity turns"
+    elif turning is not None and turned is not None:
+        for name in ("axis", "arm", "carries_structure"):
+            if not np.array_equal(getattr(turning, name), getattr(turned, name)):
+                yield f"rotation: {name}", "the axis of the rotation"
     if not np.array_equal(cavity.shape, other.shape):
         yield "point and direction", "the place of the damper"
 

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.core import _core
+from rattlebox.model.space import rotated
 
-_FROM_ZERO = ("load_work", "base_work", "viscous_loss")
+_FROM_ZERO = ("load_work", "base_work", "viscous_loss", "drive_work")
 """Samples that the core counts from the beginning of a continued run, unless the case is the same."""
 
 WALL_SUMS = (
@@ -53,8 +54,8 @@ class EndState:
         """
         values = {**self.samples, "time": np.array([time])}
         if not keeps_sums:
-            widths = {"load_work": loads, "base_work": loads, "viscous_loss": values["viscous_loss"].shape[1]}
-            values |= {name: np.zeros((1, widths[name])) for name in _FROM_ZERO}
+            widths = {name: values[name].shape[1] for name in _FROM_ZERO} | {"load_work": loads, "base_work": loads}
+            values |= {name: np.zeros((1, width)) for name, width in widths.items()}
         for name, value in values.items():
             if name.startswith("wall_") and value.shape[1] != walls:
                 values[name] = np.zeros((1, walls, *value.shape[2:]), value.dtype)
@@ -62,8 +63,12 @@ class EndState:
 
     def in_gravity(self, packed: _core.DemProblem) -> Self:
         """Return the state with the potential energies of the particles in the gravity of a problem."""
-        masses = np.array([cavity.mass.sum() for cavity in packed.cavities])
-        potential = -masses * (self.samples["centre"] @ np.asarray(packed.gravity))
+        potential = self.samples["potential"].copy()
+        for index, cavity in enumerate(packed.cavities):
+            place = self.samples["centre"][:, index]
+            if (turning := cavity.rotation) is not None:
+                place = rotated(place + turning.arm, turning.axis, self.samples["angle"][:, index])
+            potential[:, index] = -float(cavity.mass.sum()) * (place @ np.asarray(packed.gravity))
         return replace(self, samples={**self.samples, "potential": potential})
 
     def arrays(self) -> dict[str, NDArray[Any]]:

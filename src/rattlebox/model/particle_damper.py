@@ -41,7 +41,8 @@ from .packing import (
 )
 from .pairs import Body, Pair
 from .particles import MAX_PARTICLES, Particles, as_species
-from .space import AXES, Accelerations, Direction, Velocities
+from .rotation import Rotation
+from .space import AXES, Accelerations, Direction, Velocities, unit_vector
 from .units import Number, Whole
 from .walls import AnyFace, Wall
 
@@ -184,6 +185,9 @@ class ParticleDamper(Damper):
         numbers in the laws of each species, or the "smaller" or "larger" number. By default all species have the same laws.
     gravity
         Gravity along x, y and z [m/s^2].
+    rotation
+        Rotation of the cavity about an axis of the machine; default none. Velocities at the start are then relative to the
+        turning cavity, and so are the positions and velocities of particles in the results.
     point, points
         Point of the structure, needed if there are several; or points that have such a damper each.
     number
@@ -234,6 +238,7 @@ class ParticleDamper(Damper):
     pairs: tuple[PairLaws, ...] = ()
     mixing: Mixing | None = None
     gravity: Accelerations = (0.0, 0.0, -9.81)
+    rotation: Rotation | None = None
     point: str | None = None
     points: tuple[str, ...] = Field(default=(), examples=[["tip", "middle"]])
     number: Annotated[Whole, Field(ge=1, le=MAX_DAMPERS)] = 1
@@ -256,6 +261,7 @@ class ParticleDamper(Damper):
         self._check_faces()
         self._check_amounts()
         self._check_room()
+        self._check_rotation()
         self._check_pairs()
         self._check_filling()
         return self
@@ -410,6 +416,18 @@ class ParticleDamper(Damper):
                 entry.friction_place,
             )
 
+    def _check_rotation(self) -> None:
+        """Raise if images of a periodic cavity would be in another field than the particles."""
+        if self.rotation is None:
+            return
+        axis = unit_vector(self.rotation.axis)
+        if np.any((self.interior.period > 0) & (np.abs(axis) < 1 - 1e-12)):
+            raise Hint(
+                "a periodic direction across the axis of a rotation has no images in the same field",
+                "periodic directions along the axis only",
+                ["rotation", "axis"],
+            )
+
     def _check_room(self) -> None:
         """Raise, before arrays are allocated, if the particles exceed the volume of the cavity or the memory."""
         if self.packing.stated_count is not None:
@@ -444,7 +462,7 @@ class ParticleDamper(Damper):
         crowd = Crowd.of(contents.radius)
         if filled >= 1:
             raise self.packing.too_many(self.interior, crowd)
-        self.packing.check(self.interior, crowd, settles=any(self.gravity))
+        self.packing.check(self.interior, crowd, settles=bool(np.any(self.field)))
         _ = self.start
 
     @property
@@ -520,9 +538,37 @@ class ParticleDamper(Damper):
 
     @property
     def up(self) -> Vector | None:
-        """Unit vector against gravity, (3,); None without gravity."""
-        pull = float(np.linalg.norm(self.gravity))
-        return -np.array(self.gravity) / pull if pull else None
+        """Unit vector against the field at the start, (3,); None without one."""
+        pull = float(np.linalg.norm(self.field))
+        return -self.field / pull if pull else None
+
+    @cached_property
+    def field(self) -> Vector:
+        """Acceleration of particles at rest at the centre of the cavity at the start, along its axes, (3,) [m/s^2].
+
+        It is gravity, and in a cavity that turns the centrifugal acceleration.
+        """
+        gravity = np.array(self.gravity)
+        return gravity if self.rotation is None else self.rotation.field(gravity)
+
+    def fall_speed(self, duration: float) -> float:
+        """Return a bound on the speed after a fall through the cavity in a run of this duration [m/s]."""
+        size = self.strongest_field(duration)
+        if self.rotation is not None:
+            return math.sqrt(4 * self._reach * size)
+        return math.sqrt(2 * size * self.interior.extent(np.array(self.gravity) / size)) if size else 0.0
+
+    def strongest_field(self, duration: float) -> float:
+        """Return a bound on gravity and centrifugal acceleration in the cavity in a run of this duration [m/s^2]."""
+        gravity = np.array(self.gravity)
+        if self.rotation is not None:
+            return self.rotation.strongest_field(gravity, self._reach, duration)
+        return float(np.linalg.norm(gravity))
+
+    @property
+    def _reach(self) -> float:
+        """Bound on the distance of a point of the cavity from its centre [m]."""
+        return float(np.linalg.norm(self.interior.lengths)) / 2
 
     @property
     def largest_friction(self) -> float:
@@ -544,7 +590,7 @@ class ParticleDamper(Damper):
             If particles overlap, extend beyond the cavity, or do not fit.
         """
         radius = self.contents.radius
-        positions = self.packing.place(self.interior, radius, settles=any(self.gravity))
+        positions = self.packing.place(self.interior, radius, settles=bool(np.any(self.field)))
         velocity, spin = self.packing.motion(radius.size)
         positions = self.interior.wrapped(positions)
         return Start(positions, np.array(self.velocity) + velocity, spin)

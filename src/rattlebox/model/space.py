@@ -122,6 +122,13 @@ def to_nearest_image(branch: Vector, period: Vector) -> Vector:
     return np.asarray(branch - period * np.rint(branch / np.where(period > 0, period, np.inf)))
 
 
+def rotated(vectors: Vector, axis: Vector, angle: Any) -> Vector:
+    """Return vectors, (..., 3), after a rotation about a unit vector by an angle, or by one for each vector [rad]."""
+    angle = np.asarray(angle)[..., None]
+    along = (vectors @ axis)[..., None] * axis
+    return np.asarray(along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors))
+
+
 Accelerations = Annotated[Triple, *triple("m/s^2", "accelerations", "[0, 0, -9.81]")]
 Velocities = Annotated[Triple, *triple("m/s", "velocities", "[0.1, 0, 0]")]
 Lengths = Annotated[Triple, *triple("m", "lengths", '["40 mm", "40 mm", "60 mm"]')]

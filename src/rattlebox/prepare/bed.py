@@ -100,7 +100,7 @@ def loose_note(damper: ParticleDamper, name: str, fill: float, acceleration: flo
     Randomly packed particles touch only some of their neighbours and walls, so that a full bed has room to move.
     """
     is_full = damper.particles[0].bed_fill == 1 or fill > FULL
-    weight = float(np.linalg.norm(damper.gravity))
+    weight = float(np.linalg.norm(damper.field))
     if is_full and damper.packing.is_computed and acceleration > weight:
         level = f"at {acceleration / weight:.2g} times gravity" if weight else "without gravity"
         yield (

@@ -97,6 +97,13 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     """
     if not case.method.has_stepper:
         raise Hint(f"the method {case.method.kind} has no stepper", "method = EventDriven(), or Newton()")
+    for index, damper in enumerate(case.particle_dampers):
+        if damper.rotation is not None:
+            raise Hint(
+                "a stepper has cavities that do not turn about an axis, but this damper has a rotation",
+                "simulate(case), or a damper without rotation",
+                ["dampers", index, "rotation"],
+            )
     if alone:
         refuse_stops(
             case.stops,

@@ -16,6 +16,7 @@ from rattlebox.core import _core
 from rattlebox.model.errors import at
 from rattlebox.model.methods import EventDriven, Output
 from rattlebox.model.particle_case import direction_of_base, inertia_along
+from rattlebox.model.space import unit_vector
 from rattlebox.prepare.bed import bed_level, bed_note, loose_note
 from rattlebox.prepare.laws import pack_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
     from rattlebox.model.case import Case
     from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
+    from rattlebox.model.rotation import Rotation
 
     Array = NDArray[np.float64]
 
@@ -68,7 +70,10 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
     for index, (damper, table, speed) in enumerate(zip(case.particle_dampers, tables, step.speeds, strict=True)):
         with at(*(("dampers", index) if len(tables) > 1 else ("damper",))):
             pressed += pressed_notes(damper, table, speed, damper.label(index))
-    inside = [start - case.modes.q0 @ shape for start, shape in zip(starts, shapes, strict=True)]
+    inside = [
+        start - _displacement(case, damper, shape)
+        for start, damper, shape in zip(starts, case.particle_dampers, shapes, strict=True)
+    ]
     fills, more = _fills(case, inside, [motion.acceleration for motion in step.motions])
     periodic = [
         note
@@ -168,6 +173,32 @@ def _shapes(case: Case) -> list[Array]:
     return [case.modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
 
 
+def _displacement(case: Case, damper: ParticleDamper, shape: Array) -> Array:
+    """Return the displacement of a cavity at the start, along its axes, (3,) [m]."""
+    displacement = np.asarray(case.modes.q0 @ shape)
+    turning = damper.rotation
+    if turning is None or turning.vibration == "cavity":
+        return displacement
+    return turning.to_cavity(displacement, turning.at(0.0).angle)
+
+
+def _rotation(rotation: Rotation | None) -> _core.Rotation | None:
+    """Pack the rotation of a cavity."""
+    if rotation is None:
+        return None
+    knots, coefficients = rotation.polynomials
+    return _core.Rotation(
+        axis=unit_vector(rotation.axis),
+        arm=_array(rotation.arm),
+        carries_structure=rotation.vibration == "cavity",
+        knots=_array(knots),
+        coefficients=_array(coefficients),
+        amplitude=rotation.amplitude,
+        frequency=rotation.rocking,
+        phase=0.0,
+    )
+
+
 def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | None) -> list[Array]:
     """Return the initial positions of the particles of each damper; settled ones are taken from `known` if it is given."""
     positions = []
@@ -178,7 +209,7 @@ def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | Non
         else:
             with at(*(("dampers", index) if len(shapes) > 1 else ("damper",)), "packing"):
                 start = beds[index].result() if index in beds else start_positions(damper)
-                position = start + case.modes.q0 @ shape
+                position = start + _displacement(case, damper, shape)
         positions.append(_array(position))
     return positions
 
@@ -263,6 +294,7 @@ def _cavity(damper: ParticleDamper, shape: Array, table: ContactTable, first: in
         species=np.asarray(contents.species, dtype=np.int64),
         particle_pair=np.asarray(table.particle_entry + first, dtype=np.int64),
         wall_pair=np.asarray(table.wall_entry + first, dtype=np.int64),
+        rotation=_rotation(damper.rotation),
     )
 
 

@@ -60,7 +60,7 @@ def start_positions(damper: ParticleDamper) -> Array:
 
 def bed_key(damper: ParticleDamper) -> str:
     """Return a text that is equal for dampers with the same settled bed."""
-    fields = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"})
+    fields = damper.model_dump_json(include={"particles", "cavity", "gravity", "rotation", "packing"})
     return f"{fields} {damper.interior.digest} {_friction(damper)!r}"
 
 
@@ -302,7 +302,7 @@ class _SettlingBed:
     def __init__(self, damper: ParticleDamper, proceed: Callable[[], bool]) -> None:
         self._proceed = proceed
         self._contents, self._cavity = damper.contents, damper.interior
-        self._gravity = np.array(damper.gravity)
+        self._gravity = damper.field
         self._pull = float(np.linalg.norm(self._gravity))
         height = damper.interior.extent(present(damper.up))
         self._fall = math.sqrt(2 * height / self._pull)

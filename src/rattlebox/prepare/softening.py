@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
-    from rattlebox.model.particle_damper import ParticleDamper
+    from rattlebox.model.particle_damper import Entry, ParticleDamper
 
 PACKED = 0.58
 """Volume fraction of particles in a settled bed."""
@@ -107,29 +107,54 @@ def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> flo
     c with Hertz contacts. The resonance is a quarter wave, 1 / (4 times this time), multiplied by `COLUMN`, which is fitted
     to computed beds (docs/theory/softening.md).
     """
-    gravity = np.array(damper.gravity)
+    gravity = damper.field
     size = float(np.linalg.norm(gravity))
     if not size:
         return 0.0
+    floor = _floor(damper, gravity / size, size)
+    factor = damper.softening_factor if softening is None else softening
+    exponent = floor.entry.contact.force_exponent
+    stiffness = exponent * floor.force / floor.entry.contact.static_overlap(floor.entry.pair, factor, floor.force)
+    travel = 2 * exponent / (exponent + 1)  # time of a wave over h / c
+    return float(COLUMN * math.sqrt(stiffness / (floor.diameter * floor.density)) / (4 * travel * floor.depth))
+
+
+def softening_of_overlap(damper: ParticleDamper, field: float, overlap: float) -> float:
+    """Return the softening at which contacts at the floor of a bed at rest in a field have an overlap [m/s^2], [m]."""
+    if not field or damper.up is None:
+        return math.inf
+    floor = _floor(damper, -damper.up, field)
+    hard = float(floor.entry.contact.static_overlap(floor.entry.pair, 1.0, floor.force))
+    return float((overlap / hard) ** floor.entry.contact.force_exponent)
+
+
+class _Floor(NamedTuple):
+    """Contacts at the floor of a bed: their laws and force, diameter and depth [m], and density of the bed [kg/m^3]."""
+
+    entry: Entry
+    force: float
+    diameter: float
+    depth: float
+    density: float
+
+
+def _floor(damper: ParticleDamper, along: NDArray[np.float64], size: float) -> _Floor:
+    """Return the contacts at the floor of a bed in a field of a size along a unit vector."""
     contents, table = damper.contents, damper.contact_table
     species = int(np.bincount(contents.species, contents.mass).argmax())
     if contents.radius.size == 1:  # It rests on the floor.
-        lowest = 0.5 * damper.interior.extent(gravity / size) * gravity[None] / size
+        lowest = 0.5 * damper.interior.extent(along) * along[None]
         entry = table.at_wall(species, int(damper.interior.nearest_wall(lowest)[0]))
     else:
         entry = table.entries[table.particle_entry[species, species]]
-    factor = damper.softening_factor if softening is None else softening
     diameter = 2 * float(contents.radius[contents.species == species].mean())
     volume = 4 / 3 * math.pi * float((contents.radius**3).sum())
-    area = damper.interior.volume / damper.interior.extent(gravity / size)
+    area = damper.interior.volume / damper.interior.extent(along)
     depth = max(diameter, volume / (PACKED * area))
     density = PACKED * float(contents.mass.sum()) / volume
     neighbours = 4.6
     force = math.pi * diameter**2 * density * size * depth / (PACKED * neighbours)
-    exponent = entry.contact.force_exponent
-    stiffness = exponent * force / entry.contact.static_overlap(entry.pair, factor, force)
-    travel = 2 * exponent / (exponent + 1)  # time of a wave over h / c
-    return float(COLUMN * math.sqrt(stiffness / (diameter * density)) / (4 * travel * depth))
+    return _Floor(entry, force, diameter, depth, density)
 
 
 def loss_change(damper: ParticleDamper, motion: CavityMotion, level: float, softening: float) -> float:
@@ -166,7 +191,7 @@ def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: floa
     The resonance of a bed of contacts F = A x^n falls as s^(-1/(2n)), so that `loss_change` equals a change c for
     s = (1 + c (f_1 / f)^2 / K)^n. The value is rounded down to two digits.
     """
-    gravity = float(np.linalg.norm(damper.gravity))
+    gravity = float(np.linalg.norm(damper.field))
     # Each early return is a case in which the estimate below does not hold; the reason becomes a note of the run.
     level = motion.acceleration / gravity if gravity and motion.is_prescribed else 0.0
     if not gravity:
@@ -261,7 +286,7 @@ def effects(
     """
     result = []
     for index, (damper, motion) in enumerate(zip(case.particle_dampers, motions, strict=True)):
-        gravity = float(np.linalg.norm(damper.gravity))
+        gravity = float(np.linalg.norm(damper.field))
         speed = math.sqrt(2 * float(np.var(velocity[:, index], axis=0).sum()))
         level = speed * 2 * math.pi * motion.main / gravity if gravity else 0.0
         softening = damper.softening_factor

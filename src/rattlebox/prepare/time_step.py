@@ -16,7 +16,7 @@ from rattlebox.model.contacts import MAX_OVERLAP
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Dem
 from rattlebox.model.particle_case import direction_of_base
-from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE, CavityMotion, Effect
+from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE, CavityMotion, Effect, softening_of_overlap
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -107,9 +107,7 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
         base += np.outer(acceleration.motion(times)[1], direction_of_base(case.particle_dampers, signal))
     speeds = []
     for damper, velocity in zip(case.particle_dampers, cavity_velocities, strict=True):
-        gravity = np.array(damper.gravity)
-        size = float(np.linalg.norm(gravity))
-        fall = math.sqrt(2 * size * damper.interior.extent(gravity / size)) if size else 0.0
+        fall = damper.fall_speed(case.duration)
         start = 2 * float(np.linalg.norm(damper.start.velocity, axis=1).max())
         rest = np.zeros((1, 3))  # particles at rest relative to the base
         speeds.append(_span(np.vstack([rest, velocity])) + _span(base) + fall + start)
@@ -259,6 +257,8 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
             time = math.pi * radius / wave
             what = f"Rayleigh wave along {species.label} (diameter {2e3 * radius:.4g} mm), {_time(time)}"
             result.append(Limit(time, RAYLEIGH * time, math.inf, what))
+        if damper.rotation is not None and (rate := damper.rotation.largest(case.duration).speed):
+            result.append(_motion_limit(2 * math.pi / rate, fraction, "turn of the cavity"))
     for k, stiffness in enumerate(case.modes.stiffness):
         if stiffness > 0:
             result.append(_motion_limit(2 * math.pi / math.sqrt(stiffness), fraction, f"period of mode {k + 1}"))
@@ -409,12 +409,15 @@ def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float
     -----
     A Hertz contact of duration t has the overlap V t / 2.943. The duration, and with it the overlap, grows with the
     softening s as s^(2/5) for Hertz contacts and s^(1/2) for linear ones; the result, (`MAX_OVERLAP` / overlap)^2, uses the
-    latter, which is smaller.
+    latter, which is smaller. The overlap at the floor of a bed at rest in the strongest field of the run stays below the
+    limit, too.
     """
     smallest, table = float(damper.contents.radius.min()), damper.contact_table
     longest = max((limit.duration for limit in contact_limits(case, damper, table, speed, 1.0)), default=0.0)
     overlap = speed * longest / HERTZ_TIME / smallest if math.isfinite(longest) else 0.0
-    return (MAX_OVERLAP / overlap) ** 2 if overlap else math.inf
+    by_impacts = (MAX_OVERLAP / overlap) ** 2 if overlap else math.inf
+    pressed = softening_of_overlap(damper, damper.strongest_field(case.duration), MAX_OVERLAP * smallest)
+    return min(by_impacts, pressed)
 
 
 def _step_note(case: Case, step: Step) -> str:

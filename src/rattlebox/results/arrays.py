@@ -227,6 +227,11 @@ class RunArrays(_Frozen):
     cavity_moment: FloatArray
     centre_of_mass: FloatArray
     momentum: FloatArray
+    cavity_angle: FloatArray
+    cavity_speed: FloatArray
+    drive_torque: FloatArray
+    drive_work: FloatArray
+    turning_force: FloatArray
     contacts: IntArray
     particle_mass: FloatArray
     kinetic_energy: FloatArray

@@ -31,7 +31,13 @@ def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
     if arrays.engine == "dem":
         gravity = np.array([damper.gravity for damper in case.particle_dampers]).reshape(-1, 3)
         inertia = np.diff(arrays.momentum, axis=0) + arrays.particle_mass[:, None] * base[:, None]
-        return np.asarray(arrays.particle_mass[:, None] * gravity - inertia / step[:, None, None])
+        mean = np.asarray(arrays.particle_mass[:, None] * gravity - inertia / step[:, None, None])
+        for index, rotation in enumerate(damper.rotation for damper in case.particle_dampers):
+            # A structure that turns with its cavity is driven along the axes of the cavity.
+            if rotation is not None and rotation.vibration == "cavity":
+                angle = arrays.cavity_angle[:, index]
+                mean[:, index] = rotation.to_cavity(mean[:, index], 0.5 * (angle[1:] + angle[:-1]))
+        return mean
     force = np.zeros((step.size, len(arrays.dampers)))
     for index, damper in enumerate(case.impact_dampers):
         in_damper = arrays.ball_damper == index

@@ -29,7 +29,7 @@ class Ledger:
     Notes
     -----
     The energy balance is E(t) - E(0) = W(t) - L(t) with the total energy E (structure, particles, elastic contacts,
-    gravity), the work W of load and base, and the losses L (viscous; in contacts normal, plastic, and in 3-D runs
+    gravity), the work W of load, base and drives, and the losses L (viscous; in contacts normal, plastic, and in 3-D runs
     sliding and rolling).
     """
 
@@ -68,8 +68,14 @@ class Ledger:
 
     @cached_property
     def work(self) -> FloatArray:
-        """Work W(t) of the load and of the base motion since the start."""
-        return np.asarray(self.arrays.load_work + self.arrays.base_work)
+        """Work W(t) of the load, of the base motion and of the drives of turning cavities since the start."""
+        return np.asarray(self.driven + self.arrays.base_work)
+
+    @cached_property
+    def driven(self) -> FloatArray:
+        """Work of the load and of the drives of turning cavities since the start."""
+        drives = _sum(self.arrays.drive_work) if "drive_work" in self.arrays else 0.0
+        return np.asarray(self.arrays.load_work + drives)
 
     @cached_property
     def channels(self) -> dict[str, FloatArray]:
@@ -109,7 +115,7 @@ class Ledger:
         """Energy put in: max|W_load| + max|W_base| + E(0), with max|V(t) - V(0)| for the gravity potential [J]."""
         arrays = self.arrays
         return float(
-            np.max(np.abs(arrays.load_work))
+            np.max(np.abs(self.driven))
             + np.max(np.abs(arrays.base_work))
             + self.motion[0]
             + np.max(np.abs(self.gravity - self.gravity[0]))
@@ -120,7 +126,7 @@ class Ledger:
         """Largest sum of all terms of the balance at one time, whose rounding errors the residual contains [J]."""
         arrays = self.arrays
         handled = self.motion + np.abs(self.gravity) + arrays.viscous_loss
-        return float(np.max(handled + np.abs(arrays.load_work) + np.abs(arrays.base_work)))
+        return float(np.max(handled + np.abs(self.driven) + np.abs(arrays.base_work)))
 
     @cached_property
     def energy_residual(self) -> float:
@@ -138,7 +144,7 @@ class Ledger:
             time=arrays.time,
             motion=self.motion,
             gravity=self.gravity,
-            load_work=arrays.load_work,
+            load_work=self.driven,
             base_work=arrays.base_work,
             viscous_loss=arrays.viscous_loss,
             contact_loss=self.contact_loss,

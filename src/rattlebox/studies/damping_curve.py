@@ -451,6 +451,7 @@ def _energy_ratios(
     # was thrown settles again, and dissipates the work of its weight, which does not come from the structure.
     arrays = run.arrays
     gained = run.ledger.particles + (arrays.contact_energy + arrays.gravity_energy).sum(axis=1)
+    gained = gained - (run.ledger.driven - arrays.load_work)  # energy from the drives of turning cavities
     lost = np.interp(decay.time, *mean_over_period(time, run.ledger.losses + gained, 1 / mode.frequency))
     loss = np.concatenate([[0.0], np.cumsum(np.diff(lost) * (share[1:] + share[:-1]) / 2)])
     start, end = bands.start.values, bands.end.values

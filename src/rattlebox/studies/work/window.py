@@ -120,7 +120,7 @@ class Window:
             base_force=base_force,
             motion=ledger.motion,
             gravity=ledger.gravity,
-            load_work=arrays.load_work,
+            load_work=ledger.driven,
             base_work=arrays.base_work,
             viscous_loss=arrays.viscous_loss,
             contact_loss=ledger.contact_loss,
