@@ -64,20 +64,14 @@ def corrector_of(case: Case, axis: str, limits: Sequence[Any], step: float) -> t
 def data_of(row: Sequence[Point], case: Case, axis: str, unit: str, follower: Follower) -> xarray.Dataset:
     """Return the dataset of the branch of a row of points."""
     limits = follower.corrector.limits
-    ends = [point for point in (row[0], row[-1]) if not _at_limit(point, limits)]
-    ended = (
-        ""
-        if follower.is_closed
-        else "; ".join(
-            f"at {axis} = {quantity(point.value, unit, 6)}{', ' + point.special if point.special else ''}"
-            for point in ends
-        )
+    # The side of rising values is followed first; the branch that begins at a special point has this side only.
+    ends = (row[-1], row[0])
+    ended = "; ".join(
+        f"at {axis} = {quantity(point.value, unit, 6)}, {reason}"
+        for point, reason in zip(ends, follower.reasons, strict=False)
+        if reason
     )
     return _dataset(row, case, axis, unit, limits, closed=int(follower.is_closed), ended=ended)
-
-
-def _at_limit(point: Point, limits: tuple[float, float]) -> bool:
-    return bool(np.min(np.abs(np.array(limits) - point.value)) < 1e-9 * (limits[1] - limits[0]))
 
 
 def _dataset(

@@ -13,7 +13,7 @@ from rattlebox.model.errors import Hint, several
 from rattlebox.model.units import whole_number
 from rattlebox.results.run import Run
 from rattlebox.studies.orbits.forcing import Forcing
-from rattlebox.studies.orbits.motion import Motion, motion_of
+from rattlebox.studies.orbits.motion import Motion, motion_of, strobes
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
 from rattlebox.studies.orbits.shooting import ReturnMap, Shot, solve
 from rattlebox.studies.orbits.symmetry import is_mirrored
@@ -207,17 +207,15 @@ def _end_of(run: Run) -> tuple[float, Vector]:
 def _recurrence(returns: ReturnMap, state: Vector) -> int:
     """Return the number of cycles after which a motion nearly repeats; raise if it does not."""
     scale = size_of(returns, state, LONGEST)
-    distances, current = [], state[None]
-    for cycles in range(1, LONGEST + 1):
-        shot = returns.shoot(current, derivatives=False)
-        if scale is None or not shot.is_complete:
-            raise Hint("the motion from this state cannot be computed", "rb.simulate(case), to see where it stops")
-        current = current + shot.residual
-        distances.append(float(np.abs((current[0] - state) / scale).max()))
-        if distances[-1] < _RETURNED:
-            return cycles
+    row = strobes(returns.forcing.case, state, returns.forcing.period, LONGEST)
+    if scale is None or row is None:
+        raise Hint("the motion from this state cannot be computed", "rb.simulate(case), to see where it stops")
+    distances = np.abs((row[1:] - state) / scale).max(axis=1)
+    repeated = np.flatnonzero(distances < _RETURNED)
+    if repeated.size:
+        return int(repeated[0]) + 1
     raise Hint(
-        f"the motion does not repeat within {LONGEST} cycles: it returns to within {100 * min(distances):.2g} % of its "
+        f"the motion does not repeat within {LONGEST} cycles: it returns to within {100 * distances.min():.2g} % of its "
         f"size, after {several(int(np.argmin(distances)) + 1, 'cycle')}, and must return to within {100 * _RETURNED:g} %",
         "a longer run, so that its transient has decayed; or period=1, for an unstable motion near it; rb.lyapunov, to see "
         "whether it is chaotic",
@@ -229,15 +227,9 @@ def _close_returns(returns: ReturnMap, state: Vector) -> list[Vector]:
 
     Chaotic motion comes near to each unstable periodic motion in it from time to time.
     """
-    one, scale = returns.with_(cycles=1), size_of(returns, state, LONGEST)
-    states = [state]
-    while len(states) < _OBSERVED + returns.cycles and scale is not None:
-        shot = one.shoot(states[-1][None], derivatives=False)
-        if not shot.is_complete:
-            break
-        states.append(states[-1] + shot.residual[0])
-    row = np.array(states)
-    if len(row) <= returns.cycles or scale is None:
+    scale = size_of(returns, state, LONGEST)
+    row = strobes(returns.forcing.case, state, returns.forcing.period, _OBSERVED + returns.cycles)
+    if row is None or scale is None:
         return []
     distance = np.abs((row[returns.cycles :] - row[: -returns.cycles]) / scale).max(axis=1)
     return [row[k] for k in np.argsort(distance)[:_TRIED]]

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rattlebox.model.errors import several
 from rattlebox.studies.orbits.corrector import TESTS, Corrector, Point
 from rattlebox.studies.orbits.grazing import approach, beyond
 
@@ -34,6 +35,8 @@ class Follower:
     def __init__(self, corrector: Corrector) -> None:
         self.corrector = corrector
         self.is_closed = False
+        self.reasons: list[str] = []
+        """Reason why the branch ends on each side that was followed; empty at a limit."""
 
     def follow(self, start: Point, most: int, proceed: Callable[[], bool]) -> Iterator[Point]:
         """Yield the points after a start, with special points, up to the limits or the end of the branch."""
@@ -53,6 +56,7 @@ class Follower:
                     yield from points
                     there = beyond(corrector, points[-1], indicator)
                     if there is None:
+                        self.reasons.append("no motion was found beyond the grazing")
                         return
                     yield there
                     count += len(points) + 1
@@ -61,10 +65,12 @@ class Follower:
                 if taken is None or not is_near:
                     length /= 2
                     if length < _SHORTEST or tiny > _MOST_TINY:
+                        self.reasons.append("no further motion was found")
                         return
                     continue
             after, corrections = taken
             if not limits[0] <= after.value <= limits[1]:
+                self.reasons.append("")
                 if (last := corrector.at_limit(point, after)) is not None:
                     yield from self._special(point, last)
                     yield last
@@ -84,6 +90,7 @@ class Follower:
             moved = corrector.resection(after)
             # Distances are between points whose maps begin at the same phase.
             before, point = (point if moved is after else None), moved
+        self.reasons.append(f"it was ended after {several(count, 'point')}")
 
     def _has_returned(self, start: Point, point: Point, after: Point) -> bool:
         """Return whether the branch passes its start between two points, in the same direction."""

@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 
 SAMPLES = 512
 """Number of samples of a period, between which positions are cubic polynomials with an error of about 1e-11."""
-MOST_EVENTS = 20_000
+MOST_EVENTS = 5_000
 """Largest number of flights and contacts in a stretch; a search may pass through states that no motion has."""
 _TOUCHING = 1e-9
 """Gap over the clearance, below which the end of an interval belongs to a contact."""
@@ -105,6 +105,15 @@ def start_at(problem: _core.Problem, state: Vector, duration: float, times: Vect
         sample_times=times,
         settings=problem.settings.replace(duration=duration),
     )
+
+
+def strobes(case: Case, state: Vector, period: float, count: int) -> Vector | None:
+    """Return the state at whole periods of a motion, (count + 1, n); None if it cannot be computed."""
+    times: Vector = period * np.arange(count + 1, dtype=float)
+    problem = started(case, state, float(times[-1]), np.asarray(times, dtype=float))
+    most = min(problem.settings.max_events, MOST_EVENTS * count)
+    (raw,) = _core.simulate([problem.replace(settings=problem.settings.replace(max_events=most))], 1)
+    return raw.state[:, : state.size] if raw.status == Status.finished else None
 
 
 def motion_of(case: Case, state: Vector, duration: float) -> Motion | None:

@@ -24,8 +24,8 @@ Vector = NDArray[np.float64]
 
 TOLERANCE = 1e-11
 """Largest residual of a periodic motion, over the size of each component of the state."""
-_STEPS = 40
-_HALVINGS = 8
+_STEPS = 25
+_HALVINGS = 6
 _LONGEST_STEP = 1.0
 """Largest step, over the size of each component of the state."""
 
