@@ -133,11 +133,11 @@ def backbone(
 
     .. math:: \operatorname{Re} [D(f) - \omega^2 m] = 0, \qquad F = X \operatorname{Im} [D(f) - \omega^2 m].
 
-    For a linear structure this is exact. Stops are springs rather than masses: with them omega^2 m is one number k that depends
-    on the amplitude only, the first one from the duration of an impact, and the runs are made 40 degrees before resonance
-    with the force for the wanted amplitude, because a bent resonance is next to a fold. Hard stops leave no amplitude above
-    their gap, and a search there ends without a result. The first m comes from a run in which the cavities move harmonically, as in
-    the mode.
+    For a linear structure this is exact. Stops are springs rather than masses: with them omega^2 m is one number k that
+    depends on the amplitude only, the first one from the duration of an impact, and the runs are made 40 degrees before
+    resonance with the force for the wanted amplitude, because a bent resonance is next to a fold. Hard stops leave no
+    amplitude above their gap, and a search there ends without a result. The first m comes from a run in which the cavities
+    move harmonically, as in the mode.
     The damping ratio is that of a linear mode with the same loss, with its shape phi at the point of the load,
 
     .. math:: \zeta = \frac{\phi^2 F}{2 \omega^2 X}.
