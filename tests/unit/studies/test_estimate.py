@@ -83,6 +83,23 @@ def test_the_estimate_is_within_a_factor_of_two(study: Any) -> None:
     assert estimate.factor >= 1.3 and estimate.wall_time > 0
 
 
+@pytest.mark.parametrize(
+    "parameters", [{"damper.gap": ("0.2 mm", "2 mm")}, {"damper.gap": ["0.3 mm", "0.6 mm", "1 mm"]}]
+)
+def test_the_estimate_of_a_tiny_design(parameters: Any) -> None:
+    """A design of trials of some milliseconds is predicted within a factor of two: whole trials are timed.
+
+    A fixed time per trial was three times too long or too short on other machines, and no test had trials as short.
+    """
+    values = {"case": rb.reference_case(duration=0.5), "parameters": parameters, "objective": "peak"}
+    trials = 40 if isinstance(parameters["damper.gap"], tuple) else None
+    study = make_study(study_kind("design"), values | ({"trials": trials} if trials else {}))
+    estimate = study.estimate()
+    before = time.process_time()
+    study.run(progress=False)
+    assert 0.4 < estimate.cpu_time / (time.process_time() - before) < 2.5
+
+
 FILES = {
     "frequency_response": "frequencies = [11, 12, 13]\ncycles = [20, 10]",
     "bifurcation": 'path = "load.amplitude"\nvalues = [10, 20]\ncycles = [20, 10]',

@@ -30,7 +30,7 @@ from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVari
 from rattlebox.studies.grid.axes import ParsedAxes, materials_in, packing_axis, parse_axes, read_axes
 from rattlebox.studies.grid.grid import Grid, Parameter
 from rattlebox.studies.run.backends import workers_of
-from rattlebox.studies.run.estimate import TRIAL, Estimate, RunGroup, time_of_particle_runs
+from rattlebox.studies.run.estimate import SEARCH, START, TRIAL, Estimate, RunGroup, time_of_particle_runs
 from rattlebox.studies.run.runner import evaluate_cases, run_work
 from rattlebox.studies.run.study import known_measures
 from rattlebox.studies.work.measures import INTERVAL, about, check_names
@@ -62,6 +62,10 @@ MOST_COMBINATIONS = 100
 
 _SAMPLED = 16
 """Number of designs from which the cost of all trials is predicted."""
+_TINY = 0.3
+"""Predicted time of a trial below which whole trials are timed [s]."""
+_WHOLE_TRIALS = 5
+"""Number of whole trials that are timed."""
 _PROBED = 64
 """Number of designs of which at least one must be valid."""
 _REASONS = 3
@@ -343,10 +347,27 @@ class DesignSearch:
                 others = len(designs) * self._time_of_impact_runs(case, curves)
         times, share = time_of_particle_runs(groups) if groups else ([others], 1.0)
         runs_each = runs / max(1, len(designs))
-        cpu_time = trials * (TRIAL + sum(times) / max(1, len(designs)))
+        each = TRIAL + sum(times) / max(1, len(designs))
+        if each < _TINY:  # what is done beside the runs counts
+            each = self._time_of_trial(designs) or each
+        cpu_time = START + trials * each
         workers = workers_of(self.where.get("backend", "threads"), self.where.get("workers"))
         wall_time = cpu_time / share / max(1, min(workers, runs_each))
         return Estimate(trials, round(trials * runs_each), cpu_time, wall_time, workers)
+
+    def _time_of_trial(self, designs: Sequence[Values]) -> float:
+        """Return the processor time of a trial [s], from a few whole ones; 0 if there is no valid design."""
+        times = []
+        for values in designs:
+            before = time.process_time()
+            candidate = self.candidate(values)
+            if candidate.case is not None:
+                self.evaluate(candidate, self.stages[0])
+                times.append(time.process_time() - before)
+            if len(times) == _WHOLE_TRIALS:
+                break
+        # The first one also reads modules.
+        return SEARCH + float(np.mean(times[1:] or times)) if times else 0.0
 
     def _valid(self, designs: Sequence[Values]) -> Iterator[Case]:
         """Yield the cases of the designs that a trial would run."""

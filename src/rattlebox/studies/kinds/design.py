@@ -260,6 +260,7 @@ class Design(Study):
 
     def predict(self) -> Estimate:
         """Return the estimate of all trials; see `Study.estimate`."""
+        optional_import("optuna", "design")  # the import is no part of the trials
         search = self._search.on(self.where)
         return search.predict(number_of_trials(search, self.trials))
 

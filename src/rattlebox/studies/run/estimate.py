@@ -36,6 +36,10 @@ TIMED = 1.0
 """Processor time for which a run is timed [s]."""
 TRIAL = 0.03
 """Time of a trial of a design besides its runs [s]."""
+START = 0.07
+"""Time of a design before its first and after its last trial [s]."""
+SEARCH = 0.003
+"""Time in which the search chooses and stores a trial [s]."""
 SETTLING = 10.0
 """Longest time for which the settling of a bed is timed, except that of the smallest one [s]."""
 
