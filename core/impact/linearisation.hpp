@@ -151,8 +151,9 @@ class Linearisation final : public RunListener {
     }
 
     // Computes the rates of the state without soft contacts; stuck contacts hold.
-    void rates_of_flight() {
-        motion_.expand(run_.state, run_.loads, run_.stuck, 0);
+    void rates_of_flight() { rates_of_flight(run_.loads, run_.stuck); }
+    void rates_of_flight(const Loads& loads, const std::vector<int>& held) {
+        motion_.expand(run_.state, loads, held, 0);
         const real *y = run_.state.y.data(), *v = velocities(problem_, y);
         for (std::size_t k = 0; k < modes_; ++k)
             rates_[2 * k] = y[2 * k + 1], rates_[2 * k + 1] = 2 * motion_.modes()[k].c[2];
@@ -832,20 +833,35 @@ public:
     }
 
     void pass_knot() override {
+        // The rates of the state jump with the loads; contacts at rest that those pull apart open.
+        std::fill(times_.begin(), times_.end(), 0.0);
+        bool moves = false;
         for (std::size_t p = 0; p < parameters(); ++p)
-            for (std::size_t l = 0; l < run_.loads.size(); ++l) {
+            for (std::size_t l = 0, first = run_.loads.size(); l < run_.loads.size(); ++l) {
                 const Signal &signal = run_.loads.load(l).signal, &slope = slopes_[p].loads[l].signal;
-                const real t = run_.state.t, late = t == signal.start  ? slope.start
-                                                    : t == signal.stop ? slope.stop
-                                                                       : 0;
-                if (late == 0) continue;
-                const real jump = run_.loads.piece(l).value(t) - signal.piece(t).value(t);
-                for (std::size_t k = 0; k < modes_; ++k)
-                    row(tangent_, 2 * k + 1)[states() + p] += run_.loads.load(l).shape[k] * jump * late;
-                if (run_.loads.load(l).base)
-                    for (std::size_t b = 0; b < balls_; ++b)
-                        row(tangent_, 2 * modes_ + balls_ + b)[states() + p] -= jump * late;
+                const real t = run_.state.t;
+                if (t != signal.start && t != signal.stop) continue;
+                const real late = t == signal.start ? slope.start : slope.stop;
+                // Knots of two loads at one time that move apart jump one after the other.
+                real& time = times_[states() + p];
+                if (first < l && late != time) refuse(NotLinear::kink, -1);
+                first = l, time = late;
+                moves = moves || late != 0;
             }
+        if (!moves) return;
+        rates_of_flight();
+        shift(1);
+        Loads after(problem_.loads);
+        after.advance(run_.state.t);
+        std::vector<int> held = run_.stuck;
+        rates_of_flight(after, held);
+        for (std::size_t i = held.size(); i-- > 0;)
+            if (motion_.forces()[i].c[0] < 0) {
+                held.erase(held.begin() + static_cast<std::ptrdiff_t>(i));
+                rates_of_flight(after, held);
+                i = held.size();
+            }
+        shift(-1);
     }
 
     void begin_impact(int c) override {

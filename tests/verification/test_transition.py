@@ -326,3 +326,26 @@ def test_near_misses() -> None:
     miss = min(end.closest_approach, key=lambda each: each.gap)
     assert miss.gap == pytest.approx(0.001, rel=1e-9)
     assert miss.curvature == pytest.approx((2 * np.pi) ** 2 * 0.005, rel=1e-3)
+
+
+@pytest.mark.parametrize("method", [rb.Newton(), EXACT], ids=["hard", "soft"])
+def test_loads_that_begin_and_stop(method: Any) -> None:
+    """Start and stop of a load are parameters: the force jumps there, also while a ball rests on its wall."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=0.9, frequency=6.0, damping_ratio=0.02, displacement=1e-3, velocity=0.1),
+        damper=rb.ImpactDamper(ball=rb.Sphere(**STEEL), gap="1 mm", contact=rb.Tsuji(restitution=0.7)),
+        load=rb.Harmonic(amplitude=4.0, frequency=5.0, phase=0.9, start=0.03, stop=0.2),
+        duration="1 s",
+        method=method,
+    )
+    flow = Flow.of(case, ("load.start", "load.stop"))
+    start, weights = flow.start().state, np.array([3e-5, -2e-4])
+
+    def moved(h: float) -> Any:
+        return flow.over(start, 0.0, 0.3, flow.values + h * weights, derivatives=False).state
+
+    differences, rough = difference(moved, step=0.02)
+    end = flow.over(start, 0.0, 0.3)
+    assert method.kind != "newton" or end.raw.counts.sticks > 0
+    terms = np.abs(end.by_parameter) @ np.abs(weights)
+    assert np.all(np.abs(end.by_parameter @ weights - differences) < 1e-9 * terms + 3 * rough)
