@@ -108,7 +108,7 @@ struct LeafPoint {
 
 class Solids {
     // Cells of the grid along an axis, at most; the mean number of leaves per cell matters more.
-    static constexpr int most_cells = 32;
+    static constexpr int most_cells = 40;
 
     std::vector<Solid> solids_;
     std::vector<int> solid_, face_; // by leaf
@@ -119,7 +119,9 @@ class Solids {
     real width_ = 1, reach_ = 0;
     int cells_[3] = {};
     std::vector<int> begin_, listed_;
-    std::vector<char> solid_cell_; // whether a cell without leaves is outside of the space of particles
+    std::vector<real> apart_;      // distance of a listed leaf from the middle of the cell
+    std::vector<real> clearance_;  // the smallest of them, by cell; infinite without leaves
+    std::vector<char> solid_cell_; // whether the middle of a cell is outside of the space of particles
     bool encloses_ = false;        // whether a surface is the cavity itself
 
     const Solid& solid_of(int leaf) const { return solids_[static_cast<std::size_t>(solid_[index(leaf)])]; }
@@ -130,6 +132,7 @@ class Solids {
         return solid_of(p.leaf).form == Solid::mesh ? std::fabs(p.near[3]) : p.near[3];
     }
 
+    Row middle(int x, int y, int z) const { return origin_ + row(x + 0.5, y + 0.5, z + 0.5) * width_; }
     int cell_index(int x, int y, int z) const { return (z * cells_[1] + y) * cells_[0] + x; }
 
     // Whether the straight line from the centre of a particle to a contact point is blocked by another leaf.
@@ -168,7 +171,8 @@ public:
     int wall_of(int leaf) const { return leaf < plain_ ? leaf : solid_of(leaf).wall; }
     const std::vector<Solid>& solids() const { return solids_; }
     std::size_t memory() const {
-        return (begin_.capacity() + listed_.capacity() + solid_.capacity() + face_.capacity()) * sizeof(int);
+        return (begin_.capacity() + listed_.capacity() + solid_.capacity() + face_.capacity()) * sizeof(int) +
+               (apart_.capacity() + clearance_.capacity()) * sizeof(real);
     }
 
     LeafPoint nearest_on(int leaf, Row c) const {
@@ -259,17 +263,18 @@ public:
         low -= row(reach_), high += row(reach_);
         const Row extent = high - low;
         const real longest = std::fmax(extent[0], std::fmax(extent[1], extent[2]));
-        width_ = std::fmax(smallest, longest / most_cells);
+        width_ = std::fmax(0.5 * smallest, longest / most_cells);
         origin_ = low;
         for (int a = 0; a < 3; ++a) cells_[a] = std::max(1, static_cast<int>(std::ceil(extent[a] / width_)));
         const std::size_t count = static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) *
                                   static_cast<std::size_t>(cells_[2]);
         const real half = 0.5 * std::sqrt(3.0) * width_, within = (reach_ + half) * (1 + 1e-9);
         std::vector<int> number(count + 1, 0);
-        std::vector<std::pair<int, int>> pairs; // cell and leaf
-        const auto middle = [&](int x, int y, int z) {
-            return origin_ + row(x + 0.5, y + 0.5, z + 0.5) * width_;
+        struct Pair {
+            int cell, leaf;
+            real apart;
         };
+        std::vector<Pair> pairs;
         for (int leaf = plain_; leaf < leaves(); ++leaf) {
             const Solid& solid = solid_of(leaf);
             Row l = solid.low(), h = solid.high();
@@ -293,22 +298,29 @@ public:
                 for (int y = from[1]; y <= until[1]; ++y)
                     for (int x = from[0]; x <= until[0]; ++x) {
                         const Row m = middle(x, y, z);
-                        if (distance(nearest_on(leaf, m)) < within)
-                            pairs.emplace_back(cell_index(x, y, z), leaf);
+                        const real apart = distance(nearest_on(leaf, m));
+                        if (apart < within) pairs.push_back({cell_index(x, y, z), leaf, apart});
                     }
         }
-        for (const auto& [cell, leaf] : pairs) ++number[static_cast<std::size_t>(cell) + 1];
+        for (const Pair& pair : pairs) ++number[static_cast<std::size_t>(pair.cell) + 1];
         std::partial_sum(number.begin(), number.end(), number.begin());
         begin_ = number;
-        listed_.resize(pairs.size());
-        for (const auto& [cell, leaf] : pairs)
-            listed_[static_cast<std::size_t>(number[static_cast<std::size_t>(cell)]++)] = leaf;
+        listed_.resize(pairs.size()), apart_.resize(pairs.size());
+        clearance_.assign(count, infinity);
+        for (const Pair& pair : pairs) {
+            const auto cell = static_cast<std::size_t>(pair.cell);
+            const auto k = static_cast<std::size_t>(number[cell]++);
+            listed_[k] = pair.leaf, apart_[k] = pair.apart;
+            clearance_[cell] = std::fmin(clearance_[cell], pair.apart);
+        }
         solid_cell_.assign(count, 0);
         for (int z = 0; z < cells_[2]; ++z)
             for (int y = 0; y < cells_[1]; ++y)
                 for (int x = 0; x < cells_[0]; ++x) {
                     const auto cell = static_cast<std::size_t>(cell_index(x, y, z));
-                    if (begin_[cell] == begin_[cell + 1]) solid_cell_[cell] = depth(middle(x, y, z)) < 0;
+                    // No surface is between two cells if one is farther from it than from the other.
+                    const bool same = x > 0 && std::fmax(clearance_[cell], clearance_[cell - 1]) > width_;
+                    solid_cell_[cell] = same ? solid_cell_[cell - 1] : depth(middle(x, y, z)) < 0;
                 }
     }
 
@@ -329,23 +341,28 @@ public:
             cell[a] = static_cast<int>(at);
         }
         const auto here = static_cast<std::size_t>(cell_index(cell[0], cell[1], cell[2]));
-        if (begin_[here] == begin_[here + 1]) return solid_cell_[here] ? wall_around(c) : -1;
-        int outside = -1;
+        const real off = length(c - middle(cell[0], cell[1], cell[2])) * (1 + 1e-9),
+                   clearance = clearance_[here];
+        // The particle is on the side of the middle of its cell if no surface is as near to that.
+        const bool same = clearance > off;
+        if (clearance > reach + off) return solid_cell_[here] ? wall_around(c) : -1;
+        bool inside = true;          // as far as the leaves within reach show it
         const Solid* mesh = nullptr; // whose triangles are being compared
         LeafPoint nearest;
         real least = infinity;
         const auto finish = [&] {
-            if (!mesh || outside >= 0) return;
+            if (!mesh || same) return;
             const int face = face_[index(nearest.leaf)];
-            if (mesh->triangles->signed_distance(c, face, {nearest.place, nearest.region}) < 0)
-                outside = mesh->wall;
+            inside &= least < reach * reach &&
+                      mesh->triangles->signed_distance(c, face, {nearest.place, nearest.region}) > 0;
         };
         for (int k = begin_[here]; k < begin_[here + 1]; ++k) {
+            if (apart_[static_cast<std::size_t>(k)] > reach + off) continue;
             const int leaf = listed_[static_cast<std::size_t>(k)];
             const Solid& solid = solid_of(leaf);
             const LeafPoint p = nearest_on(leaf, c);
             if (solid.form != Solid::mesh) {
-                if (p.near[3] < 0 && outside < 0) outside = solid.wall;
+                inside &= p.near[3] > 0;
                 if (p.near[3] < reach) f(leaf);
                 continue;
             }
@@ -356,7 +373,7 @@ public:
             if (squared < least) least = squared, nearest = p;
         }
         finish();
-        return outside;
+        return (same ? !solid_cell_[here] : inside) ? -1 : wall_around(c);
     }
 
     int wall_around(Row c) const {
