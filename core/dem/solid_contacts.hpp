@@ -30,6 +30,8 @@ inline void find_wall_points(ContactList& list, const Bed& bed, bool selects) {
                 at(list.near, k) = near.normal * row(1, 1, 1, 0) + row(0, 0, 0, near.distance);
                 continue;
             }
+            // Most candidates do not touch. Where a contact has just ended, the point shows where it goes on.
+            if (at(list.slot, k) == ContactList::none && solids.is_beyond(leaf, place, radius)) continue;
             points.push_back(solids.nearest_on(leaf, place)), candidate.push_back(k);
         }
         if (points.empty()) continue;

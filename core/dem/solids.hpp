@@ -175,6 +175,14 @@ public:
                (apart_.capacity() + clearance_.capacity()) * sizeof(real);
     }
 
+    // Whether a triangle is beyond reach because its plane is, which costs less than its nearest point.
+    bool is_beyond(int leaf, Row c, real reach) const {
+        const Solid& solid = solid_of(leaf);
+        if (solid.form != Solid::mesh) return false;
+        const Row plane = solid.triangles->plane(face_[index(leaf)]);
+        return std::fabs(plane[3] - dot(plane, c)) > reach;
+    }
+
     LeafPoint nearest_on(int leaf, Row c) const {
         const Solid& solid = solid_of(leaf);
         LeafPoint point;
@@ -359,6 +367,7 @@ public:
         for (int k = begin_[here]; k < begin_[here + 1]; ++k) {
             if (apart_[static_cast<std::size_t>(k)] > reach + off) continue;
             const int leaf = listed_[static_cast<std::size_t>(k)];
+            if (is_beyond(leaf, c, reach)) continue;
             const Solid& solid = solid_of(leaf);
             const LeafPoint p = nearest_on(leaf, c);
             if (solid.form != Solid::mesh) {
