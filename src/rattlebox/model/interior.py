@@ -154,12 +154,15 @@ class Interior(Cavity):
         """Raise if a body is outside of the cavity, or if the bodies leave no space."""
         if self.shape.period.any():
             raise Hint("a periodic cavity cannot contain bodies", "walls in place of periodic", ["bodies"])
+        inside: dict[str, bool] = {}
         for solid, share in zip(self.solids, self._shares, strict=True):
-            low, high = solid.bounds
-            reach = self.shape.depth(np.vstack([solid.samples, [low], [high]])).max()
-            if share == 0 and reach < 0:
+            # The outer plates of an array may be outside of the cavity, but not all of them.
+            is_inside = share > 0 or bool(self.shape.depth(solid.samples).max() >= 0)
+            inside[solid.name] = inside.get(solid.name, False) or is_inside
+        for name, is_inside in inside.items():
+            if not is_inside:
                 raise Hint(
-                    f"the body {solid.name!r} is outside of the cavity",
+                    f"the body {name!r} is outside of the cavity",
                     "a position relative to the centre of the cavity, in metres or with units",
                     ["bodies"],
                 )

@@ -142,7 +142,8 @@ def _draw_particle_damper(damper: ParticleDamper, axes: Axes) -> None:
         (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
         dimension(axes, (left, low), (right, low), amount(right - left, "m"), -1.5 * unit)
         dimension(axes, (right, low), (right, high), amount(high - low, "m"), -1.5 * unit, rotate=True)
-    words = [*_contents(damper), cavity.words().removeprefix("a ")]
+    inside = [each.words() for each in damper.bodies]
+    words = [*_contents(damper), damper.cavity.words().removeprefix("a "), *(f"with {each}" for each in inside)]
     _draw_directions(axes, damper, -half_x - 5.2 * unit, -half_z, unit)
     text(axes, (0.0, -half_z - 3.4 * unit), "\n".join(words), va="top")
     axes.set_xlim(-half_x - 7 * unit, half_x + 4 * unit)

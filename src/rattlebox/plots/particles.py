@@ -31,7 +31,9 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import progress_bar
 
 from ..model.any_cavity import AnyCavity
+from ..model.bodies import AnyBody, Body
 from ..model.cavities import Cavity
+from ..model.interior import Interior
 from ..results import Run
 from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots
@@ -268,8 +270,12 @@ def _end(run: Run) -> Frame:
 def _cavities(dampers: Sequence[Mapping[str, Any]]) -> list[tuple[str, Cavity]]:
     """Return names and shapes of the cavities of a case, whose other files may be missing."""
     form: TypeAdapter[Cavity] = TypeAdapter(AnyCavity)
+    inside: TypeAdapter[tuple[Body, ...]] = TypeAdapter(tuple[AnyBody, ...])
     return [
-        (damper.get("name") or f"damper {number}", form.validate_python(damper["cavity"]))
+        (
+            damper.get("name") or f"damper {number}",
+            Interior.of(form.validate_python(damper["cavity"]), inside.validate_python(damper.get("bodies", ()))),
+        )
         for number, damper in enumerate(dampers, start=1)
     ]
 
