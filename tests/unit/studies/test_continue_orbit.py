@@ -123,3 +123,21 @@ def test_same_branch_over_a_linked_parameter(orbit):
     end = branch.orbit(-1)
     again = rb.find_orbit(end.case, near=end)
     assert again.amplitudes["mass"] == pytest.approx(end.amplitudes["mass"], rel=1e-9)
+
+
+@pytest.mark.parametrize("stop", [10, 30])
+def test_resume(orbit, tmp_path, stop):
+    """A branch that was stopped on either side resumes from its file, and a complete one is read."""
+    file, limits = tmp_path / "branch.nc", ("31 Hz", "35 Hz")
+    whole = rb.continue_orbit(orbit, "load.frequency", limits, progress=False)
+    part = rb.continue_orbit(orbit, "load.frequency", limits, store=file, progress=lambda done, _: done < stop)
+    assert len(part) < len(whole)
+    again = rb.continue_orbit(orbit, "load.frequency", limits, store=file, progress=False)
+    assert [point.kind for point in again.specials] == [point.kind for point in whole.specials]
+    ends = [sorted((branch.data.value.values[0], branch.data.value.values[-1])) for branch in (whole, again)]
+    assert ends[0] == pytest.approx(ends[1])
+    np.testing.assert_array_less(0, np.diff(again.data.value.values))
+    read = rb.continue_orbit(orbit, "load.frequency", limits, store=file, progress=lambda *_: pytest.fail("computed"))
+    np.testing.assert_array_equal(read.data.value.values, again.data.value.values)
+    with pytest.raises(rb.DataError, match="another motion"):
+        rb.continue_orbit(orbit, "load.frequency", ("31 Hz", "36 Hz"), store=file, progress=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -11,13 +12,14 @@ from rattlebox._util.quantities import quantity
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
 from rattlebox.studies.orbits.branch import Branch
-from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of, data_of
+from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of
 from rattlebox.studies.orbits.corrector import Point
 from rattlebox.studies.orbits.find import size_of
 from rattlebox.studies.orbits.follow import Follower
 from rattlebox.studies.orbits.forcing import number_at
 from rattlebox.studies.orbits.orbit import Orbit
 from rattlebox.studies.orbits.shooting import ReturnMap
+from rattlebox.studies.orbits.stored_branch import BranchFile, request_of
 
 
 def continue_orbit(
@@ -27,6 +29,7 @@ def continue_orbit(
     *,
     points: int = 500,
     step: float = LONGEST_STEP,
+    store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> Branch:
     r"""Follow a periodic motion along a parameter, through folds and where it is unstable, and locate its bifurcations.
@@ -44,6 +47,9 @@ def continue_orbit(
     step
         Longest step, as part of the range of the parameter and of the size of the motion. Shorter steps are taken where
         the branch turns.
+    store
+        netCDF file (.nc) of the branch, written after every 50 points and at the end. If it exists, the continuation resumes
+        from it, or the complete branch is read.
     progress
         True for a progress bar after 2 s, False for none, or a function of the number of points and of the largest number;
         the continuation stops if it returns False.
@@ -58,6 +64,9 @@ def continue_orbit(
     CaseError
         If the path is not a number that changes the motion, the motion is not between the limits, or the loads have no
         common period when it varies.
+
+    DataError
+        If `store` is another file, or cannot be written.
 
     See Also
     --------
@@ -122,21 +131,29 @@ def continue_orbit(
     starts = [None if scale is None else corrector.point(orbit.state, value, scale, side) for side in (-1.0, 1.0)]
     if starts[0] is None or starts[1] is None:
         raise Hint(f"the motion cannot be computed along {axis}", "rb.find_orbit(case) at another value")
-    most, follower = whole_number(points, "points", 1), Follower(corrector)
+    most, down, up = whole_number(points, "points", 1), starts[0], starts[1]
+    file = BranchFile(Follower(corrector), up, axis, unit)
+    if (complete := file.resume(store, request_of(orbit, axis, corrector.limits, most, step))) is not None:
+        return complete
     with progress_bar(progress, "points") as report:
-        row = _two_sides(follower, starts[0], starts[1], most, report)
-    return Branch(data_of(row, orbit.case, axis, unit, follower))
+        _collect(file, down, most, report)
+    file.write()
+    return file.branch()
 
 
-def _two_sides(follower: Follower, down: Point, up: Point, most: int, report: Report) -> list[Point]:
-    """Return the points of a branch on both sides of a start, in their order along the branch."""
-    count = 0
+def _collect(file: BranchFile, down: Point, most: int, report: Report) -> None:
+    """Follow both sides of a branch; a stop leaves a side unfinished."""
+    going = True
 
     def proceed() -> bool:
-        nonlocal count
-        count += 1
-        return report(count, 2 * most) is not False
+        nonlocal going
+        going = report(sum(map(len, file.sides)) + 1, 2 * most) is not False
+        return going
 
-    after = list(follower.follow(up, most, proceed))
-    before = [] if follower.is_closed else list(follower.follow(down, most, proceed))
-    return [*before[::-1], up, *after]
+    if file.finished == 0:
+        file.collect(0, most, proceed)
+        file.finished = 2 if file.follower.is_closed and going else int(going)
+    if file.finished == 1:
+        up, file.start = file.start, down if not file.sides[1] else file.start
+        file.collect(1, most, proceed)
+        file.start, file.finished = up, 2 if going else 1

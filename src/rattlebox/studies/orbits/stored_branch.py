@@ -1,0 +1,104 @@
+"""File of a branch in progress, from which the continuation resumes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from rattlebox._util.exceptions import DataError
+from rattlebox.studies.orbits.branch import Branch
+from rattlebox.studies.orbits.branch_data import data_of
+from rattlebox.studies.orbits.corrector import Point
+from rattlebox.studies.orbits.follow import Follower
+from rattlebox.studies.orbits.orbit import Orbit
+
+_EVERY = 50
+"""Number of points after which the file is written."""
+
+
+def request_of(orbit: Orbit, axis: str, limits: tuple[float, float], points: int, step: float) -> str:
+    """Return a digest of what determines a branch."""
+    numbers = [*limits, points, step, orbit.cycles, orbit.phase, *(float(f"{value:.6e}") for value in orbit.state)]
+    return hashlib.sha256(json.dumps([orbit.case.to_toml(), axis, numbers]).encode()).hexdigest()
+
+
+@dataclass
+class BranchFile:
+    """Sides of a branch: points after and before the start, written to a file if there is one."""
+
+    follower: Follower
+    start: Point
+    axis: str
+    unit: str
+    path: Path | None = None
+    request: str = ""
+    sides: tuple[list[Point], list[Point]] = field(default_factory=lambda: ([], []))
+    finished: int = 0  # number of finished sides
+
+    def resume(self, path: str | os.PathLike[str] | None, request: str) -> Branch | None:
+        """Use a file; return its branch if it is complete, and restore the points of one in progress."""
+        if path is None:
+            return None
+        self.path, self.request = Path(path), request
+        if not self.path.exists():
+            return None
+        branch = Branch.load(self.path)
+        if branch.data.attrs.get("request") != request:
+            raise DataError(
+                f"{self.path} is the branch of another motion, parameter or range", "another file, or remove it"
+            )
+        self.finished = int(branch.data.attrs["finished_sides"])
+        if self.finished == 2:
+            return branch
+        begin = int(branch.data.attrs["start"])
+        self._restore(branch, range(begin + 1, len(branch)), 0)
+        self._restore(branch, range(begin - 1, -1, -1), 1)
+        return None
+
+    def _restore(self, branch: Branch, rows: Iterable[int], side: int) -> None:
+        """Restore the points of a side from their states."""
+        corrector, last = self.follower.corrector, self.start
+        for k in rows:
+            row = branch.data.isel(point=k)
+            returns = corrector.returns.with_(phase=float(row.phase))
+            state, value = np.ascontiguousarray(row.state.values, dtype=float), float(row.value)
+            before = branch.data.isel(point=k - 1 if side == 0 else k + 1)
+            change = (state - before.state.values) / last.scale
+            guide = np.append(change, (value - float(before.value)) / corrector.width)
+            shot = returns.shoot(state[None], [value])
+            point = corrector.finish(returns, state, value, shot, last.scale, guide) if shot.is_complete else None
+            if point is None:
+                return
+            last = replace(point, special=str(row.special.item()), located=float(row.located))
+            self.sides[side].append(last)
+
+    def collect(self, side: int, most: int, proceed: Callable[[], bool]) -> None:
+        """Follow a side to its end."""
+        row = self.sides[side]
+        begin = row[-1] if row else self.start
+        for point in self.follower.follow(begin, most - len(row), proceed):
+            row.append(point)
+            if len(row) % _EVERY == 0:
+                self.write()
+
+    def branch(self) -> Branch:
+        """Return the branch so far."""
+        after, before = self.sides
+        row = [*before[::-1], self.start, *after]
+        data = data_of(row, self.start.orbit.case, self.axis, self.unit, self.follower)
+        return Branch(
+            data.assign_attrs(request=self.request, finished_sides=self.finished, start=len(before))
+            if self.path
+            else data
+        )
+
+    def write(self) -> None:
+        """Write the points so far."""
+        if self.path is not None:
+            self.branch().save(self.path)
