@@ -211,7 +211,7 @@ class Orbit:
         CaseError
             If the case has tuned masses on a prescribed motion.
         """
-        return case_on(self)
+        return case_on(self.case, self.phase, self.state)
 
     def plot(self, **options: Any) -> Figure:
         """Draw the motion over a period and its multipliers in the complex plane.

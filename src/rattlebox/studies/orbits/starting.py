@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
@@ -14,15 +15,17 @@ from rattlebox.studies.orbits.forcing import Forcing
 if TYPE_CHECKING:
     from rattlebox.model.dampers import ImpactDamper
     from rattlebox.model.structures import StructurePart
-    from rattlebox.studies.orbits.orbit import Orbit, Vector
 
 
-def case_on(orbit: Orbit) -> Case:
+Vector = NDArray[np.float64]
+
+
+def case_on(case: Case, phase: float, state: Vector) -> Case:
     """Return the case whose initial state is that of a periodic motion, at the phase of the loads that belongs to it."""
-    case, modes = Forcing.of(orbit.case).shifted(orbit.phase), orbit.case.modes
+    case, modes = Forcing.of(case).shifted(phase), case.modes
     m = 2 * modes.decay.size
-    q, p = orbit.state[0:m:2], orbit.state[1:m:2]
-    places, speeds = np.split(orbit.state[m:], 2)
+    q, p = state[0:m:2], state[1:m:2]
+    places, speeds = np.split(state[m:], 2)
     dampers, first = [], 0
     for damper in case.impact_dampers:
         own = slice(first, first := first + len(damper.balls))
