@@ -103,7 +103,8 @@ class ContactLoop {
     void compute(ContactList& list, const View& view, const ContactLaws& laws, Partner partner, bool sampled,
                  Chunk& chunk, const Prefetch& prefetch) {
         Diagnostics& diagnostics = chunk.diagnostics;
-        const auto begun = [&](int k) {
+        // Few candidates begin or end a contact in a step: these functions stay out of the loop over all.
+        const auto begun = [&](int k) __attribute__((noinline)) {
             // Coefficients of a law depend on the approach speed at most, so that they are computed once a
             // contact, here.
             const NewContact t = new_contact_of(list, k, partner);
@@ -119,7 +120,7 @@ class ContactLoop {
             if (b.status != Status::finished && chunk.stop_reason.status == Status::finished)
                 chunk.stop_reason = {b.status, at(list.first, k), -1, t.speed};
         };
-        const auto ended = [&](int k) {
+        const auto ended = [&](int k) __attribute__((noinline)) {
             const int s = at(list.slot, k);
             if (list.history.yields &&
                 at(list.history.yield_history, s)[3] != at(list.history.yield_history, s)[0])
