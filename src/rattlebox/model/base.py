@@ -145,6 +145,10 @@ class Part(BaseModel, metaclass=_PartMeta):
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         register(cls)
 
+    def short_label(self) -> str:
+        """Return a phrase for the labels of studies, or nothing where the fields that were given make the label."""
+        return ""
+
     @model_validator(mode="wrap")
     @classmethod
     def _with_texts(cls, values: object, handler: Any) -> Self:

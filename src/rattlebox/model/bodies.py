@@ -61,6 +61,10 @@ class Body(Part):
     def words(self) -> str:
         """Return a phrase with the sizes: "a rod, 6 mm in diameter"."""
 
+    def short_label(self) -> str:
+        """Return the phrase with the sizes, without its article."""
+        return self.words().removeprefix("a ")
+
     @property
     def label(self) -> str:
         """The name, or the kind."""

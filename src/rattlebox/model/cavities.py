@@ -113,6 +113,10 @@ class Cavity(Part):
     def words(self) -> str:
         """Return a phrase with the sizes: "a box of 100 x 70 x 60 mm"."""
 
+    def short_label(self) -> str:
+        """Return the phrase with the sizes, without its article."""
+        return self.words().removeprefix("a ")
+
     def outline(self, view: Vector) -> list[Vector]:
         """Return the lines that show the cavity, each (n, 3) [m], for the axes (right, up, towards the viewer) of a view."""
         return self.surface().lines(view[2])

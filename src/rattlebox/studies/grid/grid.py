@@ -153,11 +153,13 @@ def _label(value: object) -> str:
     if isinstance(value, tuple) and len(value) == 1 and isinstance(value[0], Part):  # of a field for several
         (value,) = value
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_label, value))}]"
+        return f"[{', '.join(map(_label, value))}]" if value else "none"
     if not isinstance(value, Part):
         return str(value)
     if getattr(value, "name", ""):
         return str(getattr(value, "name", ""))
+    if label := value.short_label():
+        return label
     fields = {key: _label(getattr(value, key)) for key in sorted(value.model_fields_set - {"kind"})}
     if fields.keys() == {"e"}:
         return fields["e"]
@@ -185,6 +187,9 @@ class Parameter:
             raise Hint(f"{path!r} is not a path", '"damper.gap"')
         self.path, self.source, self.materials = path, source, materials
         self.place: Place = place_of(case, path)
+        if self.place[-1] == "kind":
+            whole = path.rpartition(".")[0]
+            raise Hint(f"{path} cannot vary alone: each kind has fields of its own", f'whole parts, {{"{whole}": [...]}}')
         node: Any = case
         for number, step in enumerate(self.place):
             if isinstance(node, Part):
