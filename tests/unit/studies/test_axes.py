@@ -26,6 +26,12 @@ def case() -> rb.Case:
 
 
 @pytest.fixture(scope="module")
+def boxed() -> rb.Case:
+    """Return a case with steel balls in a box."""
+    return rb.Case.from_file(EXAMPLES / "steel_balls_in_a_box.toml")
+
+
+@pytest.fixture(scope="module")
 def row() -> rb.Case:
     """Return a case with five balls on a beam with two loads."""
     return rb.Case.from_file(EXAMPLES / "row_on_beam.toml")
@@ -560,3 +566,25 @@ def test_bad_arguments_are_refused_at_once(make: Any, message: str) -> None:
     """Arguments that are wrong for any case are refused at construction."""
     with pytest.raises(rb.CaseError, match=message):
         make()
+
+
+def test_cavities_and_bodies_are_labelled_by_their_sizes(boxed: rb.Case) -> None:
+    """Shapes along an axis have short labels with units; no test had a cavity of triangles, labelled by all its corners."""
+    corners = [[0, 0, 0], [300, 0, 0], [0, 250, 0], [0, 0, 200]]
+    mesh = rb.Mesh(vertices=corners, faces=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], unit="mm")
+    cavities = [rb.Box(size=("120 mm", "120 mm", "90 mm")), rb.Cylinder(diameter="130 mm", length="90 mm"), mesh]
+    bodies: list[Any] = [[], [rb.RodBody(diameter="20 mm")], []]
+    coords = read_axes(boxed, {("damper.cavity", "damper.bodies"): (cavities, bodies)}).coords()
+    labels = {name: values.tolist() for name, (_, values, _) in coords.items()}
+    assert labels["damper.cavity"] == [
+        "box of 120 x 120 x 90 mm",
+        "cylinder, 130 mm in diameter, 90 mm long",
+        "surface of 4 triangles, 300 x 250 x 200 mm",
+    ]
+    assert labels["damper.bodies"] == ["none", "rod, 20 mm in diameter", "none"]
+
+
+def test_kinds_vary_as_whole_parts_only(boxed: rb.Case) -> None:
+    """An axis of kinds advises to list whole parts, which works; it said that the second kind must be the first."""
+    with pytest.raises(rb.CaseError, match=r'whole parts, \{"damper.cavity": \[...\]\}'):
+        read_axes(boxed, {"damper.cavity.kind": ["box", "cylinder"]})

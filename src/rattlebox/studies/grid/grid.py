@@ -189,7 +189,9 @@ class Parameter:
         self.place: Place = place_of(case, path)
         if self.place[-1] == "kind":
             whole = path.rpartition(".")[0]
-            raise Hint(f"{path} cannot vary alone: each kind has fields of its own", f'whole parts, {{"{whole}": [...]}}')
+            raise Hint(
+                f"{path} cannot vary alone: each kind has fields of its own", f'whole parts, {{"{whole}": [...]}}'
+            )
         node: Any = case
         for number, step in enumerate(self.place):
             if isinstance(node, Part):
