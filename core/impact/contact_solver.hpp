@@ -15,6 +15,9 @@ class ContactSolver {
     ClosedOutput samples_;
     EventLocator locator_;
     LastingSolver lasting_;
+    // A series of steps: the number at its end, and the time of its start.
+    long series_end_ = steps_of_series;
+    real series_start_ = -infinity;
 
     // Returns the first step in transformed time: a tenth of the shortest contact.
     real first_step(real remaining) const {
@@ -66,9 +69,20 @@ class ContactSolver {
     bool may_go_on() {
         const Counts& counts = run_.result.counts;
         if (run_.is_stopped()) run_.fail(Status::interrupted);
-        if (counts.contact_steps + counts.rejected_steps > steps_per_event * problem_.settings.max_events)
+        const long steps = counts.contact_steps + counts.rejected_steps;
+        if (steps > steps_per_event * problem_.settings.max_events || is_stuck(steps))
             run_.fail(Status::too_many_events);
         return run_.running();
+    }
+
+    // Whether the last series of steps has hardly moved the time.
+    bool is_stuck(long steps) {
+        if (steps < series_end_) return false;
+        const real now = run_.state.t + motion_.y[run_.system.time_index()];
+        const bool stuck = now - series_start_ < part_of_series * problem_.settings.duration;
+        series_end_ = steps + steps_of_series;
+        series_start_ = now;
+        return stuck;
     }
 
     // A step whose error is within the tolerance, at most of length h, and the factor for the next one; the

@@ -51,6 +51,11 @@ inline constexpr real error_exponent = -0.125;
 inline constexpr int most_rejections = 200; // then the step is below the rounding of the time
 // Number of steps, per permitted event, after which a run is stopped as one without end.
 inline constexpr long steps_per_event = 200;
+// A series of so many steps must move the time by this part of the duration: with less a run would need 1e15
+// steps. Contacts that begin below the rounding of the motion, as in a box at rest that its ball fills, do
+// not.
+inline constexpr long steps_of_series = 1L << 20;
+inline constexpr real part_of_series = 1e-9;
 // Steps without soft contacts have no error estimate for the sign of a force; as a multiple of the first one.
 inline constexpr real longest_free_step = 2.5;
 // First step, as part of the shortest time that the motion can change in.

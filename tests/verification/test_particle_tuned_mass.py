@@ -81,6 +81,39 @@ def test_a_glued_ball_is_a_tuned_mass_of_the_total_mass() -> None:
     assert found[-1] < 1e-7
 
 
+@pytest.mark.parametrize("load", ["storey 1", "storey 4", "base"])
+def test_a_ball_that_fills_a_box_at_rest_ends(load: str) -> None:
+    """A heavy ball without a gap ends within seconds, with a status whose advice leads to the motion.
+
+    The motion of the box begins below the rounding of the numbers, and a run made 2e9 steps of 1e-15 s: the ball of the
+    other tests is light, and its load acts for the whole run.
+    """
+    acts = {"load": rb.HalfSine(amplitude="300 kN", duration="0.2 s", point=load)}
+    if load == "base":
+        acts = {"base": rb.HalfSine(amplitude="0.1 g", duration="0.2 s")}
+    box = rb.TunedMass(mass="2 t", frequency="2.5 Hz", damping_ratio=0.0, point=TOP)
+
+    def ran(gap: Any) -> rb.Run:
+        ball = rb.ImpactDamper(
+            ball=rb.Striker(mass="8 t"),
+            gap=gap,
+            contact=rb.Linear(contact_time="8 ms", restitution=0.5),
+            point="tuned mass",
+        )
+        output = rb.Output(rate="200 Hz")
+        return rb.simulate(
+            rb.Case(structure=BUILDING, tuned_mass=box, damper=ball, duration="2 s", output=output, **acts)
+        )
+
+    filled, loose = ran(0.0), ran("1 pm")
+    assert loose.ok
+    if filled.ok:
+        assert deviation(filled.arrays.displacement, loose.arrays.displacement) < 1e-6
+    else:
+        assert filled.status == "too_many_events" and 'a gap, such as "1 pm"' in filled.message
+        assert filled.counts["contact_steps"] + filled.counts["rejected_steps"] < 1e7
+
+
 def test_in_the_limit_of_short_contacts_a_glued_ball_is_exact() -> None:
     """The limit of rigid contacts is the tuned mass of both to rounding: the deviation of single runs is that of contacts.
 

@@ -18,7 +18,9 @@ MESSAGES: dict[Status, str] = {
     Status.law_domain: (
         "{contact}: the approach speed {value:.6g} m/s at t = {time:.9g} s exceeds the range of the restitution law."
     ),
-    Status.too_many_events: "The limit max_events was reached at t = {time:.9g} s, probably by chattering.",
+    Status.too_many_events: (
+        "The limit max_events, or that of the steps of contacts, was reached at t = {time:.9g} s, probably by chattering."
+    ),
     Status.step_too_small: "A contact could not be integrated within the tolerance at t = {time:.9g} s.",
     Status.interrupted: "The run was stopped at t = {time:.9g} s; the results up to this time are available.",
     Status.not_finite: "The solution became non-finite at t = {time:.9g} s.",
@@ -44,8 +46,8 @@ ADVICE: dict[Status, dict[str, str]] = {
     },
     Status.too_many_events: {
         "": "Raise max_events, shorten the run, or add damping to the contact.",
-        "event_driven": "Raise max_events, shorten the run, add damping to the contact, or use the Newton method, which "
-        "lets chattering balls stick.",
+        "event_driven": "Raise max_events, shorten the run, add damping to the contact, give balls that touch both walls at "
+        'rest a gap, such as "1 pm", or use the Newton method, which lets chattering balls stick.',
         "newton": "Raise stick so that slow impacts end earlier, raise max_events, shorten the run, or use the EventDriven "
         "method, whose contacts have a duration.",
     },
