@@ -266,6 +266,7 @@ def test_tutorials_print_the_numbers_of_their_page(
         "fatigue_damage",
         "fills",
         "ida",
+        "inner_structures",
         "lecture",
         "map_against_simulation",
         "panel_variants",
