@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder
 from rattlebox._util.digests import group_digest
+from rattlebox._util.exceptions import DataError
 from rattlebox._util.own_files import check_replaceable
 
 if TYPE_CHECKING:
@@ -53,6 +54,11 @@ def _content_digest(file: Node) -> str:
 
 def write(path: Path, frame: Frame, places: NDArray[np.float64], case: Case) -> Path:
     """Write a snapshot; `places` are the positions at which the cavities are drawn, (D, 3) [m]."""
+    if any(damper.rotation is not None for damper in case.particle_dampers):
+        raise DataError(
+            f"{path} cannot hold particles of a cavity that turns: the model has no frame that turns",
+            "the VTKHDF file of the snapshots, whose positions are along the axes of the cavity",
+        )
     import h5py
 
     check_suffix(path, ".vtkhdf")

@@ -307,6 +307,20 @@ def test_restart_and_threads_keep_the_bits(tmp_path: Path) -> None:
         assert np.array_equal(getattr(rest.arrays, name)[-1], getattr(whole.arrays, name)[-1]), name
 
 
+def test_sweep_files_and_pictures(tmp_path: Path) -> None:
+    """The speed is an axis of sweeps; files keep the arrays of a turning run; a format without a frame refuses it."""
+    rotation = rb.Rotation(arm=("60 mm", 0, 0), axis="y", speed="100 rpm")
+    case = rb.Case(damper=bed(rotation), duration=0.005, **SHAKEN)
+    result = rb.sweep(case, {"damper.rotation.speed": ["100 rpm", "300 rpm"]})
+    assert np.allclose(result["damper.rotation.speed"], [100 * math.pi / 30, 10 * math.pi])
+    path = tmp_path / "turning.vtkhdf"
+    run = rb.simulate(case.replaced({"output": rb.Output(snapshots=2)}), snapshots=path)
+    run.save(tmp_path / "turning.nc")
+    assert rb.load(tmp_path / "turning.nc").arrays == run.arrays
+    with pytest.raises(rb.DataError, match="turns"):
+        rb.Snapshots(path).to_ondem(tmp_path / "turning_ondem.vtkhdf")
+
+
 def test_continued_run_at_another_speed() -> None:
     """A run that continues another one at another speed starts at its angle, and its ledger closes."""
     one = rb.Rotation(arm=("60 mm", 0, 0), axis="y", speed="500 rpm")
