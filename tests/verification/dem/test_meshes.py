@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from support import triangle_meshes
+from support.dem_cases import dem_of
 
 import rattlebox as rb
 
@@ -265,3 +266,31 @@ def test_bed_in_box_of_triangles_has_loss_of_bed_between_planes():
         losses.append(float(run.arrays.normal_loss[-1].sum() + run.arrays.sliding_loss[-1].sum()))
     assert losses[1] == pytest.approx(losses[0], rel=0.1)
     assert losses[2] == pytest.approx(losses[0], rel=0.1)
+
+
+def test_bits_in_surface_depend_neither_on_threads_nor_on_restart():
+    """A bed in a ball of facets with a rod has the same bits on one to three threads, and after a restart."""
+    vertices, faces = triangle_meshes.ball(0.015, 8)
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="2 mm", count=400),
+        cavity=rb.Mesh(vertices=vertices, faces=faces, unit="m"),
+        bodies=[rb.RodBody(diameter="5 mm")],
+        contact=rb.Tsuji(restitution=0.7),
+        friction=0.3,
+        softening=1000.0,
+        packing=rb.Lattice(seed=1),
+    )
+    base = rb.Harmonic(amplitude="60 m/s^2", frequency="50 Hz", direction="x")
+    case = rb.Case(structure=rb.Fixed(), damper=damper, base=base, duration=0.1)
+    ends = []
+    for threads in (1, 2, 3):
+        dem, _ = dem_of(case, threads)
+        dem.run(1500, None)
+        saved = dem.save()
+        dem.run(3000, None)
+        ends.append(np.array(dem.state().cavities[0].position))
+    again, _ = dem_of(case, 2)
+    again.restore(saved)
+    again.run(3000, None)
+    ends.append(np.array(again.state().cavities[0].position))
+    assert all(np.array_equal(each, ends[0]) for each in ends)
