@@ -11,7 +11,7 @@ from pathlib import Path
 def main() -> int:
     """Write the report that the command line requests."""
     purpose = "Reproduce and judge the reference paper: all figures and claims on one page."
-    only = 'number of a figure ("4", "7c", "A1"), or "paper" for all but A1 to A5; may be repeated (default: all)'
+    only = 'number of a figure ("4", "7c", "A1"), or "paper" for all but A1 to A6; may be repeated (default: all)'
     parser = argparse.ArgumentParser(prog="python -m reproduction", description=purpose)
     add = parser.add_argument
     add(

@@ -35,7 +35,7 @@ def write_report(
     """Write the report with each figure as SVG, PNG and CSV and its runs as case and study files; return its page.
 
     The folder is new, empty, or that of an earlier report. `only` has numbers of figures, such as "4", "7c" or "A1"; "7"
-    means all its parts, and "paper" all but the extensions A1 to A5, which take two thirds of the time. More than one
+    means all its parts, and "paper" all but the extensions A1 to A6, which take two thirds of the time. More than one
     worker needs `if __name__ == "__main__":` in a script.
     """
     began = time.perf_counter()

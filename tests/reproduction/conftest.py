@@ -14,7 +14,16 @@ from reproduction.figure import Reproduction
 from reproduction.files import record_cases
 from reproduction.report import FIGURES, load_figure
 
-HEAVY = {"contacts_per_cycle", "bifurcation", "chattering", "lyapunov", "evidence", "gap_study", "figure_07de"}
+HEAVY = {
+    "branches",
+    "contacts_per_cycle",
+    "bifurcation",
+    "chattering",
+    "lyapunov",
+    "evidence",
+    "gap_study",
+    "figure_07de",
+}
 """Modules whose data take several seconds."""
 
 

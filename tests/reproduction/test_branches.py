@@ -1,0 +1,54 @@
+"""Figure A6: steady motions by continuation."""
+
+import numpy as np
+import pytest
+
+from reproduction import branches
+from reproduction.harmonic import paper_two_impacts
+from reproduction.judge import verdict
+
+FEW = np.array([14.0, 22.0])
+
+
+@pytest.fixture(scope="module")
+def data():
+    """Return the data with motions sought at a few of the frequencies."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(branches, "FREQUENCIES", FEW)
+        patch.setattr(branches, "SEEDS", 1)
+        yield branches.FIGURE.data()
+
+
+def test_branch_of_two_impacts_is_the_closed_form(data):
+    """Speeds, and the range in which the motion is stable, are those of the exact motion with two impacts a cycle."""
+    symmetric = data.isel(point=(data.branch == 0).values)
+    assert set(symmetric.contacts.values) == {2.0}
+    for point in range(10, symmetric.point.size - 10, 20):
+        one = symmetric.isel(point=point)
+        exact = min(
+            paper_two_impacts(branches.AMPLITUDE, float(one["at"])),
+            key=lambda motion, speed=float(one.slowest): abs(motion.approach_speed - speed),
+        )
+        assert float(one.slowest) == pytest.approx(exact.approach_speed, rel=1e-8)
+        if abs(exact.multiplier - 1) > 1e-6:  # not the located point itself
+            assert bool(one.stable) == (exact.multiplier < 1)
+
+
+def test_symmetry_is_lost_at_13_6_hertz(data):
+    """The pitchfork and the two torus bifurcations are where the exact multiplier crosses one."""
+    special = data.isel(point=data.special.values != "")
+    for kind in ("pitchfork", "torus"):
+        for frequency in special.located.values[special.special.values == kind]:
+            below, above = (
+                paper_two_impacts(branches.AMPLITUDE, frequency + step)[0].multiplier for step in (-1e-4, 1e-4)
+            )
+            assert (below - 1) * (above - 1) < 0
+
+
+def test_drawn_and_judged(data):
+    """The figure can be drawn, and the claim depends on the data."""
+    figure = branches.FIGURE
+    assert len(figure.draw(data).axes) == 2
+    assert "followed by continuation" in figure.caption(data)
+    one = data.isel(point=(data.contacts == 2).values)
+    assert verdict(figure.claims(one)[0]) == "not reproducible"
