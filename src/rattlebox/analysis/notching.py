@@ -6,14 +6,12 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rattlebox.model.errors import Hint, at
-from rattlebox.model.harmonics import SineSweep
-from rattlebox.model.recorded import Record
 from rattlebox.model.signals import Signal
 from rattlebox.model.space import unit_vector
 from rattlebox.model.stops import refuse_stops
@@ -25,6 +23,8 @@ if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
+    from rattlebox.model.harmonics import SineSweep
+    from rattlebox.model.recorded import Record
 
 PER_OCTAVE = 96
 """Fewest frequencies in an octave at which a profile is compared with its limit."""
@@ -251,8 +251,9 @@ def notch(
     }
     variables = {name: ("frequency", v, {"units": u, "long_name": text}) for name, (v, u, text) in data.items()}
     swept = math.nan
-    if isinstance(profile, SineSweep) and isinstance(new, Record) and hasattr(structure, "modes"):
-        swept = _swept_force(structure, profile, new, frequency[inside]) if inside.any() else limit
+    if getattr(profile, "is_sweep", False) and hasattr(structure, "modes"):
+        sweep, levels = cast("SineSweep", profile), cast("Record", new)
+        swept = _swept_force(structure, sweep, levels, frequency[inside]) if inside.any() else limit
         if swept > (1 + _TRANSIENT) * limit:
             warnings.warn(
                 f"the sweep passes the notch so fast that the force on the base reaches {swept:.4g} N, "

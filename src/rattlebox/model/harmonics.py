@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -204,6 +204,7 @@ class SineSweep(Polyline):
     IEC 60068-2-6 (2007), Environmental testing, test Fc: vibration (sinusoidal).
     """
 
+    is_sweep: ClassVar[bool] = True
     kind: Literal["sine_sweep"] = "sine_sweep"
     amplitude: Amplitude
     first_frequency: PositiveFrequency

@@ -66,6 +66,8 @@ class Signal(Part):
         "motion": {"amplitude": '"1 mm"'},
     }
     kind: str
+    is_sweep: ClassVar[bool] = False
+    """Whether the frequency changes slowly, so that the response is nearly that of each frequency."""
     is_sampled: ClassVar[bool] = False
     """Whether the signal is known at samples only, of which a step in time takes the mean."""
     spectra: ClassVar[tuple[str, ...]] = ()

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from rattlebox._util.quantities import amount
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
-from rattlebox.model.methods import TwoStep
 from rattlebox.model.paths import get, place_of, replaced, spelt
 from rattlebox.model.restitutions import Restitution
 
@@ -46,9 +45,9 @@ class Forcing:
                 "rb.frequency_response or rb.damping_curve, or an ImpactDamper with one ball of the same mass",
                 ["dampers"],
             )
-        if isinstance(case.method, TwoStep):
+        if not case.method.has_stepper:
             raise Hint(
-                "the method two_step has fixed steps, so that its motion does not depend smoothly on the start",
+                f"the method {case.method.kind} has fixed steps, so that its motion does not depend smoothly on the start",
                 "method = rb.EventDriven(), or rb.Newton()",
                 ["method"],
             )
