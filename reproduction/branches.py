@@ -213,7 +213,7 @@ def values(data: xr.Dataset) -> dict[str, Any]:
         "chatter": chatter[[0, -1]].values if chatter.size else np.full(2, np.nan),
         "many": MANY,
         "stable_share": 100 * float((data.stable > 0).mean()),
-        "branching": {MODEL: len(counts)},
+        "branching": len(counts),
     }
 
 

@@ -50,5 +50,7 @@ def test_drawn_and_judged(data):
     figure = branches.FIGURE
     assert len(figure.draw(data).axes) == 2
     assert "followed by continuation" in figure.caption(data)
+    changing = data.assign(contacts=data.contacts.where(data["at"] > 15, 3))
+    assert verdict(figure.claims(changing)[0]) == "reproduced"
     one = data.isel(point=(data.contacts == 2).values)
     assert verdict(figure.claims(one)[0]) == "not reproducible"
