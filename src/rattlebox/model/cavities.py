@@ -170,6 +170,11 @@ class Cavity(Part):
         """Return the distances of the surfaces of spheres from the nearest wall, (n,) [m], positive inside."""
         return np.asarray(self.depth(positions) - radii)
 
+    def overlaps(self, shifts: Vector, tolerance: float) -> NDArray[np.bool_]:
+        """Return whether the cavity and its copies moved by shifts, (n, 3) [m], overlap by more than a tolerance, (n,)."""
+        # Two copies of a convex shape that is symmetric about its centre overlap if the middle between them is in both.
+        return np.asarray(2 * self.depth(0.5 * shifts) > tolerance)
+
     def notes(self, radius: float) -> Iterator[str]:
         """Yield notes, and warnings that begin with "warning: ", on its surface and on the room for spheres."""
         yield from ()

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rattlebox._util.phrases import counted
 
@@ -17,6 +18,8 @@ from .solids import Solid, Solids, mesh
 from .space import components_along
 from .surfaces import Surface
 from .triangle_surface import TriangleSurface, surface_notes, surface_words
+
+_PROBES = 4096  # points of the bounding box for which an overlap of two cells is tested
 
 
 class Mesh(TriangleSurface, Cavity):
@@ -109,6 +112,20 @@ class Mesh(TriangleSurface, Cavity):
     def surface_over_volume(self) -> float:
         """Area of the triangles over the volume [1/m]."""
         return self.solid.area / self.volume
+
+    @cached_property
+    def _probes(self) -> Vector:
+        """Points in and on the surface, (n, 3) [m]."""
+        return np.concatenate([self.spread(_PROBES), self.solid.vertices])
+
+    def overlaps(self, shifts: Vector, tolerance: float) -> NDArray[np.bool_]:
+        """Return whether the surface and its copies overlap, for points of one that are in the other."""
+        near = np.all(np.abs(shifts) < self.lengths - tolerance, axis=1)
+        result = np.zeros(len(shifts), np.bool_)
+        for k in np.flatnonzero(near):
+            moved = np.concatenate([self._probes + shifts[k], self._probes - shifts[k]])
+            result[k] = np.any(2 * self.depth(moved) > tolerance)
+        return result
 
     def words(self) -> str:
         """Return a phrase with the edges of the bounding box."""

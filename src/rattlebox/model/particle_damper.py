@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import ResourceError, named
+from rattlebox._util.frozen import complete
 from rattlebox._util.narrow import present
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount
@@ -24,6 +25,7 @@ from .any_cavity import AnyCavity
 from .base import Part
 from .bodies import AnyBody
 from .cavities import Cavity
+from .cells import overlapping_cells, separation
 from .contacts import AnyContact, Linear
 from .damper_base import Damper
 from .elementwise import Vector
@@ -42,7 +44,7 @@ from .packing import (
 from .pairs import Body, Pair
 from .particles import MAX_PARTICLES, Particles, as_species
 from .rotation import Rotation
-from .space import AXES, Accelerations, Direction, Velocities, unit_vector
+from .space import AXES, Accelerations, Direction, Lengths, Velocities, unit_vector
 from .units import Number, Whole
 from .walls import AnyFace, Wall
 
@@ -72,6 +74,11 @@ def _two_names(value: object) -> Any:
 def _softening(value: object) -> Any:
     """Return "auto", or a number within the limits."""
     return value if value == "auto" else _FACTOR.validate_python(value)
+
+
+def _rows(value: object) -> Any:
+    """Return an array as nested lists."""
+    return value.tolist() if isinstance(value, np.ndarray) else value
 
 
 _FACTOR: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=1, le=1e6)])
@@ -192,7 +199,11 @@ class ParticleDamper(Damper):
         Point of the structure, needed if there are several; or points that have such a damper each.
     number
         Number of identical dampers at each point. Each has a random packing of its own, with a seed that follows from that
-        of the packing.
+        of the packing. By default it is the number of offsets, or 1.
+    offsets
+        From the point to the centre of each of these dampers [m], the cells, along the axes of the cavity. Pictures and
+        snapshots show the cells there. In a cavity that turns, the arm of each cell is that of the rotation plus its offset.
+        Without a rotation an offset does not change the motion, since points of the structure only translate.
     direction
         Direction of the base motion, and of a point whose mode shapes have one component.
     packing
@@ -242,6 +253,9 @@ class ParticleDamper(Damper):
     point: str | None = None
     points: tuple[str, ...] = Field(default=(), examples=[["tip", "middle"]])
     number: Annotated[Whole, Field(ge=1, le=MAX_DAMPERS)] = 1
+    offsets: Annotated[tuple[Lengths, ...], BeforeValidator(_rows)] = Field(
+        default=(), max_length=MAX_DAMPERS, examples=[[["-15 mm", 0, 0], ["15 mm", 0, 0]]]
+    )
     direction: Direction = "x"
     packing: AnyPacking = Field(default_factory=Lattice)
     velocity: Velocities = (0.0, 0.0, 0.0)
@@ -255,6 +269,7 @@ class ParticleDamper(Damper):
 
     @model_validator(mode="after")
     def _fits(self) -> ParticleDamper:
+        self._check_offsets()
         self._check_group()
         if isinstance(self.interior, Interior):
             self.interior.check()
@@ -302,6 +317,31 @@ class ParticleDamper(Damper):
         if not np.isclose(radii.min(), radii.max()):
             size += f" to {amount(2 * float(radii.max()), 'm')}"
         return f"{counted(len(radii), f'{joined(materials)} ball')} of {size} ({mass}) in {self.interior.words()}"
+
+    def _check_offsets(self) -> None:
+        """Raise if the offsets and the number differ, or if cells overlap; set the number to that of the offsets."""
+        count = len(self.offsets)
+        if not count:
+            return
+        if "number" not in self.model_fields_set:
+            complete(self, number=count)
+        if self.number != count:
+            raise Hint(
+                f"number and offsets must agree: {several(self.number, 'cell')}, but {several(count, 'offset')}",
+                f"number = {count}, or no number",
+                ["offsets"],
+            )
+        places = np.array(self.offsets)
+        pair = overlapping_cells(self.cavity, places)
+        if pair is None:
+            return
+        apart = separation(self.cavity, places[pair[1]] - places[pair[0]])
+        raise Hint(
+            f"cells {pair[0] + 1} and {pair[1] + 1} overlap: their centres are"
+            f" {amount(float(np.linalg.norm(places[pair[1]] - places[pair[0]])), 'm')} apart",
+            f"centres at least {amount(apart, 'm')} apart in this direction, or a smaller cavity",
+            ["offsets", pair[1]],
+        )
 
     def _check_group(self) -> None:
         """Raise if point and points are both given, or if identical dampers have the same packing."""
@@ -462,7 +502,7 @@ class ParticleDamper(Damper):
         crowd = Crowd.of(contents.radius)
         if filled >= 1:
             raise self.packing.too_many(self.interior, crowd)
-        self.packing.check(self.interior, crowd, settles=bool(np.any(self.field)))
+        self.packing.check(self.interior, crowd, settles=self._settles)
         _ = self.start
 
     @property
@@ -486,8 +526,9 @@ class ParticleDamper(Damper):
 
     def each(self) -> tuple[ParticleDamper, ...]:
         """Return the identical dampers that this one stands for (see `number`), each with its own point and packing."""
-        places = [point for point in self.points or (self.point,) for _ in range(self.number)]
-        if len(places) == 1 and not self.points:
+        points = self.points or (self.point,)
+        places = [(point, offset) for point in points for offset in self.offsets or (None,) * self.number]
+        if len(places) == 1 and not self.points and not self.offsets:
             return (self,)
         return tuple(
             self.model_copy(
@@ -496,11 +537,20 @@ class ParticleDamper(Damper):
                     "point": point,
                     "points": (),
                     "number": 1,
+                    "offsets": (),
+                    "rotation": self.rotation
+                    if offset is None or self.rotation is None
+                    else self.rotation.at_cell(offset),
                     "packing": self.packing.repeated(index),
                 }
             )
-            for index, point in enumerate(places)
+            for index, (point, offset) in enumerate(places)
         )
+
+    def groups(self) -> list[Vector]:
+        """Return the places of the cells that are drawn together, relative to their point, (k, 3) [m]; see `each`."""
+        points = max(1, len(self.points))
+        return [np.array(self.offsets)] * points if self.offsets else [np.zeros((1, 3))] * (points * self.number)
 
     @cached_property
     def contents(self) -> Contents:
@@ -546,10 +596,15 @@ class ParticleDamper(Damper):
     def field(self) -> Vector:
         """Acceleration of particles at rest at the centre of the cavity at the start, along its axes, (3,) [m/s^2].
 
-        It is gravity, and in a cavity that turns the centrifugal acceleration.
+        It is gravity, and in a cavity that turns the centrifugal acceleration; of several cells, that of the first.
         """
-        gravity = np.array(self.gravity)
-        return gravity if self.rotation is None else self.rotation.field(gravity)
+        gravity, rotation = np.array(self.gravity), self.each()[0].rotation
+        return gravity if rotation is None else rotation.field(gravity)
+
+    @property
+    def _settles(self) -> bool:
+        """Whether particles settle in every cell."""
+        return all(bool(np.any(cell.field)) for cell in self.each())
 
     def fall_speed(self, duration: float) -> float:
         """Return a bound on the speed after a fall through the cavity in a run of this duration [m/s]."""
@@ -590,7 +645,7 @@ class ParticleDamper(Damper):
             If particles overlap, extend beyond the cavity, or do not fit.
         """
         radius = self.contents.radius
-        positions = self.packing.place(self.interior, radius, settles=bool(np.any(self.field)))
+        positions = self.packing.place(self.interior, radius, settles=self._settles)
         velocity, spin = self.packing.motion(radius.size)
         positions = self.interior.wrapped(positions)
         return Start(positions, np.array(self.velocity) + velocity, spin)

@@ -129,6 +129,10 @@ class Rotation(Part):
             raise Hint("times must increase, and there must be at least two", '["0 s", "2 s"]', ["times"])
         return self
 
+    def at_cell(self, offset: tuple[float, float, float]) -> Rotation:
+        """Return the rotation of a cavity at an offset from this one [m], along the axes of the cavity."""
+        return self.model_copy(update={"arm": tuple((np.array(self.arm) + offset).tolist())})
+
     @cached_property
     def polynomials(self) -> tuple[Vector, Vector]:
         """Knots and coefficients of the angle without the rocking: a + b s + c s^2 + d s^3 after each knot, (k,), (k, 4)."""

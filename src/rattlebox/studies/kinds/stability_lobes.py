@@ -317,7 +317,7 @@ class StabilityLobes(Study):
             motion["direction"] = self.direction or damper.base_direction
         case = Case(
             structure=Shaker(motion=Harmonic(**motion)),
-            dampers=(damper.model_copy(update={"point": None, "number": 1}),),
+            dampers=(damper.each()[0].model_copy(update={"point": None}),),
             duration=self.case.duration,
             **({"method": self.case.method} if self.case.dampers or "method" in self.case.model_fields_set else {}),
         )
