@@ -241,14 +241,19 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
 
 
 def _cavities(case: rb.Case) -> list[dict[str, Any]]:
-    """Return edges [m], size [m] and place in the picture [m] of each cavity; they stand side by side along y."""
-    cavities = [damper.interior for damper in case.particle_dampers]
-    widths = np.array([float(cavity.lengths.max()) for cavity in cavities])
+    """Return edges [m], size [m] and place in the picture [m] of each cavity: side by side along y, cells together."""
+    dampers = [damper for damper in case.dampers if isinstance(damper, rb.ParticleDamper)]
+    groups = [(damper.interior, group) for damper in dampers for group in damper.groups()]
+    sizes = [float(cavity.lengths.max()) for cavity, _ in groups]
+    widths = np.array(
+        [size + float(np.ptp(group, axis=0).max()) for size, (_, group) in zip(sizes, groups, strict=True)]
+    )
     ends = np.cumsum(1.3 * widths)
-    places = ends - 0.65 * widths - ends[-1] / 2
+    middles = ends - 0.65 * widths - ends[-1] / 2
     return [
-        {"size": float(width), "place": [0.0, float(place), 0.0], **_edges(cavity.surface())}
-        for cavity, width, place in zip(cavities, widths, places, strict=True)
+        {"size": size, "place": (place + np.array([0.0, middle, 0.0])).tolist(), **_edges(cavity.surface())}
+        for size, middle, (cavity, group) in zip(sizes, middles, groups, strict=True)
+        for place in group - 0.5 * (group.min(axis=0) + group.max(axis=0))
     ]
 
 

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.engines.fingerprint import fingerprint
 from rattlebox.model.errors import Hint
+from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.results.snapshots import SnapshotFile
 
 if TYPE_CHECKING:
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 
 SPACING = 1.25
 """Distance between the centres of neighbouring cavities over half the sum of their lengths along x."""
+
+_ALONG = np.array([1.0, 0.0, 0.0])
 
 
 def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[SnapshotFile, list[int]]:
@@ -47,7 +51,11 @@ def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Sn
 
 
 def _drawing_positions(case: Case) -> NDArray[np.float64]:
-    """Return centres at which the cavities are drawn side by side along x, (D, 3) [m]."""
-    lengths = np.array([damper.interior.extent(np.array([1.0, 0.0, 0.0])) for damper in case.particle_dampers])
-    along = np.concatenate([[0.0], np.cumsum(SPACING * (lengths[1:] + lengths[:-1]) / 2)])
-    return np.stack([along, np.zeros_like(along), np.zeros_like(along)], axis=1)
+    """Return centres at which the cavities are drawn, (D, 3) [m]: cells at their offsets, others side by side along x."""
+    dampers = [instance(damper, ParticleDamper) for damper in case.dampers]
+    groups = [(group, damper.interior.extent(_ALONG) / 2) for damper in dampers for group in damper.groups()]
+    # From the point of each group to its ends.
+    left = np.array([half - group[:, 0].min() for group, half in groups])
+    right = np.array([half + group[:, 0].max() for group, half in groups])
+    along = np.concatenate([[0.0], np.cumsum(SPACING * (right[:-1] + left[1:]))])
+    return np.concatenate([group + x * _ALONG for (group, _), x in zip(groups, along, strict=True)])

@@ -11,6 +11,7 @@ from rattlebox._util.phrases import joined
 
 from ..model.case import Case
 from ..model.damper_base import Damper
+from ..model.particle_damper import ParticleDamper
 from ..results import Run
 from ..results.case_words import each_damper
 from ..results.figures import run_figure
@@ -101,8 +102,9 @@ def _groups(case: Case) -> list[_Group]:
     """Return the dampers, equal ones in one group."""
     groups: dict[str, _Group] = {}
     for number, damper in enumerate(each_damper(case)):
-        # Dampers that differ in name, point, start and random seed only have equal drawings.
-        key = damper.alike().model_copy(update={"name": "", "point": None}).model_dump_json()
+        # Dampers that differ in name, point, start and random seed only have equal drawings, which show no rotation.
+        changes = {"name": "", "point": None, **({"rotation": None} if isinstance(damper, ParticleDamper) else {})}
+        key = damper.alike().model_copy(update=changes).model_dump_json()
         groups.setdefault(key, _Group(damper, [])).numbers.append(number)
     return list(groups.values())
 

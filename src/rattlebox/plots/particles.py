@@ -121,7 +121,7 @@ def plot_particles(
     Returns
     -------
     Figure
-        With one panel for each cavity.
+        With one panel for each cavity; cells with offsets are in one panel.
 
     Raises
     ------
@@ -267,25 +267,45 @@ def _end(run: Run) -> Frame:
     )
 
 
-def _cavities(dampers: Sequence[Mapping[str, Any]]) -> list[tuple[str, Cavity]]:
-    """Return names and shapes of the cavities of a case, whose other files may be missing."""
+@dataclass(frozen=True)
+class _Group:
+    """Equal cavities that one panel shows."""
+
+    name: str
+    cavity: Cavity
+    first: int  # Number of the first of these cavities in the case
+    places: Array  # Of each of them [m], (k, 3)
+
+    @property
+    def cells(self) -> range:
+        """Numbers of the cavities in the case."""
+        return range(self.first, self.first + len(self.places))
+
+
+def _groups(dampers: Sequence[Mapping[str, Any]]) -> list[_Group]:
+    """Return the cavities of a case, whose other files may be missing: cells with offsets together, others one by one."""
     form: TypeAdapter[Cavity] = TypeAdapter(AnyCavity)
     inside: TypeAdapter[tuple[Body, ...]] = TypeAdapter(tuple[AnyBody, ...])
-    return [
-        (
-            damper.get("name") or f"damper {number}",
-            Interior.of(form.validate_python(damper["cavity"]), inside.validate_python(damper.get("bodies", ()))),
-        )
-        for number, damper in enumerate(dampers, start=1)
-    ]
+    groups: list[_Group] = []
+    first = 0
+    for damper in dampers:
+        cavity = Interior.of(form.validate_python(damper["cavity"]), inside.validate_python(damper.get("bodies", ())))
+        points, given = max(1, len(damper.get("points", ()))), damper.get("name", "")
+        offsets = np.array(damper.get("offsets", ()), float)
+        before = first
+        for places in [offsets] * points if len(offsets) else [np.zeros((1, 3))] * (points * damper.get("number", 1)):
+            name = f"{given}{first - before + 1}" if first > before else given
+            groups.append(_Group(name if given else f"damper {first + 1}", cavity, first, places))
+            first += len(places)
+    return groups
 
 
 @dataclass
 class _Panel:
     axes: Axes
     image: AxesImage
-    lines: list[tuple[Line2D, Array]]
-    wall: Polygon
+    lines: list[tuple[Line2D, Array, int]]  # With the number of the cell in the group
+    walls: list[Polygon]
     extent: tuple[float, float, float, float]
 
 
@@ -308,21 +328,22 @@ class _Scene:
             raise ValueError(f"colour {colour!r} is not one of {', '.join(map(repr, COLOURS))}")
         self._dpi, self._colour, self._view = dpi, colour, view_axes(view)
         case = tomllib.loads(case_toml)
-        cavities = _cavities(case["dampers"])
-        self._frames, self._cavities, self._renderer = frames, cavities, renderer
+        self._groups = _groups(case["dampers"])
+        self._frames, self._renderer = frames, renderer
         # One pass over all frames, each of which is read from the file: their colours, motions and the last time.
         columns = [(_values(frame, colour), frame.displacement, frame.time) for frame in frames]
         values = np.concatenate([column for column, _, _ in columns])
         self._moves, self._last = np.array([moves for _, moves, _ in columns]), columns[-1][2]
         self._scale = scaled(values, _UNITS[colour])
         self._map, self._norm = self._colours(values, len(frames) > 1)
-        extents = [self._extent(k) for k in range(len(cavities))]
+        extents = [self._extent(group) for group in self._groups]
         sides = [(right - left, top - bottom) for left, right, bottom, top in extents]
         ratio = max(h for _, h in sides) / sum(w for w, _ in sides)
         self.figure = StyledFigure(size, min(0.86 * ratio + 0.1, 1.1) if shape is None else shape)
         widths = [w for w, _ in sides]
-        panels = list(self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=widths)[0])
-        self._panels = [self._panel(k, axes, extents[k]) for k, axes in enumerate(panels)]
+        panels = list(self.figure.subplots(1, len(widths), squeeze=False, width_ratios=widths)[0])
+        parts = zip(self._groups, panels, extents, strict=True)
+        self._panels = [self._panel(group, axes, extent) for group, axes, extent in parts]
         if colour != "none":
             shaken = "base" in case or case["structure"]["kind"] == "shaker"
             self._draw_key(panels, "Speed relative\nto the base" if shaken and colour == "speed" else _TITLES[colour])
@@ -348,29 +369,31 @@ class _Scene:
         if self._colour == "species":
             bar.set_ticks(list(range(self._map.N)), labels=[str(number) for number in range(self._map.N)])
 
-    def _extent(self, k: int) -> tuple[float, float, float, float]:
-        """Return the edges of a panel that contains the cavity at all times."""
-        corners = np.concatenate(self._cavities[k][1].outline(self._view)) @ self._view.T
-        moves = self._moves[:, k] @ self._view.T
+    def _extent(self, group: _Group) -> tuple[float, float, float, float]:
+        """Return the edges of a panel that contains its cavities at all times."""
+        corners = np.concatenate(group.cavity.outline(self._view)) @ self._view.T
+        moves = (self._moves[:, group.cells] + group.places).reshape(-1, 3) @ self._view.T
         low, high = corners.min(axis=0) + moves.min(axis=0), corners.max(axis=0) + moves.max(axis=0)
         margin = 0.03 * float((high - low)[:2].max())
         return low[0] - margin, high[0] + margin, low[1] - 3 * margin, high[1] + margin
 
-    def _panel(self, k: int, axes: Axes, extent: tuple[float, float, float, float]) -> _Panel:
+    def _panel(self, group: _Group, axes: Axes, extent: tuple[float, float, float, float]) -> _Panel:
         axes.set_axis_off()
         image = axes.imshow(np.zeros((1, 1, 4), np.uint8), extent=extent, zorder=2, interpolation="antialiased")
-        lines = []
-        (wall,) = axes.fill([0.0], [0.0], facecolor=_WALL, edgecolor="none", zorder=0)
-        for line in self._cavities[k][1].outline(self._view):
-            behind = line.mean(axis=0) @ self._view[2] < 0
-            (drawn,) = axes.plot([], [], color=INK, linewidth=pen(0.7), alpha=0.6 if behind else 1.0)
-            drawn.set_zorder(1 if behind else 3)
-            lines.append((drawn, line))
+        lines, walls = [], []
+        outline = group.cavity.outline(self._view)
+        for cell in range(len(group.places)):
+            walls += axes.fill([0.0], [0.0], facecolor=_WALL, edgecolor="none", zorder=0)
+            for line in outline:
+                behind = line.mean(axis=0) @ self._view[2] < 0
+                (drawn,) = axes.plot([], [], color=INK, linewidth=pen(0.7), alpha=0.6 if behind else 1.0)
+                drawn.set_zorder(1 if behind else 3)
+                lines.append((drawn, line, cell))
         _draw_scale_bar(axes, extent)
         axes.set_xlim(extent[0], extent[1])
         axes.set_ylim(extent[2], extent[3])
         axes.set_aspect("equal")
-        return _Panel(axes, image, lines, wall, extent)
+        return _Panel(axes, image, lines, walls, extent)
 
     def show(self, number: int) -> None:
         """Show a frame."""
@@ -379,12 +402,12 @@ class _Scene:
         frame = self._frames[number]
         colours = self._map(self._norm(_values(frame, self._colour) / self._scale.divisor))[:, :3]
         time = scaled([self._last], "s")
-        for k, panel in enumerate(self._panels):
-            here = frame.cavity == k
+        for group, panel in zip(self._groups, self._panels, strict=True):
+            here = (frame.cavity >= group.cells.start) & (frame.cavity < group.cells.stop)
             width = round(self.figure.get_figwidth() * self._dpi * 0.85 / len(self._panels))
             panel.image.set_data(
                 draw_spheres(
-                    frame.position[here] @ self._view.T,
+                    (frame.position[here] + group.places[frame.cavity[here] - group.first]) @ self._view.T,
                     frame.radius[here],
                     colours[here],
                     panel.extent,
@@ -392,13 +415,16 @@ class _Scene:
                     self._renderer,
                 )
             )
-            for drawn, line in panel.lines:
-                placed = (line + frame.displacement[k]) @ self._view.T
+            centres = frame.displacement[group.cells] + group.places
+            for drawn, line, cell in panel.lines:
+                placed = (line + centres[cell]) @ self._view.T
                 drawn.set_data(placed[:, 0], placed[:, 1])
             # The cavity as it is seen is the convex hull of its projected corners.
-            corners = (self._cavities[k][1].surface().points + frame.displacement[k]) @ self._view[:2].T
-            panel.wall.set_xy(corners[ConvexHull(corners).vertices])
-            name = f"{self._cavities[k][0]}, " if len(self._panels) > 1 else ""
+            corners = group.cavity.surface().points @ self._view[:2].T
+            hull = corners[ConvexHull(corners).vertices]
+            for wall, centre in zip(panel.walls, centres @ self._view[:2].T, strict=True):
+                wall.set_xy(hull + centre)
+            name = f"{group.name}, " if len(self._panels) > 1 else ""
             panel.axes.set_title(f"{name}{frame.time / time.divisor:.4g} {time.unit}")
 
 

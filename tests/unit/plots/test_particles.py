@@ -204,7 +204,7 @@ def test_the_wall_is_filled_and_moves(run: Any) -> None:
     frames = list(rb.Snapshots(run[1]))
     for number in (0, 2):
         scene.show(number)
-        middle, moved = frames[number].displacement[0, 0], scene._panels[0].wall.get_xy()
+        middle, moved = frames[number].displacement[0, 0], scene._panels[0].walls[0].get_xy()
         assert moved[:, 0].min() == pytest.approx(middle - 0.01) and moved[:, 0].max() == pytest.approx(middle + 0.01)
     assert frames[0].displacement[0, 0] != frames[2].displacement[0, 0]
 
