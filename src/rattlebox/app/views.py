@@ -242,8 +242,7 @@ def view_of_snapshots(path: Path, first: int = 0) -> bytes:
 
 def _cavities(case: rb.Case) -> list[dict[str, Any]]:
     """Return edges [m], size [m] and place in the picture [m] of each cavity: side by side along y, cells together."""
-    dampers = [damper for damper in case.dampers if isinstance(damper, rb.ParticleDamper)]
-    groups = [(damper.interior, group) for damper in dampers for group in damper.groups()]
+    groups = [(damper.interior, group) for damper, group in case.cell_groups]
     sizes = [float(cavity.lengths.max()) for cavity, _ in groups]
     widths = np.array(
         [size + float(np.ptp(group, axis=0).max()) for size, (_, group) in zip(sizes, groups, strict=True)]

@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.engines.fingerprint import fingerprint
 from rattlebox.model.errors import Hint
-from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.results.snapshots import SnapshotFile
 
 if TYPE_CHECKING:
@@ -52,8 +50,7 @@ def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Sn
 
 def _drawing_positions(case: Case) -> NDArray[np.float64]:
     """Return centres at which the cavities are drawn, (D, 3) [m]: cells at their offsets, others side by side along x."""
-    dampers = [instance(damper, ParticleDamper) for damper in case.dampers]
-    groups = [(group, damper.interior.extent(_ALONG) / 2) for damper in dampers for group in damper.groups()]
+    groups = [(group, damper.interior.extent(_ALONG) / 2) for damper, group in case.cell_groups]
     # From the point of each group to its ends.
     left = np.array([half - group[:, 0].min() for group, half in groups])
     right = np.array([half + group[:, 0].max() for group, half in groups])

@@ -453,6 +453,12 @@ class Case(Part):
         return tuple(each for damper in self.dampers if isinstance(damper, ParticleDamper) for each in damper.each())
 
     @property
+    def cell_groups(self) -> list[tuple[ParticleDamper, Vector]]:
+        """The cavities that are drawn together: a damper, and the places of its cells relative to the point, (k, 3) [m]."""
+        dampers = [damper for damper in self.dampers if isinstance(damper, ParticleDamper)]
+        return [(damper, group) for damper in dampers for group in damper.groups()]
+
+    @property
     def shaker_motion(self) -> tuple[Signal, ...]:
         """The signals of the motion of a shaker; empty for other structures."""
         return self.structure.motion if isinstance(self.structure, Shaker) else ()

@@ -21,7 +21,9 @@ def overlapping_cells(cavity: Cavity, places: Vector) -> tuple[int, int] | None:
     from scipy.spatial import cKDTree  # takes a tenth of a second to load
 
     tree = cKDTree(places)
-    _, found = tree.query(places, k=2)  # itself and the nearest other one, in any order if both are at one place
+    found = np.asarray(
+        tree.query(places, k=2)[1]
+    )  # itself and the nearest other one, in any order if both are at one place
     own = np.arange(len(places))
     other = np.where(found[:, 0] == own, found[:, 1], found[:, 0])
     size = float(np.linalg.norm(cavity.lengths))

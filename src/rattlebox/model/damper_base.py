@@ -47,7 +47,7 @@ class Damper(Part):
 
     @abstractmethod
     def alike(self) -> Self:
-        """Return the damper without the start or seed in which identical dampers differ."""
+        """Return the damper without the start, seed or rotation in which dampers with equal drawings differ."""
 
     @abstractmethod
     def each(self) -> Sequence[Self]:

@@ -282,12 +282,9 @@ class ParticleDamper(Damper):
         return self
 
     def alike(self) -> ParticleDamper:
-        """Return the damper without the seed of its packing, in which identical dampers differ."""
-        return (
-            self.model_copy(update={"packing": self.packing.model_copy(update={"seed": 0})})
-            if self.packing.is_random
-            else self
-        )
+        """Return the damper without the seed of its packing and its rotation, in which the cells of a damper differ."""
+        packing = self.packing.model_copy(update={"seed": 0}) if self.packing.is_random else self.packing
+        return self.model_copy(update={"packing": packing, "rotation": None})
 
     @cached_property
     def interior(self) -> Cavity:

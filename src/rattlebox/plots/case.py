@@ -11,7 +11,6 @@ from rattlebox._util.phrases import joined
 
 from ..model.case import Case
 from ..model.damper_base import Damper
-from ..model.particle_damper import ParticleDamper
 from ..results import Run
 from ..results.case_words import each_damper
 from ..results.figures import run_figure
@@ -103,8 +102,7 @@ def _groups(case: Case) -> list[_Group]:
     groups: dict[str, _Group] = {}
     for number, damper in enumerate(each_damper(case)):
         # Dampers that differ in name, point, start and random seed only have equal drawings, which show no rotation.
-        changes = {"name": "", "point": None, **({"rotation": None} if isinstance(damper, ParticleDamper) else {})}
-        key = damper.alike().model_copy(update=changes).model_dump_json()
+        key = damper.alike().model_copy(update={"name": "", "point": None}).model_dump_json()
         groups.setdefault(key, _Group(damper, [])).numbers.append(number)
     return list(groups.values())
 
