@@ -310,6 +310,10 @@ class Box(Cavity):
         """Return positions with those of the images inside, from minus to plus half of the edge, (n, 3) [m]."""
         return wrapped(positions, self.period)
 
+    def overlaps(self, shifts: Vector, tolerance: float) -> NDArray[np.bool_]:
+        """Return whether the box and its copies overlap; periodic ones end at their faces, too."""
+        return np.asarray(np.all(np.abs(shifts) < self.lengths - tolerance, axis=1))
+
     @property
     def surface_over_volume(self) -> float:
         """Area of the walls over the volume [1/m]."""

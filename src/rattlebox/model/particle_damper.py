@@ -254,7 +254,7 @@ class ParticleDamper(Damper):
     points: tuple[str, ...] = Field(default=(), examples=[["tip", "middle"]])
     number: Annotated[Whole, Field(ge=1, le=MAX_DAMPERS)] = 1
     offsets: Annotated[tuple[Lengths, ...], BeforeValidator(_rows)] = Field(
-        default=(), max_length=MAX_DAMPERS, examples=[[["-15 mm", 0, 0], ["15 mm", 0, 0]]]
+        default=(), examples=[[["-15 mm", 0, 0], ["15 mm", 0, 0]]]
     )
     direction: Direction = "x"
     packing: AnyPacking = Field(default_factory=Lattice)
@@ -320,6 +320,8 @@ class ParticleDamper(Damper):
         count = len(self.offsets)
         if not count:
             return
+        if count > MAX_DAMPERS:
+            raise Hint(f"{several(count, 'offset')}; at most {MAX_DAMPERS} are allowed", "fewer cells", ["offsets"])
         if "number" not in self.model_fields_set:
             complete(self, number=count)
         if self.number != count:

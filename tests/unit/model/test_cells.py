@@ -109,6 +109,7 @@ TRIANGLE = {
     [
         (rb.Box(size=("20 mm", "20 mm", "16 mm")), (20, 5, 0), (19.9, 5, 0)),
         (rb.Box(size=("20 mm", "20 mm", "16 mm")), (3, 2, 16), (3, 2, 15.9)),
+        (rb.Box(size=("20 mm", "20 mm", "16 mm"), periodic="x"), (20, 5, 0), (19.9, 5, 0)),
         (rb.Cylinder(diameter="20 mm", length="16 mm"), (14.2, 14.2, 0), (14.1, 14.1, 0)),
         (rb.Cylinder(diameter="20 mm", length="16 mm"), (2, 2, 16), (2, 2, 15.9)),
         (rb.SphericalCavity(diameter="20 mm"), (11.6, 11.6, 11.6), (11.5, 11.5, 11.5)),
@@ -148,6 +149,7 @@ def test_many_cells() -> None:
             {"number": 3, "offsets": OFFSETS},
             r"number and offsets must agree: 3 cells, but 2 offsets\n *try: number = 2",
         ),
+        ({"offsets": np.arange(30003).reshape(-1, 3)}, "10001 offsets; at most 10000"),
         ({"offsets": ["10 mm", 0, 0]}, "three lengths"),
         ({"offsets": [["10 mm", 0]]}, "three lengths"),
         ({"offsets": [["10 N", 0, 0]]}, "N"),
