@@ -116,7 +116,8 @@ class Mesh(TriangleSurface, Cavity):
     @cached_property
     def _probes(self) -> Vector:
         """Points in and on the surface, (n, 3) [m]."""
-        return np.concatenate([self.spread(_PROBES), self.solid.vertices])
+        corners = self.solid.vertices
+        return np.concatenate([self.spread(_PROBES), corners[:: 1 + len(corners) // _PROBES]])
 
     def overlaps(self, shifts: Vector, tolerance: float) -> NDArray[np.bool_]:
         """Return whether the surface and its copies overlap, for points of one that are in the other."""
