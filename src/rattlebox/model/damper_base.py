@@ -53,6 +53,11 @@ class Damper(Part):
     def each(self) -> Sequence[Self]:
         """Return the identical dampers that this one stands for, each with a start of its own."""
 
+    @property
+    def has_equal_cells(self) -> bool:
+        """Whether the identical dampers that this one stands for have equal losses on average."""
+        return True
+
     @abstractmethod
     def facts(self) -> list[tuple[str, str]]:
         """Return numbers that follow from the fields, with their names."""

@@ -519,6 +519,15 @@ class ParticleDamper(Damper):
         """Whether repeated runs can start differently."""
         return self.packing.is_random
 
+    @property
+    def has_equal_cells(self) -> bool:
+        """Whether all cells are in the same field."""
+        if self.rotation is None or not self.offsets:
+            return True
+        axis, places = unit_vector(self.rotation.axis), np.array(self.offsets)
+        moved = np.linalg.norm(np.cross(places - places[0], axis), axis=1)
+        return bool(moved.max() <= 1e-9 * self._reach)
+
     def restarted(self, number: int, generator: np.random.Generator) -> ParticleDamper:
         """Return the damper with the packing of a repeated run."""
         return self.model_copy(update={"packing": self.packing.reseeded(number)})

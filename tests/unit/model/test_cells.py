@@ -97,6 +97,18 @@ def test_one_cell_on_the_axis_and_one_beside_it() -> None:
         damper(offsets=[["30 mm", 0, 0], [0, 0, 0]], **values)
 
 
+def test_one_map_for_cells_in_different_fields() -> None:
+    """Limits of cutting multiply the loss map of one cell by their number, which is refused for unequal fields."""
+    along = [[0, "-15 mm", 0], [0, "15 mm", 0]]  # the axis
+    rotation = turning(("60 mm", "0 mm", "0 mm"))
+    assert not damper(offsets=OFFSETS, rotation=rotation).has_equal_cells
+    assert damper(offsets=along, rotation=rotation).has_equal_cells
+    assert damper(offsets=OFFSETS).has_equal_cells
+    cells = case(damper(offsets=OFFSETS, rotation=rotation))
+    with pytest.raises(rb.CaseError, match="cells of the damper are in different fields"):
+        rb.stability_lobes(cells, None, "2200 N/mm^2", 0.9, amplitudes=["2 um", "20 um"])
+
+
 TRIANGLE = {
     "vertices": [[0, 0, 0], [40, 0, 0], [40, 0, 20], [0, 30, 0], [40, 30, 0], [40, 30, 20]],
     "faces": [[0, 1, 2], [3, 5, 4], [0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0]],

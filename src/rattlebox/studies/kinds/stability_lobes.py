@@ -315,6 +315,12 @@ class StabilityLobes(Study):
         motion: dict[str, Any] = {"amplitude": ends[1], "frequency": hertz, "unit": "m"}
         if damper.base_direction is not None:
             motion["direction"] = self.direction or damper.base_direction
+        if not damper.has_equal_cells:
+            raise Hint(
+                "the cells of the damper are in different fields, but one map holds for all of them",
+                "cells at the same arm, without offsets",
+                ["damper", "offsets"],
+            )
         case = Case(
             structure=Shaker(motion=Harmonic(**motion)),
             dampers=(damper.each()[0].model_copy(update={"point": None}),),
