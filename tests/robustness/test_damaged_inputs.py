@@ -90,6 +90,24 @@ class Sample(NamedTuple):
     counted: bool = True  # whether a cut at the end of a line can be noticed
 
 
+IN_SURFACE = """
+[structure]
+kind = "fixed"
+[damper]
+kind = "particle"
+cavity = { kind = "mesh", file = "FILE", unit = "m" }
+particles = { material = "steel", diameter = "4 mm", count = 3 }
+contact = { kind = "tsuji", restitution = 0.5 }
+"""
+
+
+def stl(size: tuple[float, float, float]) -> bytes:
+    """Return the surface of a box as a binary STL file."""
+    import trimesh
+
+    return bytes(trimesh.creation.box(size).export(file_type="stl"))
+
+
 def record(options: str = "") -> str:
     """Return a case with the file as the motion of the base."""
     return SDOF + f'[base]\nkind = "record"\nfile = "FILE"\n{options}'
@@ -156,6 +174,7 @@ GOOD: dict[str, Sample] = {
     "MAT matrices": Sample("a.mat", saved(scipy.io.savemat, {"K": K, "M": M}), MATRICES + 'file = "FILE"\n',
                          swapped=(b"IM", b"MI")),
     "positions": Sample("a.csv", PLACES.encode(), BEADS, counted=False),
+    "surface": Sample("a.stl", stl((0.02, 0.02, 0.02)), IN_SURFACE),
     "UFF response function": Sample("a.uff", (UFF / "frf_58.uff").read_bytes()),
     "response function": Sample(
         "a.csv", table("f (Hz),real (m/s^2/N),imag (m/s^2/N)", 1 + TIMES, VALUES, VALUES), counted=False

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 FORMAT = 4
 """Version of the layout; files of other versions are rejected."""
+EARLIER = (3,)
+"""Formats whose description is read, so that messages name the version that resumes the run."""
 
 _FREE_FIELDS: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}
 """Fields of the case that may differ when a run resumes: the results do not depend on them."""
@@ -92,7 +94,7 @@ def read_unfinished(path: Path) -> Unfinished:
     try:
         with zipfile.ZipFile(path) as archive:
             about = json.loads(_read_array(archive, "about").tobytes())
-        check_format(path, about["format"], FORMAT)
+        check_format(path, about["format"], FORMAT, EARLIER)
         return Unfinished(str(about["case"]), float(about["time"]), float(about["seconds"]), str(about["version"]))
     except (DataError, MemoryError):
         raise
@@ -159,7 +161,7 @@ class Checkpoint:
         try:
             with zipfile.ZipFile(self.path) as archive:
                 about = json.loads(_read_array(archive, "about").tobytes())
-                check_format(self.path, about["format"], FORMAT)
+                check_format(self.path, about["format"], FORMAT, EARLIER)
                 self._compare(about)
                 arrays: dict[str, NDArray[Any]] = {}
                 for name, digest in about["digests"].items():

@@ -600,7 +600,7 @@ class ParticleDamper(Damper):
         pull = float(np.linalg.norm(self.field))
         return -self.field / pull if pull else None
 
-    @cached_property
+    @property
     def field(self) -> Vector:
         """Acceleration of particles at rest at the centre of the cavity at the start, along its axes, (3,) [m/s^2].
 

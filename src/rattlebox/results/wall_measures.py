@@ -71,7 +71,7 @@ def wall_pressures(run: Record) -> dict[str, float]:
     >>> output = rb.Output(rate="1 kHz", walls=True)
     >>> run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="0.1 s", output=output))
     >>> weight = run.arrays.particle_mass[0] * 9.81
-    >>> round(rb.analysis.wall_pressures(run)["-z"] * 0.02**2 / weight, 2)
+    >>> round(float(rb.analysis.wall_pressures(run)["-z"] * 0.02**2 / weight), 2)
     1.0
     """
     arrays = _walls(run)

@@ -123,7 +123,7 @@ def gradient(
     ... )
     >>> result = rb.gradient(case, "displacement", ["damper.gap", "structure.mass"])
     >>> round(float(result.derivative.sel(parameter="damper.gap")), 3)
-    0.0
+    -0.36
     """
     import xarray
 

@@ -159,7 +159,7 @@ def test_progress_means_the_same_in_all_functions():
     studies = {"sweep", "bifurcation", "basins", "frequency_response", "lyapunov", "loss_map", "design", "sensitivity"}
     studies |= {"stability_lobes"}
     others = {"simulate", "simulate_many", "compare", "damping_curve", "calibrate", "film_particles"}
-    others |= {"check_softening", "check_step", "backbone"}
+    others |= {"check_softening", "check_step", "backbone", "continue_orbit", "continue_point", "notch_with_dampers"}
     assert set(result) == studies | others
     parameters = [inspect.signature(each).parameters["progress"] for each in result.values()]
     assert {(p.annotation, p.default, p.kind) for p in parameters} == {

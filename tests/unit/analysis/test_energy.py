@@ -131,7 +131,7 @@ def test_complex_power_of_a_simulated_damper():
             output=rb.Output(times=np.linspace(0, cycles / frequency, cycles * samples + 1).tolist()),
         )
     )
-    motion, late = run.motion, slice(30 / frequency, None)
+    motion, late = run.along(), slice(30 / frequency, None)
     lost = np.diff(run.arrays.normal_loss[:, 0][[30 * samples, -1]])[0] / 10
     power = complex_power(
         motion.time.sel(time=late),

@@ -24,6 +24,8 @@ def damper(**changes: Any) -> rb.ParticleDamper:
 def test_each_name_is_refused_in_words(name: str) -> None:
     """A damper and its parts refuse the name of what does not exist with the reason; they had listed their fields only."""
     for part, classes in (("particles", "Particles"), ("cavity", "Box"), ("contact", "Tsuji")):
+        if name in getattr(rb, classes).model_fields:  # a box may be periodic
+            continue
         with pytest.raises(rb.CaseError) as caught:
             damper(**{part: {name: 1.0}})
         assert f"{part}.{name} = 1.0\n  there is no such property: {ABSENT[name][0]}\n  try: " in str(caught.value)

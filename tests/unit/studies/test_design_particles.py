@@ -14,7 +14,7 @@ from scipy.stats import t
 import rattlebox as rb
 from rattlebox.cli.show import show_study
 from rattlebox.cli.sweep import run_sweep
-from rattlebox.studies.design import search
+from rattlebox.studies.design import trials
 from rattlebox.studies.design.search import DesignSearch
 from rattlebox.studies.run.estimate import Estimate, duration
 
@@ -134,8 +134,8 @@ def test_all_combinations_of_choices_are_tried() -> None:
 def test_repeated_trials_are_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """A random search among choices takes the result of an equal earlier trial."""
     counted: list[int] = []
-    run_work = search.run_work
-    monkeypatch.setattr(search, "run_work", lambda *a, **b: (counted.append(1), run_work(*a, **b))[1])
+    begin = trials.Trials._begin
+    monkeypatch.setattr(trials.Trials, "_begin", lambda *a: (counted.append(1), begin(*a))[1])
     result = searched({COUNT: [4, 8], SIZE: ["4 mm", "5 mm"]}, packings=1, trials=3)
     different = {*zip(result[COUNT].values.tolist(), result[SIZE].values.tolist(), strict=True)}
     assert len(counted) == len(different) == len(set(result.rms.values.tolist())) < 3
