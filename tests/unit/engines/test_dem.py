@@ -407,6 +407,8 @@ def test_a_stopped_run_keeps_what_it_has(how: str) -> None:
     """Ctrl-C and a progress function that returns False end the run with a status; earlier samples are returned."""
 
     def stop(done: int, total: int) -> bool:
+        if done < 1e-4 * total:  # a busy machine may ask before the first sample
+            return True
         if how == "ctrl-c":
             raise KeyboardInterrupt
         return False
