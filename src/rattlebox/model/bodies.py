@@ -252,11 +252,6 @@ class MeshBody(TriangleSurface, Body):
         """Yield what was changed or assumed."""
         return surface_notes(self)
 
-    @property
-    def digest(self) -> str:
-        """Text that differs for other surfaces."""
-        return f"{super().digest} {hash((self.vertices, self.faces))}"
-
 
 class BodyRing(Body):
     """Equal bodies on a circle, turned with it.

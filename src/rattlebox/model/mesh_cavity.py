@@ -143,8 +143,3 @@ class Mesh(TriangleSurface, Cavity):
     def widest(self) -> float:
         """Diameter of the largest sphere inside [m]."""
         return 2 * widest_sphere(self)
-
-    @property
-    def digest(self) -> str:
-        """Text that differs for other surfaces, also of the same file."""
-        return f"{self.model_dump_json()} {hash((self.vertices, self.faces))}"

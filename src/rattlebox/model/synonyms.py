@@ -97,7 +97,10 @@ _ABSENT = {  # what does not exist, and what to do instead: others' names
         "only a box has parallel faces through which particles can pass",
         'cavity = { kind = "box", periodic = "x", ... }',
     ): ("periodic periodicity periodic_boundary periodic_boundaries periodic_bc pbc periodic_axes"),
-    ("cavities move without turning", "remove it, and give the base a motion in two directions"): (
+    (
+        "the damper turns, not a part of it",
+        'rotation = { speed = "700 rpm", arm = ["0.2 m", 0, 0] } of the particle damper',
+    ): (
         "rotation rotating rotation_speed rotational_speed rotation_rate rotation_axis rotation_frequency angular_velocity "
         "angular_speed rpm omega tilt spin_rate axis_of_rotation centrifugal"
     ),

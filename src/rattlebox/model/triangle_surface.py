@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from rattlebox._util.digests import array_digest
 from rattlebox._util.phrases import counted
 from rattlebox._util.quantities import amount
 from rattlebox.core import _core
@@ -101,6 +102,12 @@ class TriangleSurface(FilePart):
         with at(self.where):
             _ = self.triangles
         return self
+
+    @property
+    def digest(self) -> str:
+        """Text that differs for other surfaces, also of one file that has changed."""
+        triangles = self.triangles
+        return f"{self.model_dump_json()} {array_digest([triangles.vertices, triangles.faces]).hex()}"
 
     @property
     def where(self) -> str:

@@ -7,7 +7,7 @@ import pytest
 import rattlebox as rb
 from rattlebox.model.synonyms import ABSENT
 
-DRY, ROUND, STILL = "contacts are dry", "all particles are round spheres", "cavities move without turning"
+DRY, ROUND, STILL = "contacts are dry", "all particles are round spheres", "the damper turns, not a part of it"
 
 
 def damper(**changes: Any) -> rb.ParticleDamper:

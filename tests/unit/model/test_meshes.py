@@ -226,3 +226,16 @@ def test_wall_of_body_has_its_own_results():
     wall = list(run.arrays.walls).index("block")
     weight = 9.81 * run.arrays.particles.mass.sum()
     assert run.arrays.wall_force[-1, wall, 2] == pytest.approx(-weight, rel=0.05)
+
+
+def test_bed_of_a_file_that_has_changed_is_settled_again(tmp_path):
+    """A file that is written again with another surface gives another bed, although its name is the same."""
+    import trimesh
+
+    beds = []
+    for height in (0.010, 0.025):
+        path = tmp_path / "cavity.stl"
+        trimesh.creation.box((0.03, 0.02, height)).export(path)
+        beds.append(start_positions(damper(rb.Mesh(file=path, unit="m"), packing=rb.Settled(seed=1))))
+    lowest = [bed[:, 2].min() for bed in beds]
+    assert lowest == pytest.approx([-0.005 + 0.0015, -0.0125 + 0.0015], abs=1e-5)
