@@ -122,6 +122,8 @@ from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots
 from rattlebox.studies.backbone import backbone as backbone
+from rattlebox.studies.basin_stability import BasinStability as BasinStability
+from rattlebox.studies.basin_stability import basin_stability as basin_stability
 from rattlebox.studies.calibration.calibrate import calibrate as calibrate
 from rattlebox.studies.calibration.measurements import BounceTimes as BounceTimes
 from rattlebox.studies.calibration.measurements import Drops as Drops
@@ -147,8 +149,6 @@ from rattlebox.studies.kinds.sweep import compare as compare
 from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.maps.response_from_map import response_from_map as response_from_map
 from rattlebox.studies.notching import notch_with_dampers as notch_with_dampers
-from rattlebox.studies.orbits.basin_stability import BasinStability as BasinStability
-from rattlebox.studies.orbits.basin_stability import basin_stability as basin_stability
 from rattlebox.studies.orbits.branch import Branch as Branch
 from rattlebox.studies.orbits.branch import SpecialPoint as SpecialPoint
 from rattlebox.studies.orbits.continuation import continue_orbit as continue_orbit

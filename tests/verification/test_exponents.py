@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.orbits.basin_stability import _interval
+from rattlebox.studies.basin_stability import _interval
 from rattlebox.studies.orbits.find import _end_of
 from rattlebox.studies.orbits.forcing import Forcing
 from rattlebox.studies.orbits.orbit import Orbit

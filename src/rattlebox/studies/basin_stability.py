@@ -36,7 +36,7 @@ class BasinStability:
 
     Examples
     --------
-    >>> from rattlebox.studies.orbits.basin_stability import BasinStability
+    >>> from rattlebox.studies.basin_stability import BasinStability
     >>> print(BasinStability(0.5, 0.4, 0.6, 50, 100, 0))
     50 of 100 starts lead to the motion: 50 %, 95 % interval 40 to 60 %
     """
