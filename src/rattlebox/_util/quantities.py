@@ -142,6 +142,23 @@ def amount(value: float, unit: str = "", significant: int = 4) -> str:
     return number if unit in ("", "1") else f"{number} {unit}"
 
 
+def span(lower: float, upper: float, unit: str = "", significant: int = 4) -> str:
+    """Format a range in one unit, without trailing zeros: 3.1 to 3.6 %, 24 to 42 Hz.
+
+    Examples
+    --------
+    >>> span(0.0002, 0.0012, "m"), span(24.0, 42.0, "Hz"), span(0.031, 0.036, "%")
+    ('0.2 to 1.2 mm', '24 to 42 Hz', '3.1 to 3.6 %')
+    """
+    if not (math.isfinite(lower) and math.isfinite(upper)):
+        return MISSING
+    divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
+    if unit in PREFIXED_UNITS:
+        divisor, written = in_unit(max(abs(lower), abs(upper)), unit)
+    ends = (amount(end / divisor, significant=significant) for end in (lower, upper))
+    return f"{' to '.join(ends)} {written}".rstrip()
+
+
 def without_zeros(text: str) -> str:
     """Return a text without zeros at the end of the decimals of its numbers."""
     return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", text)

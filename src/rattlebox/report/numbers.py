@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rattlebox._util.quantities import MISSING, PREFIXED_UNITS, amount, digits, in_unit
+from rattlebox._util.quantities import PREFIXED_UNITS, amount, digits, in_unit, span
 
 _ROUNDING = 1e-6
 """Half width of an interval over its value, below which the motion repeats and the interval is rounding."""
@@ -27,10 +27,4 @@ def with_interval(value: float, half: float, unit: str = "") -> str:
 
 def between(lower: float, upper: float, unit: str = "") -> str:
     """Return the limits of an interval in one unit: "3.1 to 3.6 %"."""
-    if not (math.isfinite(lower) and math.isfinite(upper)):
-        return MISSING
-    divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
-    if unit in PREFIXED_UNITS:
-        largest = max(abs(lower), abs(upper))
-        divisor, written = in_unit(largest, unit)
-    return f"{amount(lower / divisor, significant=3)} to {amount(upper / divisor, significant=3)} {written}".rstrip()
+    return span(lower, upper, unit, 3)

@@ -38,6 +38,7 @@ WRONG = {
     "limits elsewhere": ("load.frequency", ("50 Hz", "60 Hz"), "not between the limits"),
     "an invalid limit": ("damper.gap", (-1e-3, 2e-3), "gap"),
     "one limit": ("load.frequency", ("38 Hz",), "smallest and the largest"),
+    "a number as limits": ("load.frequency", 38.0, "smallest and the largest"),
     "not a path": (3, (0.0, 1.0), "not a path"),
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -11,17 +11,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder, require_readable
+from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
 from rattlebox._util.exceptions import DataError
-from rattlebox._util.quantities import quantity
+from rattlebox._util.html import code_block
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, several
 from rattlebox.studies.orbits.branch_data import KINDS, STUDY
+from rattlebox.studies.orbits.branch_words import sentences, special_kinds
 from rattlebox.studies.orbits.find import size_of
 from rattlebox.studies.orbits.forcing import Forcing
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
 from rattlebox.studies.orbits.switching import switched
+from rattlebox.studies.run.stored import open_study
 
 if TYPE_CHECKING:
     import xarray
@@ -105,7 +107,7 @@ class Branch:
     @property
     def specials(self) -> tuple[SpecialPoint, ...]:
         """Special points in their order along the branch."""
-        found = np.flatnonzero(self.data.special.values.astype(str) != "")
+        found = np.flatnonzero(special_kinds(self.data) != "")
         return tuple(
             SpecialPoint(
                 str(self.data.special[k].item()),
@@ -226,21 +228,18 @@ class Branch:
         ResourceError
             If no space is left on the disk.
         """
-        file = Path(path)
-        check_suffix(file, ".nc")
-        require_folder(file)
-        with atomic_write(file, "make room and save the branch again") as name:
-            self.data.to_netcdf(name, engine="h5netcdf")
-        return file
+        check_suffix(Path(path), ".nc")
+        require_folder(Path(path))
+        return write_branch(self.data, Path(path))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Branch:
-        """Read a branch that `save` wrote.
+        """Read a branch that `save` wrote, or the result of a study of the kind "continue_orbit".
 
         Parameters
         ----------
         path
-            netCDF file.
+            netCDF file, or the folder of the study.
 
         Returns
         -------
@@ -251,34 +250,23 @@ class Branch:
         ------
         DataError
             If the file cannot be read or is not a branch.
+        StoreError
+            If the folder is not a study.
         """
-        import xarray
-
-        file = Path(path)
-        require_readable(file)
-        try:
-            data = xarray.load_dataset(file, engine="h5netcdf")
-        except HDF5_ERRORS as error:
-            raise DataError(f"{file} cannot be read: {error!s:.80}", "a file that Branch.save wrote") from None
+        data = open_study(path).load()
         if data.attrs.get("study") != STUDY:
-            raise DataError(f"{file} is not a branch of periodic motions", "a file that Branch.save wrote")
+            raise DataError(f"{path} is not a branch of periodic motions", "a file that Branch.save wrote")
         return cls(data)
 
     def __str__(self) -> str:
-        return "\n".join(self._lines())
+        return "\n".join(sentences(self.data))
 
-    def _lines(self) -> Iterator[str]:
-        value, unit = self.data.value.values, str(self.data.attrs["unit"])
-        ends = " to ".join(quantity(float(end), unit) for end in (value.min(), value.max()))
-        closed = ", closed" if self.is_closed else ""
-        yield f"branch of {several(len(self), 'point')} over {self.parameter}, {ends}{closed}"
-        yield f"stable         {int(self.data.stable.sum())} of {len(self)}"
-        for point in self._special_rows():
-            yield f"special        {point}"
-        if message := str(self.data.attrs.get("ended", "")):
-            yield f"ended          {message}"
+    def _repr_html_(self) -> str:
+        return code_block(str(self))
 
-    def _special_rows(self) -> Iterator[str]:
-        for k in np.flatnonzero(self.data.special.values.astype(str) != ""):
-            row = self.data.isel(point=int(k))
-            yield f"{KINDS[str(row.special.item())]} at {quantity(float(row.located), str(self.data.attrs['unit']), 8)}"
+
+def write_branch(data: xarray.Dataset, file: Path, *, replace: bool | None = None) -> Path:
+    """Write the dataset of a branch to a netCDF file; with `replace`, also over a file that this process has not read."""
+    with atomic_write(file, "make room and save the branch again", replace=replace) as name:
+        data.to_netcdf(name, engine="h5netcdf")
+    return file

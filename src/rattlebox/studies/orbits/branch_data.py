@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox._util.narrow import present
 from rattlebox._util.quantities import quantity
 from rattlebox.model.errors import Hint
 from rattlebox.studies.grid.axes import materials_in
 from rattlebox.studies.grid.grid import Parameter
+from rattlebox.studies.orbits.branch_words import sentences
 from rattlebox.studies.orbits.corrector import Corrector, Point
 from rattlebox.studies.orbits.follow import Follower
-from rattlebox.studies.orbits.forcing import Forcing
+from rattlebox.studies.orbits.forcing import Forcing, number_at
 from rattlebox.studies.orbits.shooting import ReturnMap
 
 if TYPE_CHECKING:
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 
 LONGEST_STEP = 0.02
 """Default of the longest step, as part of the range of the parameter or of the size of the motion."""
+MOST_POINTS = 500
+"""Default of the largest number of points in each direction."""
 STUDY = "continue_orbit"
 """Attribute of the dataset of a branch."""
 KINDS = {
@@ -45,7 +49,7 @@ def corrector_of(case: Case, axis: str, limits: Sequence[Any], step: float) -> t
     if not isinstance(axis, str):
         raise Hint(f"axis = {axis!r:.60} is not a path", 'axis = "load.frequency"')
     forcing.check_parameter(axis)
-    if isinstance(limits, str) or len(limits) != 2:
+    if isinstance(limits, str) or not isinstance(limits, Sequence) or len(limits) != 2:
         raise Hint(f"limits = {limits!r:.60} must be the smallest and the largest value", '("20 Hz", "40 Hz")')
     parameter = Parameter(case, axis, "limits", materials_in(case))
     low, high, unit = parameter.ends(*limits)
@@ -61,17 +65,31 @@ def corrector_of(case: Case, axis: str, limits: Sequence[Any], step: float) -> t
     return Corrector(ReturnMap(forcing, 1, (axis,)), (low, high), float(step)), unit
 
 
+def start_value(case: Case, axis: str, corrector: Corrector, unit: str) -> float:
+    """Return the value of the parameter at the motion of a case; raise if it is not between the limits."""
+    value = present(number_at(case, axis))
+    low, high = corrector.limits
+    if not low <= value <= high:
+        raise Hint(
+            f"the motion has {axis} = {quantity(value, unit, 6)}, which is not between the limits "
+            f"{quantity(low, unit, 6)} and {quantity(high, unit, 6)}",
+            "limits around it, or a motion between the limits",
+        )
+    return value
+
+
 def data_of(row: Sequence[Point], case: Case, axis: str, unit: str, follower: Follower) -> xarray.Dataset:
     """Return the dataset of the branch of a row of points."""
     limits = follower.corrector.limits
     # The side of rising values is followed first; the branch that begins at a special point has this side only.
     ends = (row[-1], row[0])
     ended = "; ".join(
-        f"at {axis} = {quantity(point.value, unit, 6)}, {reason}"
+        f"at {axis} = {quantity(point.located if point.special else point.value, unit, 6)}, {reason}"
         for point, reason in zip(ends, follower.reasons, strict=False)
         if reason
     )
-    return _dataset(row, case, axis, unit, limits, closed=int(follower.is_closed), ended=ended)
+    data = _dataset(row, case, axis, unit, limits, closed=int(follower.is_closed), ended=ended)
+    return data.assign_attrs(answer="\n".join(sentences(data)))
 
 
 def _dataset(
@@ -107,6 +125,7 @@ def _dataset(
         "determinant_error": along([o.determinant_error for o in orbits], "error of the determinant"),
     }
     about = {
+        "title": "Branch of periodic motions",
         "study": STUDY,
         "case": case.to_toml(),
         "parameter": parameter,

@@ -6,17 +6,14 @@ import os
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rattlebox._util.narrow import present
 from rattlebox._util.progress import Report, progress_bar
-from rattlebox._util.quantities import quantity
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
 from rattlebox.studies.orbits.branch import Branch
-from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of
+from rattlebox.studies.orbits.branch_data import LONGEST_STEP, MOST_POINTS, corrector_of, start_value
 from rattlebox.studies.orbits.corrector import Point
 from rattlebox.studies.orbits.find import size_of
 from rattlebox.studies.orbits.follow import Follower
-from rattlebox.studies.orbits.forcing import number_at
 from rattlebox.studies.orbits.orbit import Orbit
 from rattlebox.studies.orbits.shooting import ReturnMap
 from rattlebox.studies.orbits.stored_branch import BranchFile, request_of
@@ -27,7 +24,7 @@ def continue_orbit(
     axis: str,
     limits: Sequence[Any],
     *,
-    points: int = 500,
+    points: int = MOST_POINTS,
     step: float = LONGEST_STEP,
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] = True,
@@ -119,25 +116,20 @@ def continue_orbit(
     corrector.returns = ReturnMap(
         corrector.returns.forcing, orbit.cycles, (axis,), phase=orbit.phase, mirrored=orbit.is_symmetric
     )
-    value = present(number_at(orbit.case, axis))
-    low, high = corrector.limits
-    if not low <= value <= high:
-        raise Hint(
-            f"the motion has {axis} = {quantity(value, unit, 6)}, which is not between the limits "
-            f"{quantity(low, unit, 6)} and {quantity(high, unit, 6)}",
-            "limits around it, or a motion between the limits",
-        )
+    value = start_value(orbit.case, axis, corrector, unit)
     scale = size_of(corrector.returns, orbit.state)
     starts = [None if scale is None else corrector.point(orbit.state, value, scale, side) for side in (-1.0, 1.0)]
     if starts[0] is None or starts[1] is None:
         raise Hint(f"the motion cannot be computed along {axis}", "rb.find_orbit(case) at another value")
     most, down, up = whole_number(points, "points", 1), starts[0], starts[1]
-    file = BranchFile(Follower(corrector), up, axis, unit)
+    file = BranchFile(Follower(corrector), up, axis, unit, {"points": most, "step": float(step)})
     if (complete := file.resume(store, request_of(orbit, axis, corrector.limits, most, step))) is not None:
         return complete
-    with progress_bar(progress, "points") as report:
-        _collect(file, down, most, report)
-    file.write()
+    try:
+        with progress_bar(progress, "points") as report:
+            _collect(file, down, most, report)
+    finally:  # also after Ctrl-C
+        file.write()
     return file.branch()
 
 

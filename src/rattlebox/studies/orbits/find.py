@@ -130,6 +130,11 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
     return orbit
 
 
+def state_at_zero(orbit: Orbit) -> Vector:
+    """Return the state of a periodic motion at the phase of the loads at t = 0."""
+    return _state_near(ReturnMap(Forcing.of(orbit.case), orbit.cycles), orbit)
+
+
 def size_of(returns: ReturnMap, state: Vector, periods: int | None = None) -> Vector | None:
     """Return the largest values of the components of a motion, (n,); None if it cannot be computed."""
     cycles = periods or returns.cycles

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
-from rattlebox.studies.orbits.branch import Branch
+from rattlebox.studies.orbits.branch import Branch, write_branch
 from rattlebox.studies.orbits.branch_data import data_of
 from rattlebox.studies.orbits.corrector import Point
 from rattlebox.studies.orbits.follow import Follower
@@ -36,6 +36,7 @@ class BranchFile:
     start: Point
     axis: str
     unit: str
+    options: dict[str, float]
     path: Path | None = None
     request: str = ""
     sides: tuple[list[Point], list[Point]] = field(default_factory=lambda: ([], []))
@@ -56,6 +57,7 @@ class BranchFile:
         self.finished = int(branch.data.attrs["finished_sides"])
         if self.finished == 2:
             return branch
+        self.follower.reasons[:] = json.loads(branch.data.attrs["reasons"])
         begin = int(branch.data.attrs["start"])
         self._restore(branch, range(begin + 1, len(branch)), 0)
         self._restore(branch, range(begin - 1, -1, -1), 1)
@@ -92,13 +94,14 @@ class BranchFile:
         after, before = self.sides
         row = [*before[::-1], self.start, *after]
         data = data_of(row, self.start.orbit.case, self.axis, self.unit, self.follower)
-        return Branch(
-            data.assign_attrs(request=self.request, finished_sides=self.finished, start=len(before))
-            if self.path
-            else data
-        )
+        about: dict[str, object] = {**self.options, "start": len(before)}
+        if self.path is not None:
+            # The reason of a side in progress is that it was stopped.
+            reasons = json.dumps(self.follower.reasons[: self.finished])
+            about |= {"request": self.request, "finished_sides": self.finished, "reasons": reasons}
+        return Branch(data.assign_attrs(about))
 
     def write(self) -> None:
         """Write the points so far."""
         if self.path is not None:
-            self.branch().save(self.path)
+            write_branch(self.branch().data, self.path, replace=True)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rattlebox._util.progress import progress_bar
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
-from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of, data_of
+from rattlebox.studies.orbits.branch_data import LONGEST_STEP, MOST_POINTS, corrector_of, data_of
 from rattlebox.studies.orbits.corrector import Corrector, Point
 from rattlebox.studies.orbits.find import size_of
 from rattlebox.studies.orbits.follow import Follower
@@ -36,7 +36,7 @@ def switched(
     value: float,
     limits: Sequence[Any],
     *,
-    points: int = 500,
+    points: int = MOST_POINTS,
     step: float = LONGEST_STEP,
     progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
