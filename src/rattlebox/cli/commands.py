@@ -220,7 +220,9 @@ def _check_results(path: Path) -> None:
 
 
 @app.command(cls=_Command, epilog="Example: rattlebox show out")
-def show(results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc.")]) -> None:
+def show(
+    results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc or branch.nc.")],
+) -> None:
     """Print the summary, notes and files of a run, or the progress, axes and results of a study."""
     _check_results(results)
     from rattlebox.cli.folder import is_run
@@ -238,7 +240,9 @@ def show(results: Annotated[Path, typer.Argument(help="Folder written by run or 
 @_command(example="plot out --kind energy -o energy.pdf")
 def plot(
     ctx: typer.Context,
-    results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc or run.vtkhdf.")],
+    results: Annotated[
+        Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc, run.vtkhdf or branch.nc.")
+    ],
     out: Annotated[
         Path | None,
         _out(
@@ -295,7 +299,7 @@ def report(
     results: Annotated[
         list[Path],
         typer.Argument(
-            help="Folder written by run or sweep, or a file run.nc. Several runs are compared with each other."
+            help="Folder written by run or sweep, or a file run.nc or branch.nc. Several runs are compared with each other."
         ),
     ],
     out: Annotated[

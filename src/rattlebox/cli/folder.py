@@ -26,6 +26,7 @@ from rattlebox.engines.checkpoint import Checkpoint, comparable_toml, is_checkpo
 from rattlebox.model.case import Case
 from rattlebox.model.differences import differences
 from rattlebox.results.netcdf import read_case
+from rattlebox.studies.run.stored import is_result_file
 
 RUN, SNAPSHOTS, CHECKPOINT = "run.nc", "run.vtkhdf", "run.checkpoint"
 
@@ -268,7 +269,9 @@ def _bare(text: str) -> str:
 def is_run(path: Path) -> bool:
     """Return whether a path is a file of a run, or the folder of one, finished or not."""
     if path.exists():
-        return path.is_file() or any((path / name).is_file() for name in (RUN, CHECKPOINT, SNAPSHOTS))
+        return (path.is_file() and not is_result_file(path)) or any(
+            (path / name).is_file() for name in (RUN, CHECKPOINT, SNAPSHOTS)
+        )
     return path.suffix in (".nc", ".vtkhdf")
 
 

@@ -22,6 +22,7 @@ from rattlebox.studies.run.stored import (
     computed,
     has_map,
     open_study,
+    partial_file,
     progress_of,
     report_damage,
     started_with,
@@ -41,8 +42,7 @@ def show_study(path: Path) -> None:
     # A design has trials, whose number is not known before; other studies have variants, whose number is.
     trials = count_trials(path)
     if trials is None:
-        state = progress_of(path)
-        progress, has_results, complete = _progress_text(state), state.done > 0, state.done == state.total
+        progress, has_results, complete = _state_of(path)
     else:
         progress, has_results, complete = f"{trials:,} trials", has_map(path), has_map(path)
     study = open_study(path) if has_results or trials is None else None
@@ -64,6 +64,17 @@ def show_study(path: Path) -> None:
     if not complete:
         line = f"  The study is not finished; repeat the command that started it{started_with(path)} to resume."
         console.print(line, soft_wrap=True)
+
+
+def _state_of(path: Path) -> tuple[str, bool, bool]:
+    """Return the progress of a study in words, whether it has results, and whether it is complete."""
+    if path.is_file():  # the file of a result
+        return "complete", True, True
+    state = progress_of(path)
+    complete = state.done == state.total
+    if state.is_whole:
+        return ("complete" if complete else "in progress"), complete or partial_file(path).is_file(), complete
+    return _progress_text(state), state.done > 0, complete
 
 
 def _progress_text(progress: Progress) -> str:

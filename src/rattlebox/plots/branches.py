@@ -6,8 +6,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+
+from rattlebox.studies.orbits.branch import Branch
+from rattlebox.studies.orbits.branch_words import special_kinds
 
 from .style import INK, SERIES_MARKERS, StyledFigure, figure_style, label, legend_above, pen, scaled, series_colour
 from .types import Size
@@ -15,8 +19,6 @@ from .types import Size
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
-
-    from rattlebox.studies.orbits.branch import Branch
 
 _WORDS = {
     "load.frequency": "Frequency of the load",
@@ -34,14 +36,18 @@ _MARKS = dict(
 
 
 def plot_branches(
-    branches: Branch | Mapping[str, Branch], *, point: str | None = None, log: bool = False, size: Size = "column"
+    branches: Branch | xarray.Dataset | Mapping[str, Branch | xarray.Dataset],
+    *,
+    point: str | None = None,
+    log: bool = False,
+    size: Size = "column",
 ) -> Figure:
     """Draw the amplitude of periodic motions over a parameter: stable ones solid, unstable ones dashed.
 
     Parameters
     ----------
     branches
-        Branch from `rattlebox.continue_orbit`, or several by name.
+        Branch from `rattlebox.continue_orbit`, the dataset of one from `rattlebox.open_study`, or several of them by name.
     point
         Point of the structure; default the first one.
     log
@@ -59,7 +65,8 @@ def plot_branches(
     ValueError
         If the branches have different parameters, or the size is unknown.
     """
-    named = dict(branches) if isinstance(branches, Mapping) else {"": branches}
+    given = {"": branches} if isinstance(branches, Branch | xarray.Dataset) else dict(branches)
+    named = {name: each if isinstance(each, Branch) else Branch(each) for name, each in given.items()}
     first = next(iter(named.values()))
     if any(branch.parameter != first.parameter for branch in named.values()):
         raise ValueError("all branches must have the same parameter")
@@ -106,7 +113,7 @@ def _draw_branch(
     """Draw the stretches of a branch and its special points."""
     stable, colour = branch.data.stable.values.astype(bool), series_colour(number)
     # A special point is a limit of stability: the line to each side of it is as its neighbour there.
-    limit = branch.data.special.values.astype(str) != ""
+    limit = special_kinds(branch.data) != ""
     solid = (stable[:-1] | limit[:-1]) & (stable[1:] | limit[1:])
     for value, style, width in ((True, "-", 1.2), (False, "--", 0.8)):
         for stretch in np.split(np.arange(solid.size), np.flatnonzero(np.diff(solid)) + 1):
@@ -117,7 +124,7 @@ def _draw_branch(
     axes.plot([], [], color=colour, lw=pen(1.2), label=title)
     if number == 0:
         axes.plot([], [], color=colour if not name else INK, lw=pen(0.8), ls="--", label="unstable")
-    special = branch.data.special.values.astype(str)
+    special = special_kinds(branch.data)
     for k in np.flatnonzero(special != ""):
         kind = str(special[k])
         style_of = {"marker": _MARKS.get(kind, SERIES_MARKERS[0]), "color": INK, "ls": "", "mfc": "white"}

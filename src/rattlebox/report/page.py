@@ -18,6 +18,7 @@ from rattlebox._util.templates import render as fill
 from rattlebox._util.text import printable
 from rattlebox.model.case import Case
 from rattlebox.plots.case import plot_case
+from rattlebox.studies.orbits.branch import Branch
 
 from .inputs import input_tables
 from .kinds import kind_of
@@ -74,6 +75,8 @@ class Section:
 
 def section(result: Any, title: str, case: Case | None, question: str | None) -> Section:
     """Return the section of the page about a result."""
+    if isinstance(result, Branch):
+        result = result.data
     kind = kind_of(result)
     if case is not None and hasattr(result, "assign_attrs") and not isinstance(result.attrs.get("case"), str):
         result = result.assign_attrs(case=case.to_toml())

@@ -41,13 +41,18 @@ class Limit(NamedTuple):
 
 
 class Call(NamedTuple):
-    """Call that computes a result again."""
+    """Call that computes a result again.
+
+    `case` is the argument of the function that is made from the case, `study` what stands for it in a study file.
+    """
 
     function: str
     arguments: Mapping[str, Any] = {}
     kind: str = ""
     remarks: tuple[str, ...] = ()
     first: str = ""
+    case: str = "case"
+    study: Mapping[str, Any] = {}
 
 
 def nothing(result: object) -> tuple[()]:

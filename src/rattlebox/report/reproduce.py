@@ -68,7 +68,7 @@ def _script(call: Call, case: str) -> str:
     positional = [call.first] if call.first else []
     if case:
         lines.append(f'case = rb.Case.from_file("{case}")')
-        positional.append("case")
+        positional.append(call.case)
     named = "".join(f"\n    {name}={_literal(value)}," for name, value in call.arguments.items())
     arguments = ", ".join(positional)
     if named or call.first:
@@ -93,6 +93,6 @@ def _comparison_script(names: Mapping[str, str], options: Mapping[str, Any]) -> 
 def _study_file(call: Call, case: str) -> str:
     import tomli_w
 
-    text = tomli_w.dumps({"kind": call.kind, **call.arguments, "case": {"file": case}})
+    text = tomli_w.dumps({"kind": call.kind, **call.arguments, **call.study, "case": {"file": case}})
     # Lists of plain values on one line each.
     return _LIST.sub(lambda match: "[" + ", ".join(part.strip() for part in match[1].split(",\n") if part) + "]", text)

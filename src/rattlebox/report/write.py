@@ -36,8 +36,9 @@ def write_report(
     ----------
     result
         A run, the result of `rb.compare`, the dataset of a study (`rb.sweep`, `rb.frequency_response`, `rb.loss_map`,
-        `rb.damping_curve`, `rb.design`, ..., or `rb.open_study`, also of an unfinished study), or a mapping of several of
-        them by name. Runs in a mapping, and damping curves in a mapping, are compared with each other.
+        `rb.damping_curve`, `rb.design`, ..., or `rb.open_study`, also of an unfinished study), a branch of periodic motions,
+        or a mapping of several of them by name. Runs in a mapping, and damping curves in a mapping, are compared with
+        each other.
     path
         File to write, .html. An earlier report is replaced; any other file, and a report that was edited, is not.
     title

@@ -47,6 +47,7 @@ contact = { kind = "tsuji", restitution = 0.6 }
 kind = "newton"
 """,
 }
+CASES["forced.toml"] = CASES["rig.toml"].replace('"1 s"', '"3 s"').replace('"30 Hz"', '"33 Hz"')
 AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
 QUIET: dict[str, Any] = {"progress": False}
 STUDIES: dict[str, tuple[str, str, Callable[[rb.Case], xr.Dataset]]] = {
@@ -101,6 +102,15 @@ STUDIES: dict[str, tuple[str, str, Callable[[rb.Case], xr.Dataset]]] = {
             frequencies=["25 Hz", "60 Hz"],
             cycles=(10, 10),
             **QUIET,
+        ),
+    ),
+    "continue_orbit": (
+        "forced.toml",
+        'axis = "load.frequency"\nperiod = 1\nstep = 0.05\nlimits = { from = "31 Hz", to = "34 Hz" }',
+        lambda case: (
+            rb.continue_orbit(
+                rb.find_orbit(case, period=1), "load.frequency", ("31 Hz", "34 Hz"), step=0.05, **QUIET
+            ).data
         ),
     ),
     "design": (
@@ -249,6 +259,13 @@ def test_stopped_study(kind: str, after: int, progress: str, run_cli: RunCli) ->
         (study("loss_map").replace("shaken", "rig"), "requires a case on a shaker"),
         (study("design").replace('"max"', '"most"'), "objective"),
         (study("design").replace('"damper.gap"', '"damper.gpa"'), "did you mean 'gap'"),
+        (study("continue_orbit").replace("axis", "axes"), "did you mean 'axis'"),
+        (study("continue_orbit").replace('"load.frequency"', '"load.frequenc"'), "did you mean 'frequency'"),
+        (study("continue_orbit").replace('"31 Hz"', '"31 kg"'), "not a mass"),
+        (study("continue_orbit").replace('"31 Hz"', '"33.5 Hz"'), "not between the limits"),
+        (study("continue_orbit").replace("forced", "shaken"), "no 'loads'"),
+        (study("continue_orbit").replace("period = 1", "period = 0"), "period = 0"),
+        (study("continue_orbit").replace("period", 'near = "none.nc"\nperiod'), "no file none.nc"),
         (study("sensitivity").replace("n = 8", "n = 12"), "a power of two"),
         (study("sensitivity").replace("reduced_loss", "reduced_los"), "did you mean 'reduced_loss'"),
     ],

@@ -80,6 +80,11 @@ def on_shaker() -> rb.Case:
     )
 
 
+def in_step() -> rb.Case:
+    """Return a case whose steady motion repeats each cycle, with hard impacts."""
+    return case(load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"), method=rb.Newton(), duration="3 s")
+
+
 def in_a_tuned_mass() -> rb.Case:
     """Return a case with a ball in a box on a spring."""
     box = rb.TunedMass(mass="20 g", frequency="30 Hz", damping_ratio=0.02)
@@ -144,6 +149,9 @@ def result_of(name: str) -> Any:
             ["700 rpm", "900 rpm"],
             amplitudes=["0.6 mm", "2 mm"],
             **quiet,
+        ),
+        "branch": lambda: rb.continue_orbit(
+            rb.find_orbit(in_step()), "load.frequency", ("31.5 Hz", "34 Hz"), step=0.05, **quiet
         ),
         "damping_curve": lambda: rb.damping_curve(free(), ["0.2 mm", "0.4 mm"], packings=4, **quiet),
         "damping curves": lambda: dict.fromkeys(("a", "b"), result_of("damping_curve")),
@@ -222,6 +230,7 @@ KINDS = {
     "lyapunov": "Is the motion of an oscillator",
     "loss_map": "How much energy does a steel ball",
     "stability_lobes": "Up to which depth of cut does an oscillator of 3 kg",
+    "branch": "Which periodic motions does an oscillator of 1 kg at 31.83 Hz with a steel ball",
     "damping_curve": "Which damping ratio does mode 1 (50 Hz)",
     "damping curves": "of an oscillator of 3 kg at 50 Hz with a and b have at amplitudes",
     "design of damping": "Which damper ball material and damper contact restitution give the largest damping ratio",
@@ -292,6 +301,34 @@ def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, m
         from rattlebox.studies.study_file import read_study
 
         assert read_study("study.toml").run(progress=False).equals(result)
+
+
+def test_the_files_of_a_branch_follow_it_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Script and study file begin at the state of the first motion, and find the same special points and ends."""
+    from rattlebox.studies.study_file import read_study
+
+    branch, page = result_of("branch"), page_of("branch")
+    monkeypatch.setattr(rb, "write_report", lambda result, path: None)
+    monkeypatch.chdir(tmp_path)
+    for file, content in page.downloads.items():
+        Path(file).write_text(content, encoding="utf-8")
+    names: dict[str, Any] = {}
+    exec(page.downloads["script.py"], names)
+    for again in (names["result"], rb.Branch(read_study("study.toml").run(progress=False))):
+        assert [point.kind for point in again.specials] == [point.kind for point in branch.specials] == ["pitchfork"]
+        assert again.specials[0].value == pytest.approx(branch.specials[0].value, rel=1e-9)
+        for end in (np.min, np.max):
+            assert end(again.data.value.values) == pytest.approx(end(branch.data.value.values), rel=1e-12)
+    assert "Stable from 32.08 to 34 Hz with 2 impacts a cycle." in page.text
+
+
+def test_a_branch_that_begins_at_another_one_claims_no_script(tmp_path: Path) -> None:
+    """The motions without symmetry begin at a pitchfork, from which no case starts: the page states that it has no call."""
+    branch = result_of("branch")
+    crooked = branch.switch(branch.specials[0], points=12, progress=False)
+    page = Page(rb.write_report(crooked, tmp_path / "report.html"))
+    assert "The call of the study is not part of its result." in page.text and "script.py" not in page.downloads
+    assert "not symmetric" in page.text
 
 
 @pytest.mark.parametrize("name", ["frequency_response", "lyapunov of pairs", "loss_map", "sensitivity with options"])

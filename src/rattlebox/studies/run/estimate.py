@@ -62,6 +62,8 @@ class Estimate:
         Number of workers.
     factor
         Factor within which the processor time is expected.
+    unit
+        Word for a run: "run", or "point" of a branch.
     """
 
     trials: int
@@ -70,11 +72,12 @@ class Estimate:
     wall_time: float
     workers: int
     factor: float = 1.5
+    unit: str = "run"
 
     def __str__(self) -> str:
         trials = f"{self.trials:,} trials, " if self.trials else ""
         return (
-            f"{trials}{self.runs:,} run{'s' * (self.runs != 1)}: about {duration(self.cpu_time)} of processor time "
+            f"{trials}{self.runs:,} {self.unit}{'s' * (self.runs != 1)}: about {duration(self.cpu_time)} of processor time "
             f"(within a factor of {self.factor:.1f}), {duration(self.wall_time)} with {self.workers} "
             f"worker{'s' * (self.workers != 1)}"
         )

@@ -42,10 +42,13 @@ from rattlebox.studies.run.stored import (
     FORMAT,
     KIND,
     MAP,
+    PROGRESS,
+    WHOLE,
     Chunks,
     check_marker,
     has_map,
     open_runs,
+    partial_file,
     report_damage,
     study_marker,
 )
@@ -180,10 +183,9 @@ class MemoryResult:
 JOURNAL = "trials.journal"
 """File with the trials of a design search, which has no grid of runs."""
 
-_PROGRESS = "progress"
 _MAP_KIND = "Rattlebox map"
 
-RESERVED = _PROGRESS, MAP, MARKER
+RESERVED = PROGRESS, MAP, MARKER
 """Names in a store that are not outputs."""
 
 _PARTIAL = re.compile(r"(\d+|c|zarr)\.[0-9a-f]{32}\.partial")  # temporary files of Zarr
@@ -229,7 +231,7 @@ class Store:
             return {}
 
     def _state_file(self, block: int) -> Path:
-        return self.path / _PROGRESS / f"state-{block}.npz"
+        return self.path / PROGRESS / f"state-{block}.npz"
 
     def write(self, block: int, values: Mapping[str, NDArray[Any]], stale: Sequence[int] = ()) -> None:
         """Write the outputs of a block to the disk, and before them its further arrays, the state at its end."""
@@ -258,7 +260,7 @@ class Store:
         return open_runs(self.path, study_marker(self.path))
 
     def _open(self, blocks: Blocks) -> None:
-        if (self.path / _PROGRESS / JOURNAL).exists():
+        if (self.path / PROGRESS / JOURNAL).exists():
             raise StoreError(f"{self.path} holds a design", "another folder, or remove this one")
         marker = read_marker(self.path)
         if marker and marker.complete:
@@ -364,7 +366,7 @@ def exclusive_writer(path: Path) -> Iterator[Path]:
 
     from rattlebox import __version__
 
-    progress = path / _PROGRESS
+    progress = path / PROGRESS
     if path.exists() and not path.is_dir():
         raise StoreError(f"{path} is a file; a study must be a folder", "another name, such as study.zarr")
     with _explain_disk_errors(path), report_damage(path):
@@ -437,14 +439,27 @@ def save_finished(
 
     `manifest`: description that distinguishes the study from others, in JSON types.
     """
-    if path is not None:
-        from rattlebox import __version__
-
-        about = {**manifest, "study": kind, "version": __version__, "core": ""}
-        plan = Plan((), (), {"finished": ((), np.dtype(float), {})}, about=about)
-        with Store(path, plan, Blocks((), ())) as store:
-            store.write(0, {"finished": np.ones(1)})
+    with open_whole(kind, path, manifest):
+        pass
     return save_result(result, kind, path)
+
+
+@contextmanager
+def open_whole(kind: str, path: str | os.PathLike[str] | None, manifest: Mapping[str, object]) -> Iterator[Path | None]:
+    """Open the store of a study that has no runs; yield the file for its result so far, None without a store.
+
+    The study is finished at the end of the block.
+    """
+    if path is None:
+        yield None
+        return
+    from rattlebox import __version__
+
+    about = {**manifest, "study": kind, "version": __version__, "core": ""}
+    plan = Plan((), (), {WHOLE: ((), np.dtype(float), {})}, about=about)
+    with Store(path, plan, Blocks((), ())) as store:
+        yield partial_file(path)
+        store.write(0, {WHOLE: np.ones(1)})
 
 
 def add_attributes(path: str | os.PathLike[str], attributes: Mapping[str, str]) -> None:

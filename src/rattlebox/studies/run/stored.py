@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
-from rattlebox._util.exceptions import RattleboxError, StoreError
+from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder, require_readable
+from rattlebox._util.exceptions import DataError, RattleboxError, StoreError
 from rattlebox._util.flags import type_flags
 from rattlebox._util.owned_folder import DamagedError, Marker, damaged_files, read_marker
 from rattlebox.model.errors import Hint
@@ -39,6 +39,12 @@ KIND = "Rattlebox study"
 MAP = "map"
 """Subfolder of a store for the result of the study, if it differs from the runs."""
 
+PROGRESS = "progress"
+"""Subfolder of a store with the lock and the state of a study that is not finished."""
+
+WHOLE = "finished"
+"""Only output of a study without runs, which is computed as a whole."""
+
 _DAMAGE_HINT = "a copy of it, or remove it and give its command again"
 
 
@@ -48,24 +54,63 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     Parameters
     ----------
     path
-        Folder given with `store=` or `rattlebox sweep -o`.
+        Folder given with `store=` or `rattlebox sweep -o`, or a netCDF file of a result, such as one of `Branch.save`.
 
     Returns
     -------
     xarray.Dataset
         Result of the study, read from disk when values are accessed. Before the study has finished: its runs, in which
-        missing variants are NaN, or the smallest number of an integer variable.
+        missing variants are NaN, or the smallest number of an integer variable; of a branch its points so far.
 
     Raises
     ------
     StoreError
         If there is no study, or it is damaged.
     """
+    if Path(path).is_file() or Path(path).suffix == ".nc":
+        return open_file(path)
     if has_map(path):
         return _open_map(Path(path) / MAP)
+    if (partial := partial_file(path)).is_file():
+        return open_file(partial)
     with report_damage(path):
         marker = study_marker(path)
         return open_runs(Path(path), marker).assign_attrs(marker.about.get("added", {}))
+
+
+def partial_file(path: str | os.PathLike[str]) -> Path:
+    """Return the file in a store that holds the result so far of a study without runs."""
+    return Path(path) / PROGRESS / "so_far.nc"
+
+
+def is_result_file(path: str | os.PathLike[str]) -> bool:
+    """Return whether a path is a netCDF file with the result of a study."""
+    import h5netcdf  # type: ignore[import-untyped]
+
+    file = Path(path)
+    if file.suffix != ".nc" or not file.is_file():
+        return False
+    try:
+        with h5netcdf.File(file, "r") as content:
+            return "study" in content.attrs
+    except HDF5_ERRORS:
+        return False
+
+
+def open_file(path: str | os.PathLike[str]) -> xr.Dataset:
+    """Read the result of a study from a netCDF file."""
+    import xarray
+
+    require_readable(Path(path))
+    try:
+        found: xr.Dataset = type_flags(xarray.load_dataset(path, engine="h5netcdf"))
+    except HDF5_ERRORS as error:
+        raise DataError(f"{path} cannot be read: {error!s:.80}", "a file with the result of a study") from None
+    if "study" not in found.attrs:
+        raise DataError(
+            f"{path} is not the result of a study", "a file that Branch.save wrote, or the folder of a study"
+        )
+    return found
 
 
 def has_map(path: str | os.PathLike[str]) -> bool:
@@ -85,6 +130,8 @@ class Progress:
     blocks: Blocks
     finished: NDArray[np.bool_]
     last: float
+    is_whole: bool
+    """Whether the study has no runs."""
 
     @property
     def done(self) -> int:
@@ -103,10 +150,11 @@ def progress_of(path: str | os.PathLike[str]) -> Progress:
         marker = study_marker(path)
         chunks = Chunks(Path(path), marker)
         finished = chunks.finished()
-        (name, *_) = marker.about["manifest"]["outputs"]
+        outputs = marker.about["manifest"]["outputs"]
+        (name, *_) = outputs
         files = [Path(path) / chunks.key(name, block) for block in np.flatnonzero(finished).tolist()]
         last = max((file.stat().st_mtime for file in files), default=0.0)
-        return Progress(chunks.blocks, finished, last)
+        return Progress(chunks.blocks, finished, last, list(outputs) == [WHOLE])
 
 
 # ---- markers
