@@ -56,6 +56,7 @@ PAGES = (
     "how-to/paraview",
     "how-to/real_time",
     "how-to/particle_tuned_mass",
+    "how-to/periodic_motions",
     "how-to/report",
     "how-to/results",
     "how-to/sensitivity",
