@@ -6,6 +6,7 @@ Earlier tests notched linear structures only, whose apparent mass does not chang
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,70 @@ def test_without_nonlinearity_it_is_the_linear_notch(damped: bool) -> None:
     exact = notch(PROFILE, linear.replaced({"dampers": ()}), force=LIMIT)
     assert found.depth == pytest.approx(exact.depth, abs=0.1)
     assert found.frequency == pytest.approx(exact.frequency, rel=0.01)
+
+
+def bed(**changes: Any) -> rb.ParticleDamper:
+    """Return a box with spheres that rest on its floor."""
+    parts: dict[str, Any] = {
+        "particles": rb.Particles(material="steel", diameter="8 mm", count=8),
+        "cavity": rb.Box(size=("40 mm", "30 mm", "20 mm")),
+        "contact": rb.Tsuji(restitution=0.5),
+        "friction": 0.3,
+        "packing": rb.Settled(seed=2),
+        "softening": 1000,
+        "direction": "x",
+    }
+    return rb.ParticleDamper(**(parts | changes))
+
+
+def test_particles_that_touch_nothing() -> None:
+    """A sphere that floats in its box changes nothing.
+
+    The tests had impact dampers alone: none saw that a case of particles kept its method without them and was refused.
+    """
+    floating = bed(
+        particles=rb.Particles(material="steel", diameter="1 mm", count=1),
+        packing=rb.Positions(positions=[[0.0, 0.0, 0.0]]),
+        gravity=(0, 0, 0),
+    )
+    structure = rb.SDOF(mass="3 kg", frequency="70 Hz", damping_ratio=0.08)
+    damped = rb.Case(structure=structure, damper=floating, duration="1 s")
+    profile = [("60 Hz", "0.5 g"), ("80 Hz", "0.5 g")]
+    found = rb.notch_with_dampers(profile, damped, force="60 N", cycles=(30, 5), progress=False)
+    exact = notch(profile, damped.without_dampers(), force="60 N")
+    assert found.levels.attrs["difference"] < 0.1
+    assert found.depth == pytest.approx(exact.depth, abs=0.1) and exact.depth > 2
+
+
+def test_particles_keep_the_limit() -> None:
+    """With a bed that slides, the level is notched less than without it, and its force is at the limit at the resonance."""
+    structure = rb.SDOF(mass="0.2 kg", frequency="50 Hz", damping_ratio=0.02)
+    damped = rb.Case(structure=structure, damper=bed(), duration="1 s")
+    profile = [("44 Hz", "1 g"), ("54 Hz", "1 g")]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # few rounds
+        found = rb.notch_with_dampers(profile, damped, force="8 N", cycles=(25, 15), rounds=4, progress=False)
+    bare = notch(profile, damped.without_dampers(), force="8 N")
+    assert 0 < found.depth < bare.depth - 1
+    levels = found.levels
+    worst = int(np.argmin(levels.notch.values))
+    frequency = float(levels.frequency[worst])
+    base = rb.Harmonic(amplitude=float(levels.after[worst]), frequency=frequency)
+    run = rb.simulate(
+        damped.replaced({"base": base, "duration": 40 / frequency, "output": rb.Output(rate=64 * frequency)})
+    )
+    weights = trapezoid_weights(run.arrays.time, run.arrays.time[-1] - 15 / frequency)
+    force = abs(first_harmonic(run.arrays.time, run.along("x").interface_force.values, weights, frequency))
+    assert force == pytest.approx(8, rel=0.1)
+
+
+def test_particles_under_random_vibration() -> None:
+    """The rounds run and reach the limit of the RMS force, since a level is chosen by the force that a bed has at it."""
+    structure = rb.SDOF(mass="0.2 kg", frequency="50 Hz", damping_ratio=0.02)
+    damped = rb.Case(structure=structure, damper=bed(), duration="1 s")
+    shaking = rb.Random([("20 Hz", "0.01 g^2/Hz"), ("100 Hz", "0.01 g^2/Hz")], "4 s", seed=5)
+    found = rb.notch_with_dampers(shaking, damped, force_rms="4 N", tolerance=20, rounds=3, progress=False)
+    assert found.levels.attrs["reached"] == pytest.approx(1.0, abs=0.3)
 
 
 def test_random_vibration() -> None:

@@ -79,7 +79,7 @@ def apparent_mass(case: Case, frequencies: ArrayLike, direction: Any = None) -> 
     if case.dampers:
         raise Hint(
             "the case has a damper, whose force is not proportional to the motion",
-            "the same case without it, or analysis.transfer_function of a run, base_acceleration and interface_force",
+            "case.without_dampers(), or analysis.transfer_function of a run, base_acceleration and interface_force",
             ["dampers"],
         )
     refuse_stops(case.stops, "the force of a stop is not proportional to the motion", "the same case without stops")

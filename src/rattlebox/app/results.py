@@ -239,7 +239,7 @@ def map_script(study: xr.Dataset, drawn: str) -> str:
     if drawn != measure:
         lines += [
             'others = {path: values for path, values in axes.items() if not path.startswith("damper")}',
-            'without = case.model_copy(update={"dampers": ()})',
+            "without = case.without_dampers()",
             f'bare = rb.sweep(without, others or {{"duration": [case.duration]}}, {measure!r})',
             f"study[{drawn!r}] = study[{measure!r}] / bare[{measure!r}].squeeze(drop=True)",
         ]

@@ -114,7 +114,7 @@ def save(report: Report) -> str:
 def _view(result: rb.Run, case: rb.Case, compare: bool) -> bytes:
     bare = None
     if compare and case.dampers and case.modes.decay.size and "impacts" in result.groups:
-        bare = rb.simulate(case.model_copy(update={"dampers": ()}), progress=False)
+        bare = rb.simulate(case.without_dampers(), progress=False)
     return view_of_run(result, bare)
 
 
@@ -131,7 +131,7 @@ def sweep(
 
     if compare:  # first, so that the map shows the ratio while it fills
         varied = {path: values for path, values in spaced.items() if not path.startswith("damper")}
-        without = case.model_copy(update={"dampers": ()})
+        without = case.without_dampers()
         varied = varied or {"duration": [case.duration]}
         compute(without, varied, store.with_suffix(".bare.zarr"), "variants without damper")
     compute(case, spaced, store, "variants")

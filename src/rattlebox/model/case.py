@@ -652,6 +652,27 @@ class Case(Part):
         """
         return replaced(self, values)
 
+    def without_dampers(self) -> Case:
+        """Return the case of the same structure without its dampers, to compare with.
+
+        Tuned masses and stops stay.
+
+        Returns
+        -------
+        Case
+            The new case. A method for particles is replaced by the default method without them.
+
+        Raises
+        ------
+        CaseError
+            If the structure needs the dampers, such as for the directions of two motions of its base.
+        """
+        changes: dict[str, object] = {"dampers": ()}
+        if self.particle_dampers:
+            output = self.output.model_copy(update={"snapshots": None, "walls": False})
+            changes |= {"method": EventDriven(), "output": output}
+        return self.replaced(changes)
+
     def to_toml(self) -> str:
         """Return the text of a case file of this case, with the full paths of other files.
 

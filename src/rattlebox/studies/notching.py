@@ -136,7 +136,7 @@ def notch_with_dampers(
         raise Hint(f"tolerance = {tolerance!r:.40}: a number of decibels above zero is needed", "0.5", ["tolerance"])
     test = profile if isinstance(profile, Signal) else SineTable(profile)
     run = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
-    first = notch(profile, case.replaced({"dampers": ()}), **limits)  # raises if the limit does not fit
+    first = notch(profile, case.without_dampers(), **limits)  # raises if the limit does not fit
     rig = (
         _RandomRig(case, test, run, resolution) if test.is_density else _SineRig(case, test, run, whole_cycles(cycles))
     )

@@ -369,3 +369,30 @@ def test_wrong_groups_are_refused(fields: dict[str, Any], message: str) -> None:
     with pytest.raises(rb.RattleboxError) as caught:
         case(damper(**fields))
     assert message in str(caught.value)
+
+
+def test_a_case_without_its_dampers_runs() -> None:
+    """The structure alone is computed without particles, in a run and a sweep, and its tuned masses and loads stay.
+
+    A copy with an empty list of dampers kept the method and the snapshots of particles; only balls were compared so.
+    """
+    bed = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="6 mm", count=3),
+        cavity=rb.Box(size=("40 mm", "40 mm", "25 mm")),
+        contact=rb.Tsuji(restitution=0.6),
+        softening=100,
+    )
+    structure = rb.SDOF(mass="1 kg", frequency="60 Hz", damping_ratio=0.02)
+    tuned = rb.TunedMass(mass="50 g", frequency="58 Hz", damping_ratio=0.1)
+    load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")
+    rest = {"structure": structure, "tuned_mass": tuned, "load": load, "duration": "0.1 s"}
+    case = rb.Case(damper=bed, output=rb.Output(snapshots=4, walls=True), **rest)
+    alone = case.without_dampers()
+    assert alone == rb.Case(**rest)
+    assert rb.simulate(alone).ok
+    assert rb.sweep(alone, {"structure.mass": ["1 kg", "2 kg"]}, "peak", progress=False).peak.size == 2
+    ball = rb.ImpactDamper(
+        ball=rb.Sphere(diameter="20 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    )
+    hard = rb.Case(damper=ball, method=rb.Newton(), **rest)
+    assert hard.without_dampers() == rb.Case(method=rb.Newton(), **rest)
