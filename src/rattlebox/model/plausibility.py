@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.quantities import amount
+
 from .dampers import ImpactDamper
 from .elementwise import Vector
 from .harmonics import Harmonic, SineSweep
@@ -15,6 +17,8 @@ from .recorded import Record
 from .shocks import Shock
 from .signals import Sampled, Signal
 from .space import Direction, unit_vector
+from .structures import Shaker
+from .units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from .case import Case
@@ -35,7 +39,8 @@ _BANDS = 2048
 _LARGEST_CHANGE = 0.02  # of the response of a mode
 _LONGEST_RECORD = 100.0  # in durations of the run
 _PEAKS = {"m/s^2": (1e-5, 1e5, 100.0), "m": (1e-9, 10.0, 1.0)}
-"""Least and largest plausible peak of a record of the base, the latter also if its unit is assumed."""
+"""Least and largest plausible peak of a motion of the base, the latter also if the unit of a record is assumed."""
+_FASTEST_SHAKER = 10.0  # m/s; shakers reach 3 m/s
 _PERPENDICULAR = 1e-6
 """Cosine of an angle, or excitation of a mode relative to the largest one, below which it counts as zero."""
 _SMALLEST_FILL_RATIO = 1e-4
@@ -55,7 +60,8 @@ def plausibility_notes(case: Case, *, signals: bool = True) -> tuple[str, ...]:
         for note in damper.interior.notes(float(damper.contents.radius.min()))
         if note.startswith("warning: ")
     )
-    warnings = (*_check_structure(case), *(_check_signals(case) if signals else ()), *dampers, *room)
+    loads = (*_check_amplitudes(case), *(_check_signals(case) if signals else ()))
+    warnings = (*_check_structure(case), *loads, *dampers, *room)
     about_structure = (*case.structure.notes(), *(case.structure.base_notes() if case.base else ()))
     notes = (*(f"note: {note}" for note in about_structure), *_note_assumptions(case))
     return (*notes, *(f"warning: {warning}" for warning in warnings))
@@ -80,6 +86,36 @@ def _note_assumptions(case: Case) -> Iterator[str]:
         yield from (
             f"note: {name}: {note}" for note in (*damper.packing.notes(), *room) if not note.startswith("warning: ")
         )
+
+
+def _check_amplitudes(case: Case) -> Iterator[str]:
+    """Yield a warning for each motion of the base or of a shaker whose amplitude suggests another unit."""
+    for name, signal in _named_signals(case):
+        amplitude = getattr(signal, "amplitude", None)
+        if amplitude is None or signal.unit not in _PEAKS:
+            continue
+        what, most = "", _PEAKS["m/s^2"][1]
+        if isinstance(signal, Harmonic) and signal.unit == "m":
+            what = unusual_motion(amplitude, signal.frequency)
+        elif abs(amplitude) > most:
+            what = f"; usual are up to {amount(most, 'm/s^2')}; a number without a unit is in m/s^2 here"
+        if what:
+            example = '"15 mm" or "15 g"' if isinstance(case.structure, Shaker) else '"15 g"'
+            yield f"{name} is {signal.words()}{what}; try: the amplitude with its unit, such as {example}"
+
+
+def unusual_motion(amplitude: float, frequency: float) -> str:
+    """Return what is unusual of a harmonic displacement [m] at a frequency [Hz]; "" if it is usual.
+
+    A millimetre that is read as a metre is no large length at a low frequency, but a large speed at usual ones.
+    """
+    omega, size, most = 2 * np.pi * frequency, abs(amplitude), _PEAKS["m"][1]
+    if size <= most and omega * size <= _FASTEST_SHAKER:
+        return ""
+    return (
+        f", {amount(omega * size, 'm/s')} and {omega**2 * size / STANDARD_GRAVITY:.3g} g; usual are up to"
+        f" {amount(most, 'm')} and {amount(_FASTEST_SHAKER, 'm/s')}; a number without a unit is in m here"
+    )
 
 
 def _check_peaks(case: Case) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -18,6 +19,7 @@ from rattlebox.analysis.damping_curve import band_edges, damping_over_amplitude,
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
+from rattlebox.model.plausibility import unusual_motion
 from rattlebox.model.stops import refuse_stops
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
@@ -282,13 +284,20 @@ def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = No
 
     if isinstance(amplitudes, Spaced):
         first, last = (displacement(end) for end in (amplitudes.start, amplitudes.stop))
-        return read_amplitudes(amplitudes.values(first, last).tolist())
+        return read_amplitudes(amplitudes.values(first, last).tolist(), omega)
     if isinstance(amplitudes, str) or not np.ndim(np.asarray(amplitudes, dtype=object)):
         raise Hint("at least two amplitudes are required", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]')
     levels = np.array([displacement(amplitude) for amplitude in amplitudes])
     if levels.size < 2 or levels[0] <= 0 or np.any(np.diff(levels) <= 0):
         raise Hint(
             "amplitudes must be at least two, above zero and rising", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]'
+        )
+    hertz = math.nan if omega is None else omega / (2 * math.pi)
+    if omega is not None and (what := unusual_motion(levels[-1], hertz)):
+        warnings.warn(
+            f"amplitudes reach {quantity(levels[-1], 'm')} at {quantity(hertz, 'Hz')}{what}; try: amplitudes with their"
+            ' unit, such as "0.5 mm" or "2 g"',
+            stacklevel=2,
         )
     return levels
 

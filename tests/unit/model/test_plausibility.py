@@ -26,6 +26,49 @@ def test_usual_cases_have_no_notes():
     assert notes() == notes(rb.Fixed()) == notes(rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10))) == ()
 
 
+@pytest.mark.parametrize(
+    ("amplitude", "frequency", "noted"),
+    [
+        (15.0, "50 Hz", "a harmonic displacement of 15 m at 50 Hz, 4712 m/s and 1.51e+05 g"),
+        (1.5, "50 Hz", "1.51e+04 g"),
+        (0.4, "8 Hz", "20.11 m/s and 103 g"),
+        (2e5, "50 Hz", "2.01e+09 g"),
+        ("15 g", "50 Hz", ""),
+        ("15 mm", "50 Hz", ""),
+        ("2 m", "0.2 Hz", ""),
+        ("2000 g", "2 kHz", ""),
+    ],
+)
+def test_amplitudes_of_shakers_in_metres_are_noted(amplitude, frequency, noted):
+    """A run warns of a displacement that no shaker reaches: 15 for 15 g or 15 mm is 15 m. With a unit there is no warning.
+
+    Only records were tested for their peaks, so that a number without a unit for a motion passed without a word.
+    """
+    shaker = rb.Shaker(motion=rb.Harmonic(amplitude=amplitude, frequency=frequency))
+    result = plausibility_notes(rb.Case(structure=shaker, damper=rb.ImpactDamper(**BALL), duration="1 ms"))
+    assert len(result) == bool(noted)
+    assert all(
+        note.startswith("warning: motion is a harmonic displacement") and noted in note and '"15 mm" or "15 g"' in note
+        for note in result
+    )
+
+
+@pytest.mark.parametrize("kind", [rb.Harmonic, rb.HalfSine, rb.Sawtooth, rb.SineSweep])
+def test_accelerations_of_the_base_that_are_too_large_are_noted(kind):
+    """Motions of the base and of a shaker above 10 000 g have a warning with the unit of a bare number."""
+    fields = {
+        rb.Harmonic: {"frequency": 50},
+        rb.SineSweep: {"first_frequency": 5, "last_frequency": 50, "sweep_rate": "9 oct/s"},
+    }
+    motion = kind(amplitude=3e5, **fields.get(kind, {"duration": "11 ms"}))
+    beam = rb.SDOF(mass=20, stiffness=8e4)
+    (note,) = [each for each in plausibility_notes(rb.Case(structure=beam, base=motion, duration=9)) if "usual" in each]
+    assert note.startswith("warning: base is a") and "up to 100000 m/s^2" in note
+    assert note.endswith('a number without a unit is in m/s^2 here; try: the amplitude with its unit, such as "15 g"')
+    usual = rb.Case(structure=beam, base=motion.model_copy(update={"amplitude": 3e3}), duration=9)
+    assert not any("usual" in each for each in plausibility_notes(usual))
+
+
 def test_sizes_in_metres_are_noted():
     """A run warns of a ball or a gap of more than a metre, with the likely reason."""
     (wide, heavy) = notes(ball=rb.Sphere(radius=3.317, material="steel"))

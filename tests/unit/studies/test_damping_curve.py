@@ -1,6 +1,7 @@
 """The three ways to a damping curve agree, with each other and with what is known."""
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -318,3 +319,19 @@ def test_amplitudes_may_be_accelerations() -> None:
         for more in ({}, {"amplitudes": place[:2]})
     ]
     np.testing.assert_allclose(designs[0].damping_ratio, designs[1].damping_ratio, rtol=1e-6)
+
+
+def test_amplitudes_in_metres_are_noted() -> None:
+    """Bare numbers for g or mm are metres, and metres at a natural frequency have a warning; with a unit it is gone.
+
+    Earlier tests wrote all amplitudes with a unit or in small numbers.
+    """
+    from rattlebox.studies.damping_curve import read_amplitudes
+
+    for levels in ([0.5, 1, 2], rb.geomspace(0.5, 2, 3)):
+        with pytest.warns(UserWarning, match=r"amplitudes reach 2.* at 50.00 Hz, .* and 2.01e\+04 g; .* is in m here"):
+            read_amplitudes(levels, 100 * math.pi)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_amplitudes(["0.5 g", "2 g"], 100 * math.pi)
+        read_amplitudes(["0.5 mm", "2 mm"], 100 * math.pi)
