@@ -117,5 +117,5 @@ def draw_ledger(run: Run, axes: Axes, time: Scale, energy: Scale) -> None:
         linewidth=pen(0.3),
     )
     axes.plot(t, ledger.supplied / energy.divisor, color=INK, label="supplied", clip_on=False)
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(bottom=0.0, auto=None)  # the axis is that of all columns of a comparison, of which others may follow
     label(axes, "y", "Energy ledger", energy.unit)

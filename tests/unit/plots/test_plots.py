@@ -187,6 +187,16 @@ def test_comparison_has_common_axes(run: Run, make_run, tmp_path: Path) -> None:
     assert is_within_page(figure)
 
 
+def test_comparison_shows_all_of_a_run_with_more_energy(run: Run, make_run) -> None:
+    """The scale of the energies holds the last column, too: the tests had the strongest run in the first column."""
+    figure = plot_comparison({"weak": make_run(pulse=100.0), "strong": run})
+    figure.draw_without_rendering()
+    for panel in np.array(figure.axes).reshape(3, 2).flat:
+        low, high = panel.get_ylim()
+        assert all(low <= np.min(line.get_ydata()) and np.max(line.get_ydata()) <= high for line in panel.lines)
+    assert figure.axes[-1].get_ylim()[0] == 0
+
+
 def test_comparison_of_a_building_draws_one_point() -> None:
     """All columns have the top floor only, and the balls a label; other comparisons here have one point and two runs."""
     tower = rb.ShearBuilding(masses=["60 t"] * 8, stiffnesses=["70 MN/m"] * 8, damping_ratio="2 %")
