@@ -613,20 +613,22 @@ class Case(Part):
     def _repr_html_(self) -> str:
         return paragraph(repr(self)[1:-1]) + code_block(self.short_toml())
 
-    def short_toml(self, most: int = 8000) -> str:
+    def short_toml(self, most: int = 8000, name_of: Callable[[str], str] = str) -> str:
         """Return the case as the text of a case file, with long lists shortened, for reading only.
 
         Parameters
         ----------
         most
             Largest number of characters; the rest is omitted.
+        name_of
+            Function of the full path of a file that returns the name to write.
 
         Returns
         -------
         str
             Text in TOML.
         """
-        text = self._toml(str, _shortened)
+        text = self._toml(name_of, _shortened)
         return text if len(text) <= most else f"{text[:most]}\n... {len(text) - most} more characters"
 
     def replaced(self, values: Mapping[str, object]) -> Case:
@@ -673,15 +675,20 @@ class Case(Part):
             changes |= {"method": EventDriven(), "output": output}
         return self.replaced(changes)
 
-    def to_toml(self) -> str:
+    def to_toml(self, name_of: Callable[[str], str] = str) -> str:
         """Return the text of a case file of this case, with the full paths of other files.
+
+        Parameters
+        ----------
+        name_of
+            Function of the full path of a file that returns the name to write, such as `os.path.basename`.
 
         Returns
         -------
         str
             Text in TOML; `Case.from_toml` reads an equal case from it.
         """
-        return self._toml(str)
+        return self._toml(name_of)
 
     def to_file(self, path: str | os.PathLike[str]) -> None:
         """Write a case file of this case, with the paths of other files relative to its folder.
@@ -714,7 +721,7 @@ class Case(Part):
         data = self.model_dump(mode="json", exclude_none=True, exclude_defaults=False)
         if as_written:
             data = with_texts(self, data)
-        return tomli_w.dumps(change(_without_empty(_with_files(data, name_of))))
+        return tomli_w.dumps(change(_without_empty(with_files(data, name_of))))
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
@@ -747,7 +754,7 @@ def case_and_materials(
         library = _Library.model_validate({"materials": given.get("materials", {})})
         values = {key: value for key, value in given.items() if key != "materials"}
         if folder is not None:
-            values = _with_files(values, lambda file: str(folder / file))
+            values = with_files(values, lambda file: str(folder / file))
         return Case.model_validate(values, context=library.materials), library.materials
     except ValidationError as error:
         raise translate(error, source, vocabulary(), given) from None
@@ -807,19 +814,22 @@ class _Library(Part):
         return {name: {"name": name, **item} if isinstance(item, dict) else item for name, item in own.items()}
 
 
-def _with_files(node: object, name_of: Callable[[str], str]) -> Any:
-    """Return a copy of a tree with `name_of` applied to the names of files."""
+def with_files(node: object, name_of: Callable[[str], str]) -> Any:
+    """Return a copy of a tree with `name_of` applied to the names of files, also to those of axes such as "base.file"."""
     if isinstance(node, dict):
         return {
-            key: _renamed(item, name_of) if key == "file" else _with_files(item, name_of) for key, item in node.items()
+            key: _renamed(item, name_of) if str(key).rpartition(".")[2] == "file" else with_files(item, name_of)
+            for key, item in node.items()
         }
-    return [_with_files(item, name_of) for item in node] if isinstance(node, list) else node
+    return [with_files(item, name_of) for item in node] if isinstance(node, list) else node
 
 
 def _renamed(file: object, name_of: Callable[[str], str]) -> Any:
-    """Return `name_of` of the name of a file, or of each name in a table."""
+    """Return `name_of` of the name of a file, or of each name in a table or a list."""
     if isinstance(file, dict):
         return {key: _renamed(item, name_of) for key, item in file.items()}
+    if isinstance(file, list):
+        return [_renamed(item, name_of) for item in file]
     return name_of(file) if isinstance(file, str) else file
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox._util.quantities import amount
 from rattlebox.model.base import Part
+from rattlebox.model.case import with_files
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import unit_of_field
 from rattlebox.model.units import as_written
@@ -105,6 +107,8 @@ def _lines(part: Part, leave_out: Sequence[str] = ()) -> Iterator[tuple[str, str
         value = getattr(part, name)
         if name == "balls":
             name, value = _balls(value)
+        elif name == "file":  # the path belongs to the computer of the author
+            value = with_files({name: value}, lambda file: Path(file).name)[name]
         elif name == "unit" and isinstance(getattr(part, "amplitude", None), float):
             continue
         text = _text(value, unit_of_field(part, name) if name in type(part).model_fields else None)

@@ -23,7 +23,7 @@ from rattlebox.studies.orbits.branch import Branch
 from .inputs import input_tables
 from .kinds import kind_of
 from .parts import Limit, Picture, Table
-from .reproduce import Recipe, recipe
+from .reproduce import Recipe, recipe, short_names
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,6 +78,7 @@ def section(result: Any, title: str, case: Case | None, question: str | None) ->
     if isinstance(result, Branch):
         result = result.data
     kind = kind_of(result)
+    result = _with_short_names(result)
     if case is not None and hasattr(result, "assign_attrs") and not isinstance(result.attrs.get("case"), str):
         result = result.assign_attrs(case=case.to_toml())
     # A dataset may lack its case, or name a file that is gone: the page then states that, and has all the rest.
@@ -104,6 +105,15 @@ def section(result: Any, title: str, case: Case | None, question: str | None) ->
         about=tuple(kind.about(result)),
         recipe=recipe(cases, kind.call(result)),
     )
+
+
+def _with_short_names(result: Any) -> Any:
+    """Return a study whose axes over files have the names of these, without folders that hold them all."""
+    for name in [name for name in getattr(result, "coords", ()) if str(name).rpartition(".")[2] == "file"]:
+        coord = result[name]
+        short = short_names([str(file) for file in coord.values])
+        result = result.assign_coords({name: (coord.dims, [short[str(file)] for file in coord.values], coord.attrs)})
+    return result
 
 
 def describe(name: str, case: Case, first: Described | None = None) -> Described:

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import os
 import pprint
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rattlebox._util.phrases import joined
+from rattlebox.model.case import with_files
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from rattlebox.model.case import Case
 
     from .parts import Call
 
 _WIDTH = 96
+_MOST_NAMES = 6
+"""Most files that are named in a sentence."""
 _LIST = re.compile(r"\[\n((?: +[^\[\]{}\n]+,\n)+)\]")
 
 
@@ -35,8 +42,45 @@ class Recipe(NamedTuple):
 
 def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
     """Return commands and files that compute a result again."""
+    arguments = {} if call is None else _without_none(dict(call.arguments))
+    # The names of files, not their full paths: these belong to the computer of the author.
+    read: dict[str, str] = {}
+    for case in cases.values():
+        case.to_toml(lambda file: read.setdefault(file, file))
+    with_files(arguments, lambda file: read.setdefault(file, file))
+    name_of = short_names(read).__getitem__
     names = {name: _file_name(number, len(cases)) for number, name in enumerate(cases)}
-    files = [File(names[name], case.to_toml(), case.short_toml()) for name, case in cases.items()]
+    files = [File(names[name], case.to_toml(name_of), case.short_toml(name_of=name_of)) for name, case in cases.items()]
+    found = _steps(names, files, call and call._replace(arguments=with_files(arguments, name_of)))
+    return found._replace(remarks=(*found.remarks, *_about_files([name_of(file) for file in read])))
+
+
+def short_names(files: Collection[str]) -> dict[str, str]:
+    """Return the paths of files relative to the folder that holds all of them; relative paths stay as they are."""
+    full = [file for file in files if os.path.isabs(file)]
+    try:
+        folder = os.path.commonpath([os.path.dirname(file) for file in full]) if full else ""
+    except ValueError:  # several drives
+        return {file: Path(file).name for file in files}
+    return {file: Path(os.path.relpath(file, folder)).as_posix() if file in full else file for file in files}
+
+
+def _about_files(names: Sequence[str]) -> Iterator[str]:
+    """Yield a sentence on the files that the case and the study read."""
+    if names:
+        listed = joined(names) if len(names) <= _MOST_NAMES else f"the {len(names)} files that they name"
+        yield f"The page does not contain the numbers of files: put {listed} into the same folder."
+
+
+def _without_none(node: Any) -> Any:
+    """Return a copy of a tree without fields that have no value, which TOML cannot write."""
+    if isinstance(node, dict):
+        return {key: _without_none(item) for key, item in node.items() if item is not None}
+    return [_without_none(item) for item in node] if isinstance(node, list) else node
+
+
+def _steps(names: Mapping[str, str], files: list[File], call: Call | None) -> Recipe:
+    """Return commands and files of a call."""
     if call is None:
         return Recipe((), tuple(files), ("The call of the study is not part of its result.",) if files else ())
     # A comparison is no single call: its cases run one by one, and a script compares them.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import os
 import re
+import shutil
 import tomllib
 from functools import cache
 from html.parser import HTMLParser
@@ -614,3 +615,52 @@ def test_unknown_studies_are_reported_as_sweeps(tmp_path: Path) -> None:
     """A dataset of a kind without a report of its own has one with its measures."""
     study = result_of("sweep").assign_attrs(study="new_kind")
     assert "RMS displacement: at most" in Page(rb.write_report(study, tmp_path / "report.html")).text
+
+
+@pytest.mark.parametrize("name", ["run", "comparison", "records", "one record", "files", "two folders"])
+def test_files_are_named_without_the_folders_of_the_author(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A report names the files that it needs and no folder of the computer; with them its script computes the same.
+
+    No tested report read a file: full paths went into the page, and a study over records from files was no report at all.
+    """
+    author, reader = tmp_path / "author of it", tmp_path / "reader"
+    (author / "quakes").mkdir(parents=True)
+    for file, peak in (("quakes/north", 0.1), ("quakes/south", 0.3), ("north", 0.2)):
+        (author / f"{file}.csv").write_text(f"time (s), acceleration (g)\n0, 0\n0.2, {peak}\n0.5, {-peak}\n2, 0\n")
+    monkeypatch.chdir(author)
+    quakes = rb.record_set("quakes")
+    bare = rb.Case(structure=rb.SDOF(mass="3 kg", frequency="5 Hz"), base=quakes["north"], duration="1 s")
+    other = rb.Record.from_file("north.csv" if name == "two folders" else "quakes/south.csv")
+    results = {
+        "run": lambda: rb.simulate(bare),
+        "comparison": lambda: rb.compare({"a": bare, "b": bare.replaced({"base": other})}),
+        "records": lambda: rb.sweep(bare, {"base": quakes, "base.scale": [1, 2]}, ["peak"]),
+        "one record": lambda: rb.sweep(bare, {"base": rb.record_set(["quakes/south.csv"])}, ["peak"]),
+        "files": lambda: rb.sweep(bare, {"base.file": [str(author / f"quakes/{k}.csv") for k in quakes]}, ["peak"]),
+        "two folders": lambda: rb.sweep(bare, {"base": rb.RecordSet({"a": quakes["north"], "b": other})}, ["peak"]),
+    }
+    result = results[name]()
+    page = Page(rb.write_report(result, "report.html"))
+    texts = [page.source, *page.downloads.values()]
+    assert not [text for text in texts if "author of it" in text or tmp_path.name in text]
+    kept = author if name == "two folders" else author / "quakes"  # the folder that holds all files
+    shutil.copytree(kept, reader, dirs_exist_ok=True)
+    monkeypatch.chdir(reader)
+    for file, content in page.downloads.items():
+        Path(file).write_text(content, encoding="utf-8")
+    names: dict[str, Any] = {}
+    exec(page.downloads["script.py"], names)
+    again = names["result"]
+    if name == "run":
+        assert np.array_equal(again.arrays.displacement, result.arrays.displacement)
+    elif name == "comparison":
+        for one, other in zip(again.runs.values(), result.runs.values(), strict=True):
+            assert np.array_equal(one.arrays.displacement, other.arrays.displacement)
+    else:
+        assert np.array_equal(again.peak, result.peak)
+        from rattlebox.studies.study_file import read_study
+
+        assert np.array_equal(read_study("study.toml").run(progress=False).peak, result.peak)
+    assert "into the same folder" in page.text
