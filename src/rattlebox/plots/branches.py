@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rattlebox.studies.orbits.branch import Branch
-from rattlebox.studies.orbits.branch_words import special_kinds
+from rattlebox.studies.orbits.branch_words import size_of_motion, special_kinds
 
+from .labels import capitalised, name_of, unit_of
 from .style import INK, SERIES_MARKERS, StyledFigure, figure_style, label, legend_above, pen, scaled, series_colour
 from .types import Size
 
@@ -44,6 +45,8 @@ def plot_branches(
 ) -> Figure:
     """Draw the amplitude of periodic motions over a parameter: stable ones solid, unstable ones dashed.
 
+    Without a structure that responds, the approach speed of the slowest impact is drawn.
+
     Parameters
     ----------
     branches
@@ -73,8 +76,10 @@ def plot_branches(
     with figure_style(size):
         figure = StyledFigure(size, 0.75 if size == "column" else 0.5)
         axes = figure.subplots()
-        heights = {name: _amplitude(branch, point) for name, branch in named.items()}
-        scale, unit = scaled(np.concatenate(list(heights.values())), "m")
+        sizes = {name: size_of_motion(branch.data, point) for name, branch in named.items()}
+        heights = {name: size.values for name, size in sizes.items()}
+        shown = sizes[next(iter(sizes))]
+        scale, unit = scaled(np.concatenate(list(heights.values())), unit_of(shown))
         across, across_unit = scaled(first.data.value.values, str(first.data.attrs["unit"]))
         marks: dict[str, Line2D] = {}
         for number, (name, branch) in enumerate(named.items()):
@@ -84,21 +89,13 @@ def plot_branches(
         else:
             axes.set_ylim(bottom=0)
         axes.margins(x=0.02)
-        label(axes, "x", _WORDS.get(first.parameter, first.parameter), "" if across_unit == "1" else across_unit)
-        label(axes, "y", "Amplitude", unit)
+        path = capitalised(first.parameter.replace(".", " ").replace("_", " "))
+        label(axes, "x", _WORDS.get(first.parameter, path), "" if across_unit == "1" else across_unit)
+        label(axes, "y", capitalised(name_of(shown)), unit)
         for mark in marks.values():
             axes.add_line(mark)
         legend_above(axes)
     return figure
-
-
-def _amplitude(branch: Branch, point: str | None) -> NDArray[np.float64]:
-    """Return the amplitudes of a point of the structure, or of the balls if there is no structure."""
-    data = branch.data
-    if not data.sizes["place"]:
-        values: NDArray[np.float64] = data.slowest_impact.values
-        return values
-    return np.asarray(data.amplitude.isel(place=0) if point is None else data.amplitude.sel(place=point))
 
 
 def _draw_branch(
@@ -127,6 +124,12 @@ def _draw_branch(
     special = special_kinds(branch.data)
     for k in np.flatnonzero(special != ""):
         kind = str(special[k])
-        style_of = {"marker": _MARKS.get(kind, SERIES_MARKERS[0]), "color": INK, "ls": "", "mfc": "white"}
+        style_of = {
+            "marker": _MARKS.get(kind, SERIES_MARKERS[0]),
+            "color": INK,
+            "ls": "",
+            "mfc": "white",
+            "clip_on": False,
+        }
         axes.plot(x[k : k + 1], y[k : k + 1], zorder=5, **style_of)  # type: ignore[arg-type]
         marks.setdefault(kind, Line2D([], [], label=kind, **style_of))  # type: ignore[arg-type]

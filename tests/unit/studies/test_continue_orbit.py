@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.studies.kinds import study_kind
+from rattlebox.studies.run.study import make_study
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +58,24 @@ def test_not_a_motion():
     with pytest.raises(rb.CaseError, match="not a periodic motion") as raised:
         rb.continue_orbit("run", "load.frequency", ("31 Hz", "38 Hz"))
     assert "find_orbit" in raised.value.suggestion
+
+
+@pytest.mark.parametrize("near", ["a", 3.0, [[1.0, 2.0], [3.0, 4.0]], ["a", "b"], [np.nan, 1.0, 1.0, 1.0], {"x": 1}])
+def test_wrong_states(orbit, near):
+    """What is no run, motion or state is refused as the start of a search, in Python and before a study runs."""
+    with pytest.raises(rb.RattleboxError, match=r"is not a run|no file"):
+        study_from_case(orbit.case, near).validate()
+    if near != "a":
+        with pytest.raises(rb.CaseError, match="is not a run"):
+            rb.find_orbit(orbit.case, near=near)
+
+
+def study_from_case(case, near):
+    """Return a study of a branch that begins near something."""
+    return make_study(
+        study_kind("continue_orbit"),
+        {"case": case, "axis": "load.frequency", "limits": ["31 Hz", "38 Hz"], "near": near},
+    )
 
 
 def test_points_and_words(branch):
@@ -116,6 +136,27 @@ def test_figure(branch):
     figure = branch.plot()
     names = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert {"stable", "unstable", "pitchfork", "torus"} <= set(names)
+
+
+def test_figure_of_a_shaken_cavity():
+    """Without a structure that responds, the figure shows approach speeds: it was a line at an amplitude of zero.
+
+    No figure of a test had a prescribed motion.
+    """
+    case = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1.4 mm", frequency="17 Hz")),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="9 mm", material="steel"), gap="1.1 mm", contact=rb.Tsuji(restitution=0.55)
+        ),
+        method=rb.Newton(),
+        duration="3 s",
+    )
+    limits = ("1.38 mm", "1.5 mm")
+    branch = rb.continue_orbit(rb.find_orbit(case), "structure.motion.amplitude", limits, progress=False)
+    (axes,) = branch.plot().axes
+    assert axes.get_ylabel().replace("\n", " ") == "Smallest approach speed (mm/s)"
+    assert max(line.get_ydata()[0] for line in axes.lines if len(line.get_ydata())) > 10
+    assert "5 impacts in 2 cycles" in str(branch)
 
 
 def test_same_branch_over_a_linked_parameter(orbit):

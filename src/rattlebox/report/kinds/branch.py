@@ -11,6 +11,7 @@ import numpy as np
 from rattlebox._util.phrases import counted
 from rattlebox._util.quantities import MISSING, amount, quantity, span
 from rattlebox.plots.branches import plot_branches
+from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit, mode_limits
 from rattlebox.report.parts import Call, Limit, Table
@@ -22,6 +23,7 @@ from rattlebox.studies.orbits.branch_words import (
     noun,
     range_words,
     sentences,
+    size_of_motion,
     special_kinds,
     stretches,
 )
@@ -60,10 +62,9 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
 
 def _tables(study: xr.Dataset) -> Iterator[Table]:
     unit, cycles = _unit(study), int(study.attrs["cycles"])
-    name = str(study.attrs["parameter"])
+    name, size = str(study.attrs["parameter"]), size_of_motion(study)
     rows = []
     for each in stretches(study)[:_MOST_ROWS]:
-        part = study.isel(point=each.rows)
         ends = [noun(kind) or MISSING for kind in each.limits]
         more = ", ".join(["symmetric" if each.symmetric else "not symmetric", *(["sticking"] if each.sticks else [])])
         rows.append(
@@ -71,12 +72,12 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
                 range_words(each.low, each.high, unit),
                 "stable" if each.stable else "unstable",
                 impacts_words(each.impacts, cycles),
-                _amplitudes(part),
+                _sizes(size.isel(point=each.rows)),
                 more,
                 " / ".join(ends),
             )
         )
-    header = (name, "stability", "impacts", "amplitude", "motion", "begins / ends at")
+    header = (name, "stability", "impacts", name_of(size), "motion", "begins / ends at")
     yield Table("Ranges of stability", header, rows)
     special = np.flatnonzero(special_kinds(study) != "")
     points = [
@@ -85,21 +86,21 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
             quantity(float(study.located[k]), unit, 6),
             critical_multiplier(study, int(k)),
             impacts_words(int(study.impacts[k]), cycles),
-            _amplitudes(study.isel(point=[int(k)])),
+            _sizes(size.isel(point=[int(k)])),
         )
         for k in special[:_MOST_ROWS]
     ]
     left = f"and {counted(special.size - _MOST_ROWS, 'further point')}" if special.size > _MOST_ROWS else ""
-    yield Table("Special points", ("kind", name, "multiplier", "impacts", "amplitude"), points, left)
+    yield Table("Special points", ("kind", name, "multiplier", "impacts", name_of(size)), points, left)
 
 
-def _amplitudes(part: xr.Dataset) -> str:
-    """Return the range of the amplitude of the first point of the structure."""
-    if not part.sizes["place"]:
+def _sizes(part: xr.DataArray) -> str:
+    """Return the range of the amplitude, or of the approach speed of the slowest impact."""
+    values = part.values[np.isfinite(part.values)]
+    if not values.size:
         return MISSING
-    values = part.amplitude.isel(place=0).values
     low, high = float(values.min()), float(values.max())
-    return amount(low, "m") if low == high else span(low, high, "m")
+    return amount(low, unit_of(part)) if low == high else span(low, high, unit_of(part))
 
 
 def _warnings(study: xr.Dataset) -> Iterator[str]:
@@ -158,7 +159,7 @@ KIND = words.study_kind(
     _call,
     words.picture(
         plot_branches,
-        "Amplitude of periodic motions over the parameter: stable ones solid, unstable ones dashed, special points marked.",
+        "Periodic motions over the parameter: stable ones solid, unstable ones dashed, special points marked.",
     ),
     tables=_tables,
     warnings=_warnings,

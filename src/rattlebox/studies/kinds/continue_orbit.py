@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.interrupts import raise_if_pressed
@@ -24,13 +24,13 @@ from rattlebox.studies.grid.starts import StartPoint
 from rattlebox.studies.orbits.branch import Branch
 from rattlebox.studies.orbits.branch_data import LONGEST_STEP, MOST_POINTS, STUDY, corrector_of, start_value
 from rattlebox.studies.orbits.continuation import continue_orbit
-from rattlebox.studies.orbits.find import find_orbit
+from rattlebox.studies.orbits.find import check_state, find_orbit, state_of
 from rattlebox.studies.orbits.orbit import Orbit
 from rattlebox.studies.run.estimate import Estimate
 from rattlebox.studies.run.runner import Stopped
 from rattlebox.studies.run.store import open_whole, save_result
 from rattlebox.studies.run.stored import has_map, open_study
-from rattlebox.studies.run.study import CONFIG, Count, Range, Study, study_function
+from rattlebox.studies.run.study import CONFIG, Count, Study, study_function
 
 if TYPE_CHECKING:
     import xarray
@@ -39,14 +39,6 @@ _PROBED = 8
 """Number of points from which the time of a branch is predicted."""
 _FACTOR = 3.0
 """Factor within which it is expected: where a branch turns, its steps are shorter and its points more."""
-
-
-def _ends(value: object) -> object:
-    """Return limits of a table `{ from = ..., to = ... }` as a pair."""
-    if isinstance(value, Mapping):
-        table = Range.model_validate(value)
-        return table.start, table.to
-    return value
 
 
 @dataclass(frozen=True, config=CONFIG)
@@ -90,7 +82,7 @@ class ContinueOrbit(Study):
     files: ClassVar[tuple[str, ...]] = ("near",)
 
     axis: Annotated[str, Field(examples=["load.frequency"])]
-    limits: Annotated[Any, BeforeValidator(_ends), Field(examples=[["20 Hz", "40 Hz"]])]
+    limits: Annotated[Any, Field(examples=[["20 Hz", "40 Hz"]])]
     _: KW_ONLY
     near: Any = None
     period: Count | None = None
@@ -99,9 +91,11 @@ class ContinueOrbit(Study):
 
     def validate(self) -> None:
         """Raise if the fields are not valid; see `Study.validate`."""
-        corrector, unit = corrector_of(self.case, self.axis, self.limits, self.step)
+        corrector, unit = corrector_of(self.case, self.axis, self._limits, self.step)
         start_value(self.case, self.axis, corrector, unit)
-        _ = self._start
+        start = self._start
+        if isinstance(start, np.ndarray):
+            check_state(corrector.returns, start)
 
     def compute(self) -> xarray.Dataset:
         """Find the motion and follow it; see `Study.compute`."""
@@ -138,7 +132,7 @@ class ContinueOrbit(Study):
             raise
 
     def _follow(self, orbit: Orbit, **where: Any) -> Branch:
-        return continue_orbit(orbit, self.axis, self.limits, points=self.points, step=self.step, **where)
+        return continue_orbit(orbit, self.axis, self._limits, points=self.points, step=self.step, **where)
 
     @contextmanager
     def _stoppable(self) -> Iterator[Any]:
@@ -160,11 +154,20 @@ class ContinueOrbit(Study):
             raise Stopped(f"stopped after {done:,} points; {where}") from None
 
     @cached_property
+    def _limits(self) -> Any:
+        """Limits as a pair, also of a table `{ from = ..., to = ... }`."""
+        if not isinstance(self.limits, Mapping):
+            return self.limits
+        if set(self.limits) != {"from", "to"}:
+            raise Hint(f"limits = {self.limits!r:.60} must be two values", '{ from = "20 Hz", to = "40 Hz" }')
+        return self.limits["from"], self.limits["to"]
+
+    @cached_property
     def _start(self) -> Any:
         """Run, state or motion near which the search begins."""
-        if isinstance(self.near, (str, os.PathLike)):
-            return read_start(self.near)[0]
-        return self.near
+        if self.near is None or isinstance(self.near, (Run, Orbit)):
+            return self.near
+        return read_start(self.near)[0] if isinstance(self.near, (str, os.PathLike)) else state_of(self.near)
 
     @property
     def _manifest(self) -> dict[str, Any]:
@@ -175,8 +178,8 @@ class ContinueOrbit(Study):
         elif isinstance(start, Orbit):
             start = {"phase": start.phase, "state": start.state.tolist()}
         elif start is not None:
-            start = np.asarray(start, float).tolist()
-        corrector, _ = corrector_of(self.case, self.axis, self.limits, self.step)
+            start = start.tolist()
+        corrector, _ = corrector_of(self.case, self.axis, self._limits, self.step)
         return {
             "case": self.case.to_toml(),
             "axis": self.axis,

@@ -48,6 +48,16 @@ def special_kinds(data: xarray.Dataset) -> NDArray[np.str_]:
     return np.array([str(kind) for kind in data.special.values])  # files have other types of text
 
 
+def size_of_motion(data: xarray.Dataset, place: str | None = None) -> xarray.DataArray:
+    """Return the amplitude of a point of the structure, by default the first one.
+
+    A structure whose motion is prescribed does not respond; the approach speed of the slowest impact stands for it.
+    """
+    if not data.sizes["place"] or not (data.amplitude.values > 0).any():
+        return data.slowest_impact
+    return data.amplitude.isel(place=0) if place is None else data.amplitude.sel(place=place)
+
+
 def stretches(data: xarray.Dataset) -> list[Stretch]:
     """Return the stretches of a branch in its order, from special point to special point where they change there."""
     special = special_kinds(data)

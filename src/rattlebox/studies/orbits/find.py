@@ -164,20 +164,8 @@ def _state_near(returns: ReturnMap, near: object) -> Vector:
     elif isinstance(near, Run):
         start, state = _end_of(near)
     else:
-        try:
-            state = np.array(near, dtype=np.float64)
-        except (TypeError, ValueError):
-            state = np.zeros(0)
-        start = 0.0
-        if state.ndim != 1 or not np.isfinite(state).all():
-            raise Hint(f"near = {near!r:.60} is not a run, a periodic motion or a state", "near=rb.simulate(case)")
-    if state.size != returns.size:
-        balls = sum(returns.rows)
-        raise Hint(
-            f"the state has {several(state.size, 'component')}; the case needs {returns.size}: displacement and velocity of "
-            f"{several(returns.modes, 'mode')}, positions and velocities of {several(balls, 'ball')}",
-            "near=rb.simulate(case)",
-        )
+        start, state = 0.0, state_of(near)
+    check_state(returns, state)
     # The state moves on to the next beginning of a period.
     wait = math.ceil(start / period - 1e-9) * period - start
     if wait > 1e-9 * period:
@@ -186,6 +174,30 @@ def _state_near(returns: ReturnMap, near: object) -> Vector:
             raise Hint("the motion from the end of the run cannot be computed", "another run, or its earlier part")
         state = motion.state[-1]
     return state
+
+
+def state_of(near: object) -> Vector:
+    """Return a state that is given as numbers; raise if it is none."""
+    try:
+        state = np.array(near, dtype=np.float64)
+    except (TypeError, ValueError):
+        state = np.full(1, np.nan)
+    if state.ndim != 1 or not np.isfinite(state).all():
+        raise Hint(
+            f"near = {near!r:.60} is not a run, a periodic motion or a state",
+            'a run, its file "out/run.nc", or a list of numbers in SI units',
+        )
+    return state
+
+
+def check_state(returns: ReturnMap, state: Vector) -> None:
+    """Raise if a state has another number of components than those of the case."""
+    if state.size != returns.size:
+        raise Hint(
+            f"the state has {several(state.size, 'component')}; the case needs {returns.size}: displacement and velocity of "
+            f"{several(returns.modes, 'mode')}, positions and velocities of {several(sum(returns.rows), 'ball')}",
+            "near=rb.simulate(case)",
+        )
 
 
 def _end_of(run: Run) -> tuple[float, Vector]:
