@@ -91,6 +91,40 @@ def test_studies_take_a_periodic_motion_as_their_start() -> None:
     assert starts.motion.item() == 1
 
 
+def test_studies_start_on_one_of_two_motions() -> None:
+    """Where a motion with impacts and one without them are both stable, each study stays on the one that is given.
+
+    The studies had started on the only motion, to which a run from rest leads as well.
+    """
+    resting = rb.Case(
+        structure=rb.SDOF(mass="1.5 kg", frequency="25 Hz", damping_ratio=0.01),
+        damper=rb.ImpactDamper(ball=BALL, gap="1 mm", contact=rb.Tsuji(restitution=0.6)),
+        load=rb.Harmonic(amplitude="3 N", frequency="25.5 Hz"),
+        method=rb.Newton(),
+        duration="4 s",
+    )
+    branch = rb.continue_orbit(rb.find_orbit(resting), "load.frequency", ("25.4 Hz", "28 Hz"), progress=False)
+    rows = branch.data.where((branch.data.value > 27) & branch.data.stable.astype(bool), drop=True)
+    hertz = [float(value) for value in rows.value.values[:3]]
+    orbit = branch.orbit(int(np.flatnonzero(branch.data.value.values == hertz[0])[0]))
+    at = resting.replaced({"load.frequency": hertz[0]})
+    options: dict[str, Any] = {"cycles": (150, 8), "direction": "up", "progress": False}
+    on = rb.frequency_response(orbit, hertz, **options).isel(direction=0, level=0)
+    off = rb.frequency_response(at, hertz, **options).isel(direction=0, level=0)
+    assert on.impacts_per_cycle.values == pytest.approx([2] * 3) and off.impacts_per_cycle.values == pytest.approx(
+        [0] * 3
+    )
+    assert on.peak.values == pytest.approx(rows.amplitude.values[:3, 0], rel=3e-3)
+    assert (off.peak.values > 1.5 * on.peak.values).all()
+    largest = [rb.lyapunov(each, cycles=(60, 60), pairs=2, progress=False).exponent.item() for each in (orbit, at)]
+    assert largest[0] == pytest.approx(math.log(abs(orbit.multipliers[0])) / orbit.period, rel=2e-2)
+    assert abs(largest[1] / largest[0] - 1) > 0.1
+    speed = orbit.as_case().impact_dampers[0].velocity[0]
+    for case, start, impacts in ((orbit, speed, 2), (at, 0.0, 0)):
+        found = rb.basins(case, {"damper.velocity": [start]}, cycles=(150, 8), progress=False)
+        assert found.impacts_per_cycle.values == pytest.approx([impacts]) and found.period.values.tolist() == [1]
+
+
 @pytest.mark.parametrize(
     "structure",
     [
