@@ -221,6 +221,12 @@ def stored_map(folder: Path, name: str) -> tuple[xr.Dataset, str]:
     """Return the study of a map and the name of the drawn variable: its measure, or the ratio to that without damper."""
     store = inside(folder, name, ".zarr")
     study = rb.open_study(store).load()
+    kind = str(study.attrs.get("study", "sweep"))
+    if kind != "sweep" or "measures" not in study.attrs:
+        raise rb.DataError(
+            f"{store} is a study of the kind {kind}; this page shows sweeps over one or two numbers",
+            f"'rattlebox plot {store.name}' or 'rattlebox report {store.name}' in the folder",
+        )
     measure = json.loads(study.attrs["measures"])[0]
     without = store.with_suffix(".bare.zarr")
     if not without.exists():

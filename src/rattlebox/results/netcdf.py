@@ -264,6 +264,8 @@ def _read_file(path: Path, read: Callable[[Node], Read], blocks: Collection[str]
 def _check(file: Node, path: Path, blocks: Collection[str] | None) -> None:
     """Raise if a file holds no run, a run of another format, or a damaged group."""
     layout = file.attrs.get("rattlebox_format")
+    if layout is None and "study" in file.attrs:
+        raise DataError(f"{path} holds the result of a study, not a run", "rb.open_study, or 'rattlebox report'")
     if layout is None:
         raise DataError(f"{path} is a netCDF-4 file, but not a run written by Rattlebox")
     if SNAPSHOTS in file:

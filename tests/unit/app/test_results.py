@@ -156,6 +156,30 @@ def test_particles_are_downloaded(folder, tmp_path):
     assert rb.Case.from_toml(download(folder, "run-002", "toml").decode()) == rb.load(folder / "run-002.nc").case
 
 
+def test_studies_of_other_kinds_are_refused_with_their_commands(tmp_path):
+    """Opening one as a map or as a run names its kind and a command that shows it: the map ended in a KeyError.
+
+    The folders of the tests had sweeps only.
+    """
+    case = rb.Case(
+        structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
+        method=rb.Newton(),
+        duration="1 s",
+    )
+    result = rb.lyapunov(case, cycles=(5, 5), pairs=1, store=tmp_path / "chaos.zarr", progress=False)
+    with pytest.raises(rb.DataError, match="a study of the kind lyapunov") as raised:
+        stored_map(tmp_path, "chaos")
+    assert "rattlebox report chaos.zarr" in raised.value.suggestion
+    result.to_netcdf(tmp_path / "chaos.nc", engine="h5netcdf")
+    for suffix in ("csv", "html"):
+        with pytest.raises(rb.DataError, match="holds the result of a study"):
+            download(tmp_path, "chaos", suffix)
+
+
 def test_downloads_of_a_map_are_opened(folder, tmp_path):
     """Each file of a map has the ratio to the case without damper that the page draws; the script computes the same."""
     study, drawn = stored_map(folder, "map-001")
