@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
+from functools import cache
 
 import pytest
 
@@ -28,6 +29,28 @@ def examples_write_into_an_own_folder(request: pytest.FixtureRequest, monkeypatc
     """Run the examples of docstrings in an empty folder, since some write files."""
     if isinstance(request.node, pytest.DoctestItem):
         monkeypatch.chdir(request.getfixturevalue("tmp_path"))
+
+
+@cache
+def _examples_of_orbits() -> dict[str, object]:
+    """Return the periodic motion of the example of `find_orbit`, and the branch of that of `continue_orbit`."""
+    import doctest
+
+    import rattlebox as rb
+
+    (example,) = doctest.DocTestFinder(recurse=False).find(rb.find_orbit, "find_orbit")
+    names: dict[str, object] = {}
+    for line in example.examples[:-1]:
+        exec(line.source, names)
+    branch = rb.continue_orbit(names["orbit"], "load.frequency", ("32 Hz", "38 Hz"), progress=False)
+    return {"orbit": names["orbit"], "branch": branch}
+
+
+@pytest.fixture(autouse=True)
+def examples_go_on_from_others(request: pytest.FixtureRequest, doctest_namespace: dict[str, object]) -> None:
+    """Give examples about periodic motions the motion and the branch of the examples to which they refer."""
+    if isinstance(request.node, pytest.DoctestItem) and ".studies.orbits." in request.node.name:
+        doctest_namespace.update(_examples_of_orbits())
 
 
 @pytest.fixture(autouse=True)

@@ -72,19 +72,11 @@ class Branch:
 
     Examples
     --------
-    >>> import rattlebox as rb
-    >>> case = rb.Case(
-    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
-    ...     damper=rb.ImpactDamper(
-    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
-    ...     ),
-    ...     load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
-    ...     method=rb.Newton(),
-    ...     duration="3 s",
-    ... )
-    >>> branch = rb.continue_orbit(rb.find_orbit(case), "load.frequency", ("32 Hz", "34 Hz"), progress=False)
-    >>> [point.kind for point in branch.specials]
-    ['pitchfork']
+    The branch of the example of `rattlebox.continue_orbit`:
+
+    >>> point = branch.specials[0]
+    >>> print(point, "with", len(point.orbit.impacts), "impacts")
+    pitchfork (loss of symmetry) at load.frequency = 32.0805341 with 2 impacts
     """
 
     data: xarray.Dataset

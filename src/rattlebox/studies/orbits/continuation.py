@@ -96,17 +96,10 @@ def continue_orbit(
 
     Examples
     --------
+    With the motion `orbit` of the example of `rattlebox.find_orbit`:
+
     >>> import rattlebox as rb
-    >>> case = rb.Case(
-    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
-    ...     damper=rb.ImpactDamper(
-    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
-    ...     ),
-    ...     load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
-    ...     method=rb.Newton(),
-    ...     duration="3 s",
-    ... )
-    >>> branch = rb.continue_orbit(rb.find_orbit(case), "load.frequency", ("32 Hz", "38 Hz"), progress=False)
+    >>> branch = rb.continue_orbit(orbit, "load.frequency", ("32 Hz", "38 Hz"), progress=False)
     >>> [point.kind for point in branch.specials]
     ['pitchfork', 'torus']
     """

@@ -118,17 +118,8 @@ class Orbit:
 
     Examples
     --------
-    >>> import rattlebox as rb
-    >>> case = rb.Case(
-    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
-    ...     damper=rb.ImpactDamper(
-    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
-    ...     ),
-    ...     load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
-    ...     method=rb.Newton(),
-    ...     duration="3 s",
-    ... )
-    >>> orbit = rb.find_orbit(case)
+    The motion `orbit` of the example of `rattlebox.find_orbit` is a symmetric one:
+
     >>> orbit.is_stable, orbit.cycles, len(orbit.impacts)
     (True, 1, 2)
     """

@@ -99,17 +99,9 @@ def continue_point(
 
     Examples
     --------
+    With the branch of the example of `rattlebox.continue_orbit`:
+
     >>> import rattlebox as rb
-    >>> case = rb.Case(
-    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
-    ...     damper=rb.ImpactDamper(
-    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
-    ...     ),
-    ...     load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
-    ...     method=rb.Newton(),
-    ...     duration="3 s",
-    ... )
-    >>> branch = rb.continue_orbit(rb.find_orbit(case), "load.frequency", ("32 Hz", "34 Hz"), progress=False)
     >>> axes, limits = ("load.frequency", "damper.gap"), [("31 Hz", "34 Hz"), ("0.8 mm", "1.2 mm")]
     >>> curve = rb.continue_point(branch.specials[0], axes, limits, points=10, progress=False)
     >>> curve.attrs["kind"]
