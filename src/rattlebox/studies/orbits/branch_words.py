@@ -53,9 +53,10 @@ def size_of_motion(data: xarray.Dataset, place: str | None = None) -> xarray.Dat
 
     A structure whose motion is prescribed does not respond; the approach speed of the slowest impact stands for it.
     """
-    if not data.sizes["place"] or not (data.amplitude.values > 0).any():
-        return data.slowest_impact
-    return data.amplitude.isel(place=0) if place is None else data.amplitude.sel(place=place)
+    responds = data.sizes["place"] and (data.amplitude.values > 0).any()
+    if responds:
+        data = data.isel(place=0) if place is None else data.sel(place=place)
+    return data["amplitude" if responds else "slowest_impact"]
 
 
 def stretches(data: xarray.Dataset) -> list[Stretch]:
