@@ -238,11 +238,13 @@ class Flow:
         shapes = shape_columns(self.case, self._columns(self.values), point)
         return shapes[:, 0], self.slopes(shapes)
 
-    def slopes(self, variants: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the derivatives in the parameters of numbers in all variants, (..., p)."""
+    def slopes(self, variants: ArrayLike, values: ArrayLike | None = None) -> NDArray[np.float64]:
+        """Return the derivatives in the parameters of numbers in all variants of `variants`, (..., p)."""
         fine, _ = self._weights()
-        whole = np.broadcast_to(variants, (*variants.shape[:-1], fine.shape[1]))
-        slopes: NDArray[np.float64] = (whole - whole[..., :1]) @ fine.T / self._sizes(self.values)
+        numbers = np.asarray(variants, dtype=float)
+        whole = np.broadcast_to(numbers, (*numbers.shape[:-1], fine.shape[1]))
+        sizes = self._sizes(self.values if values is None else np.asarray(values, dtype=float))
+        slopes: NDArray[np.float64] = (whole - whole[..., :1]) @ fine.T / sizes
         return slopes
 
     def _sizes(self, values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -19,6 +19,11 @@ class StopOrbit:
     speed: float
     load_phase: float
 
+    @property
+    def departure(self) -> float:
+        """Acceleration away from the stop directly after the impact; the mass rests there if it is negative."""
+        return self.stop - 2 * self.zeta * self.restitution * self.speed - math.cos(self.load_phase)
+
     def state(self, t: float) -> tuple[float, float]:
         """Position and velocity at 0 <= t <= 2 pi / omega."""
         steady = self._steady(0.0)
@@ -39,6 +44,11 @@ class StopOrbit:
 
 def orbits(zeta: float, omega: float, stop: float, restitution: float) -> list[StopOrbit]:
     """All admissible motions with one impact in each cycle of the load."""
+    return [orbit for orbit in candidates(zeta, omega, stop, restitution) if orbit.admissible()]
+
+
+def candidates(zeta: float, omega: float, stop: float, restitution: float) -> list[StopOrbit]:
+    """All solutions with one impact in each cycle, whether or not the mass stays clear of the stop between them."""
     period = 2 * math.pi / omega
     # The free part h repeats but for the jump: (E - 1) h(0) = (0, (1 + e) v), so h(0) = v g.
     g = np.linalg.solve(transition(zeta, period) - np.eye(2), [0.0, 1 + restitution])
@@ -48,6 +58,6 @@ def orbits(zeta: float, omega: float, stop: float, restitution: float) -> list[S
     for v in roots(q * q + (r / omega) ** 2, 2 * p * q, p * p - size * size):
         phase = math.atan2(-r * v / omega, p + q * v) + lag(zeta, omega)
         orbit = StopOrbit(zeta, omega, stop, restitution, v, phase)
-        if v > 0 and orbit.admissible():
+        if v > 0:
             result.append(orbit)
     return result

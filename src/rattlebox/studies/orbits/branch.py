@@ -46,6 +46,9 @@ class SpecialPoint:
         Index of the point in the branch.
     orbit : Orbit
         Periodic motion at the point.
+    passage : str
+        How the branch goes on at a grazing, such as "continues with 3 impacts" or "nonsmooth fold, turns back with 3
+        impacts"; "" at other points.
     """
 
     kind: str
@@ -53,9 +56,10 @@ class SpecialPoint:
     value: float
     index: int
     orbit: Orbit
+    passage: str = ""
 
     def __str__(self) -> str:
-        return f"{KINDS[self.kind]} at {self.parameter} = {self.value:.9g}"
+        return f"{KINDS[self.kind]} at {self.parameter} = {self.value:.9g}{self.passage and f'; {self.passage}'}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +72,8 @@ class Branch:
         Points in their order along the branch: `value` of the parameter; `amplitude` of each point of the structure [m];
         `multiplier_real` and `multiplier_imaginary`; `stable`; `impacts` in a period; `slowest_impact` [m/s];
         `nearest_miss` [m]; `symmetric`; `sticks`; `special`, the name of a special point or ""; `located`, the value of
-        the parameter there; `state` and `phase`, from which the motion can be computed again; `determinant_error`.
+        the parameter there; `passage`, how the branch goes on at a grazing; `state` and `phase`, from which the motion
+        can be computed again; `determinant_error`.
 
     Examples
     --------
@@ -107,6 +112,7 @@ class Branch:
                 float(self.data.located[k]),
                 int(k),
                 self.orbit(int(k)),
+                str(self.data.passage[k].item()),
             )
             for k in found
         )

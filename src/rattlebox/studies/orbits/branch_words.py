@@ -129,7 +129,9 @@ def sentences(data: xarray.Dataset) -> Iterator[str]:
     if points.size:
         kinds = [str(data.special[k].item()) for k in points]
         places = [amount(float(data.located[k]), unit) for k in points]
-        named = [f"{noun(kind)} at {place}" for kind, place in zip(kinds, places, strict=True)][:_MOST_POINTS]
+        ways = [f" ({passage})" if (passage := str(data.passage[k].item())) else "" for k in points]
+        named = [f"{noun(kind)} at {place}{way}" for kind, place, way in zip(kinds, places, ways, strict=True)]
+        named = named[:_MOST_POINTS]
         rest = [counted(points.size - _MOST_POINTS, "further one")] if points.size > _MOST_POINTS else []
         yield f"Special points: {joined(named + rest)}."
     if ended := str(data.attrs.get("ended", "")):

@@ -49,6 +49,7 @@ class Point:
     located: float = field(
         default=np.nan
     )  # value of the parameter at a special point, by extrapolation if it is singular
+    passage: str = ""  # how the branch goes on at a grazing
 
     @property
     def contacts(self) -> Counter[int]:
@@ -102,7 +103,7 @@ class Corrector:
         """Return the fixed point near a state at a value of the parameter, with the tangent nearest to `toward`."""
         n = state.size
         fixed = np.append(np.zeros(n), 1.0)
-        corrected = self._correct(self.returns, state, value, scale, fixed)
+        corrected = self.correct(self.returns, state, value, scale, fixed)
         if corrected is None:
             return None
         state, value, shot, _ = corrected
@@ -119,14 +120,14 @@ class Corrector:
         n = point.scale.size
         state = point.orbit.state + length * point.tangent[:n] * point.scale
         value = point.value + length * point.tangent[n] * self.width
-        corrected = self._correct(point.returns, state, value, point.scale, point.tangent)
+        corrected = self.correct(point.returns, state, value, point.scale, point.tangent)
         if corrected is None:
             return None
         state, value, shot, count = corrected
         after = self.finish(point.returns, state, value, shot, point.scale, point.tangent)
         return None if after is None else (after, count)
 
-    def _correct(
+    def correct(
         self, returns: ReturnMap, state: Vector, value: float, scale: Vector, normal: Vector
     ) -> tuple[Vector, float, Shot, int] | None:
         """Return the fixed point in the plane through a guess that is normal to a direction."""
@@ -211,9 +212,9 @@ class Corrector:
         dx = by_state @ (point.tangent[:n] * point.scale) + by_value * point.tangent[n] * self.width
         guide = np.append(dx / point.scale, point.tangent[n])
         new = returns.with_(phase=moved.phase)
-        corrected = self._correct(new, end_state, point.value, point.scale, np.append(np.zeros(n), 1.0))
+        corrected = self.correct(new, end_state, point.value, point.scale, np.append(np.zeros(n), 1.0))
         if corrected is None:
-            corrected = self._correct(new, end_state, point.value, point.scale, guide)
+            corrected = self.correct(new, end_state, point.value, point.scale, guide)
         if corrected is None:
             return point
         state, value, shot, _ = corrected
@@ -232,7 +233,7 @@ class Corrector:
         share = (limit - point.value) / (after.value - point.value)
         state = point.orbit.state + share * (after.orbit.state - point.orbit.state)
         n = state.size
-        corrected = self._correct(point.returns, state, limit, point.scale, np.append(np.zeros(n), 1.0))
+        corrected = self.correct(point.returns, state, limit, point.scale, np.append(np.zeros(n), 1.0))
         if corrected is None:
             return None
         return self.finish(point.returns, corrected[0], limit, corrected[2], point.scale, point.tangent)
@@ -263,3 +264,19 @@ class Corrector:
             if abs(high - low) < _ACCURATE * self.longest or moved < _ACCURATE * self.longest:
                 break
         return best
+
+    def change(self, point: Point, after: Point, what: Callable[[Point], object]) -> tuple[Point, Point]:
+        """Return the points on both sides of the place between two points at which something changes.
+
+        The distance along the branch is bisected; where no motion can be computed, it counts as changed.
+        """
+        low, high = 0.0, self.distance(point, after)
+        here, last, next_one = what(point), point, after
+        while high - low > _ACCURATE * self.longest:
+            middle = 0.5 * (low + high)
+            taken = self.step(point, middle)
+            if taken is not None and what(taken[0]) == here:
+                low, last = middle, taken[0]
+            else:
+                high, next_one = middle, next_one if taken is None else taken[0]
+        return last, next_one

@@ -15,7 +15,7 @@ import numpy as np
 
 from rattlebox.model.errors import several
 from rattlebox.studies.orbits.corrector import TESTS, Corrector, Point
-from rattlebox.studies.orbits.grazing import approach, beyond
+from rattlebox.studies.orbits.grazing import NAMES, NOT_FOUND, approach, beyond, is_pressed, located_by
 
 _FEW, _MANY = 3, 5
 """Numbers of corrections at which a step becomes longer or shorter."""
@@ -53,14 +53,15 @@ class Follower:
                 event = None if before is None else approach(corrector, before, point, longest)
                 if event is not None:
                     points, indicator = event
-                    yield from points
-                    there = beyond(corrector, points[-1], indicator)
-                    if there is None:
-                        self.reasons.append("no motion was found beyond the grazing")
-                        return
-                    yield there
+                    passage = beyond(corrector, points[-1], indicator)
+                    yield from points[:-1]
+                    yield located_by(points[-1], passage)
                     count += len(points) + 1
-                    before, point, length = None, corrector.resection(there), longest / 64
+                    if passage is None:
+                        self.reasons.append(f"grazing, {NOT_FOUND}")
+                        return
+                    yield passage.point
+                    before, point, length = None, corrector.resection(passage.point), longest / 64
                     continue
                 if taken is None or not is_near:
                     length /= 2
@@ -75,9 +76,11 @@ class Follower:
                     yield from self._special(point, last)
                     yield last
                 return
-            if not point.orbit.sticks and after.orbit.sticks:
-                after = _named(after, "sticking")
-            yield from self._special(point, after)
+            found = list(self._special(point, after))
+            yield from found
+            if any(each.special == "pitchfork" and not each.returns.mirrored for each in found):
+                self.reasons.append("the mirror images of these motions follow")
+                return
             yield after
             count += 1
             if corrections <= _FEW:
@@ -114,12 +117,29 @@ class Follower:
                 kind = _kind(name, located)
                 if kind:
                     found.append(_named(located, kind))
+        found += self._changes(point, after)
         names = [each.special for each in found]
         if "fold" in names and "branch point" in names and not point.returns.mirrored:
             # Motions without the symmetry turn back where they meet the symmetric ones, their mirror images.
             found = [each for each in found if each.special != "branch point"]
             found[names.index("fold")] = replace(found[names.index("fold")], special="pitchfork")
         yield from sorted(found, key=lambda each: self.corrector.distance(point, each))
+
+    def _changes(self, point: Point, after: Point) -> list[Point]:
+        """Return the point between two points at which sticking begins or ends, or else the sequence of impacts changes."""
+        if point.orbit.sticks != after.orbit.sticks:
+            low, high = self.corrector.change(point, after, lambda each: each.orbit.sticks)
+            return [replace(low, special="sticking", located=0.5 * (low.value + high.value))]
+        if point.contacts != after.contacts:
+            low, high = self.corrector.change(point, after, lambda each: each.contacts)
+            gains = high.contacts.total() > low.contacts.total()
+            # The number of impacts of complete chatter depends on the threshold of sticking.
+            if low.orbit.sticks and high.orbit.sticks and is_pressed(high if gains else low):
+                return []
+            passage = f"continues with {several(high.contacts.total(), 'impact')}"
+            kind = NAMES["miss" if gains else "slow"]
+            return [replace(low, special=kind, located=0.5 * (low.value + high.value), passage=passage)]
+        return []
 
 
 def _kind(name: str, point: Point) -> str:

@@ -13,7 +13,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from rattlebox.model.errors import several
+from rattlebox.studies.orbits.motion import GapLines
 from rattlebox.studies.orbits.shooting import solve
+from rattlebox.studies.orbits.unfolding import aimed, touch_at, unfolding_at
 
 if TYPE_CHECKING:
     from rattlebox.studies.orbits.corrector import Corrector, Point
@@ -21,14 +24,29 @@ if TYPE_CHECKING:
 _APPROACHES = 40
 _SHARE = 0.85
 """Part of the extrapolated distance to the grazing point that is gone in one step."""
-_CLOSE = {"miss": 1e-7, "slow": 1e-3}
-"""Gap or approach speed, over that at the beginning of the search, at which grazing is extrapolated."""
+_CLOSE = {"miss": 1e-9, "slow": 1e-5}
+"""Gap or approach speed, over the sizes of gaps and of speeds in the motion, at which grazing is extrapolated."""
+_ENOUGH = {"miss": 1e-5, "slow": 1e-3}
+"""The same, at which it is extrapolated if no closer motion can be computed."""
 _FAR = 3.0
 """Largest extrapolated distance to a grazing point, in longest steps of the branch."""
-_BEYOND = (1e-4, 1e-3, 5e-3)
-"""Distances beyond a grazing point at which the motion on its other side is sought, over the range of the parameter."""
+_BEYOND = (0.03, 0.3, 3e-3, 1.0)
+"""Distances from a grazing at which the motion that begins there is sought, in longest steps of the branch."""
 NAMES = {"miss": "grazing", "slow": "impact lost"}
 """Names of the special points."""
+NOT_FOUND = "no motion with one contact more or less was found beyond it"
+
+
+_SEARCHED = (1e-4, 1e-3, 5e-3)
+"""Distances from a grazing over the range of the parameter, at which a motion is sought that the map does not predict."""
+_NEAR = 0.05
+"""Largest change of its state, over the size of the motion."""
+_REFINED, _SMALLER = 4, 0.01
+"""Number of motions without the impact that approach a grazing, and ratio of their gaps."""
+_AGREES = 1e-3
+"""Largest difference of the values of a grazing from both sides, over the value."""
+_APART = 1.1
+"""Smallest ratio of the quantities of two points from which a grazing is extrapolated."""
 
 
 class Indicator(NamedTuple):
@@ -53,14 +71,13 @@ def approach(corrector: Corrector, before: Point, point: Point, length: float) -
     chosen = _next(corrector, before, point, length)
     if chosen is None:
         return None
-    reference = indicators(point)[chosen]
-    row = [before, point]
+    size, row = _size(point, chosen), [before, point]
     for _ in range(_APPROACHES):
-        if indicators(row[-1])[chosen] < _CLOSE[chosen.kind] * reference:
+        if indicators(row[-1])[chosen] < _CLOSE[chosen.kind] * size:
             break
         distance = _distance(corrector, row[-2], row[-1], chosen)
         if not 0 < distance < _FAR * length:
-            return None
+            break
         share = _SHARE
         while share > 1e-3:
             taken = corrector.step(row[-1], share * distance)
@@ -70,13 +87,26 @@ def approach(corrector: Corrector, before: Point, point: Point, length: float) -
             share /= 2
         else:
             break
-    if len(row) < 4 or indicators(row[-1])[chosen] > 0.05 * reference:
+    if indicators(row[-1])[chosen] > _ENOUGH[chosen.kind] * size:
         return None
-    sizes = np.array([indicators(each)[chosen] for each in row[-3:]])
-    values = np.array([each.value for each in row[-3:]])
+    # Points whose quantities differ by less than their rounding errors cannot be extrapolated.
+    last = [row[-1]]
+    for each in row[-2::-1]:
+        if len(last) < 3 and indicators(each)[chosen] > _APART * indicators(last[0])[chosen]:
+            last.insert(0, each)
+    sizes = np.array([indicators(each)[chosen] for each in last])
+    values = np.array([each.value for each in last])
     # The parameter is a smooth function of the gap and of the approach speed, whose zero is the grazing.
-    located = float(np.polynomial.polynomial.polyfit(sizes / sizes[0], values - values[-1], 2)[0] + values[-1])
-    return [*row[2:-1], replace(row[-1], special=NAMES[chosen.kind], located=located)], chosen
+    smooth = np.polynomial.polynomial.polyfit(sizes / sizes[0], values - values[-1], len(last) - 1)
+    grazing = replace(row[-1], special=NAMES[chosen.kind], located=float(smooth[0] + values[-1]))
+    return [*row[2:-1], grazing], chosen
+
+
+def _size(point: Point, key: Indicator) -> float:
+    """Return the size of the gaps [m] or of their rates [m/s] of a contact in a motion."""
+    lines = GapLines.of(point.returns.problem.dampers, point.returns.modes)
+    row = lines.by_state if key.kind == "miss" else lines.rate_by_state
+    return float(np.abs(row[key.contact]) @ point.scale)
 
 
 def _next(corrector: Corrector, before: Point, point: Point, length: float) -> Indicator | None:
@@ -95,20 +125,112 @@ def _distance(corrector: Corrector, before: Point, point: Point, key: Indicator)
     return float(now * gone / (last - now)) if last > now else np.inf
 
 
-def beyond(corrector: Corrector, point: Point, indicator: Indicator) -> Point | None:
-    """Return a point of the branch on the other side of a grazing; None if none is found."""
-    expected = point.contacts.copy()
-    expected[indicator.contact] += 1 if indicator.kind == "miss" else -1
+class Passage(NamedTuple):
+    """The motion that begins at a grazing, and whether the branch turns back there (a nonsmooth fold)."""
+
+    point: Point
+    folds: bool
+    located: float = np.nan  # value of the parameter at the grazing, from the side without the impact
+
+    def __str__(self) -> str:
+        count = several(len(self.point.orbit.impacts), "impact") + " and sticking" * self.point.orbit.sticks
+        return f"nonsmooth fold, turns back with {count}" if self.folds else f"continues with {count}"
+
+
+def beyond(corrector: Corrector, point: Point, indicator: Indicator) -> Passage | None:
+    """Return the motion with one contact more or less that begins at a grazing, on either side; None if none is found.
+
+    The map near the grazing without the contact, and the kick of the contact in proportion to its approach speed, say on
+    which side it exists and where the search begins.
+    """
+    is_lost = indicator.kind == "slow"
+    touch = touch_at(point.returns, point.orbit.state, [point.value], impact=is_lost)
+    near = None if touch is None else unfolding_at(point.returns, point.orbit.state, [point.value], touch)
+    if touch is None or near is None:
+        return _search(corrector, point)
+    here = near.with_impact(touch.speed) if is_lost else near.without(touch.gap)
+    state, value = point.orbit.state - here[0], point.value - here[1]
+    ahead = near.without if is_lost else near.with_impact
+    n, change = state.size, -1 if is_lost else 1
+    expected = len(point.orbit.impacts) + change * (2 if point.returns.mirrored else 1)
+    unit = 1e-9 * float(point.scale.max())  # where the motion changes in proportion to it
+    for share in _BEYOND:
+        dx, dp = ahead(unit)
+        normal = np.append(dx / point.scale, dp / corrector.width)
+        size = float(np.sqrt(np.sum(corrector.weights(n) * normal**2)))
+        dx, dp = ahead(unit * share * corrector.longest / size)
+        normal = np.append(dx / point.scale, dp / corrector.width)
+        normal /= float(np.sqrt(np.sum(corrector.weights(n) * normal**2)))
+        guess, at = state + dx, value + dp
+        if not is_lost:
+            speed = unit * share * corrector.longest / size
+            guess = aimed(point.returns, near, touch, guess, [at], point.scale, speed)
+        found = corrector.correct(point.returns, guess, at, point.scale, normal)
+        if found is None or not corrector.limits[0] < found[1] < corrector.limits[1]:
+            continue
+        there = corrector.finish(point.returns, *found[:3], point.scale, normal)
+        if there is not None and len(there.orbit.impacts) == expected:
+            located = _limit(corrector, there) if is_lost else np.nan
+            return Passage(there, (there.value > value) == (point.value > value), located)
+    return _search(corrector, point)
+
+
+def located_by(point: Point, passage: Passage | None) -> Point:
+    """Return a point at a grazing with the way on, and with its value from the side without the impact if that is known."""
+    if passage is None:
+        return replace(point, passage=NOT_FOUND)
+    return replace(
+        point,
+        passage=str(passage),
+        located=passage.located
+        if abs(passage.located - point.located) < _AGREES * abs(point.located)
+        else point.located,
+    )
+
+
+def _limit(corrector: Corrector, point: Point) -> float:
+    """Return the value of the parameter at which the smallest gap of a motion vanishes; NaN if it is not found.
+
+    Next to a grazing, rounding errors of the motion with the impact grow as one over its approach speed.
+    """
+    returns, scale, state, value = point.returns, point.scale, point.orbit.state, point.value
+    located = np.nan
+    for _ in range(_REFINED):
+        touch = touch_at(returns, state, [value], impact=False)
+        near = None if touch is None else unfolding_at(returns, state, [value], touch)
+        if touch is None or near is None:
+            return located
+        here, ahead = near.without(touch.gap), near.without(_SMALLER * touch.gap)
+        located = value - here[1]
+        fixed = np.append(np.zeros(state.size), 1.0)
+        found = corrector.correct(returns, state + ahead[0] - here[0], located + ahead[1], scale, fixed)
+        if found is None:
+            return located
+        state, value = found[:2]
+    return located
+
+
+def is_pressed(point: Point) -> bool:
+    """Return whether bodies are pressed together at the slowest impact of a motion, as in chatter."""
+    touch = touch_at(point.returns, point.orbit.state, [point.value], impact=True)
+    return touch is not None and unfolding_at(point.returns, point.orbit.state, [point.value], touch) is None
+
+
+def _search(corrector: Corrector, point: Point) -> Passage | None:
+    """Return a motion with another sequence of impacts near a grazing, onward or backward; None if none is found.
+
+    Where bodies are pressed together at the slow impact, as in chatter, many contacts change at once.
+    """
     onward = 1.0 if point.tangent[-1] >= 0 else -1.0
     for direction in (onward, -onward):
-        for share in _BEYOND:
+        for share in _SEARCHED:
             value = point.located + direction * share * corrector.width
             if not corrector.limits[0] < value < corrector.limits[1]:
                 continue
             found = solve(point.returns, point.orbit.state[None], point.scale, [value])
-            if found is None:
+            if found is None or np.abs((found[0][0] - point.orbit.state) / point.scale).max() > _NEAR:
                 continue
             there = corrector.finish(point.returns, found[0][0], value, found[1], point.scale, direction)
-            if there is not None and +there.contacts == +expected:
-                return there
+            if there is not None and there.contacts != point.contacts:
+                return Passage(there, direction != onward)
     return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -34,6 +35,41 @@ class NearMiss(NamedTuple):
 
 
 @dataclass(frozen=True)
+class GapLines:
+    """The gaps of all contacts as linear functions of the state, in the order of the contacts of the core.
+
+    A gap is `by_state` (contacts, n) times the state plus `offset` (contacts,), and its rate `rate_by_state` times the
+    state.
+    """
+
+    by_state: Vector
+    rate_by_state: Vector
+    offset: Vector
+
+    @classmethod
+    def of(cls, dampers: Sequence[_core.Damper], modes: int) -> GapLines:
+        """Return the lines of some dampers on a structure with some modes."""
+        balls = sum(int(np.size(damper.mass)) for damper in dampers)
+        unit = np.eye(2 * (modes + balls))
+        rows, offsets, first = list[Vector](), list[float](), 2 * modes
+        for damper in dampers:
+            half = 0.5 * float(damper.clearance)
+            own = slice(first, first := first + int(np.size(damper.mass)))
+            centre = np.asarray(damper.shape) @ unit[0 : 2 * modes : 2]
+            if own.start == own.stop:  # a stop
+                rows.append(-centre[None])
+                offsets.append(half)
+            else:
+                rows.append(np.diff(np.vstack([centre, unit[own], centre]), axis=0))
+                offsets += [half, *np.zeros(own.stop - own.start - 1), half]
+        by_state = np.vstack([np.zeros((0, len(unit))), *rows])
+        rates = np.zeros_like(by_state)
+        rates[:, 1 : 2 * modes : 2] = by_state[:, 0 : 2 * modes : 2]
+        rates[:, 2 * modes + balls :] = by_state[:, 2 * modes : 2 * modes + balls]
+        return cls(by_state, rates, np.array(offsets))
+
+
+@dataclass(frozen=True)
 class Motion:
     """Samples of a motion, with both sides of each hard impact, and its impacts."""
 
@@ -52,21 +88,8 @@ class Motion:
 
     def gaps(self) -> tuple[Vector, Vector]:
         """Return the gaps of all contacts and their rates, (T, contacts), in the order of the contacts of the core."""
-        q, p = self.state[:, 0 : 2 * self.modes : 2], self.state[:, 1 : 2 * self.modes : 2]
-        balls = sum(np.size(damper.mass) for damper in self.dampers)
-        places, speeds = np.split(self.state[:, 2 * self.modes : 2 * (self.modes + balls)], 2, axis=1)
-        first, gap, rate = 0, list[Vector](), list[Vector]()
-        for damper in self.dampers:
-            half = 0.5 * float(damper.clearance)
-            own = slice(first, first := first + int(np.size(damper.mass)))
-            for row, motion, part, edge in ((gap, q, places, half), (rate, p, speeds, 0.0)):
-                centre = motion @ damper.shape
-                if own.start == own.stop:  # a stop
-                    row.append((edge - centre)[:, None])
-                else:
-                    inside = np.column_stack([centre - edge, part[:, own], centre + edge])
-                    row.append(np.diff(inside, axis=1))
-        return np.hstack(gap), np.hstack(rate)
+        lines = GapLines.of(self.dampers, self.modes)
+        return self.state @ lines.by_state.T + lines.offset, self.state @ lines.rate_by_state.T
 
     def near_misses(self) -> list[NearMiss]:
         """Return the minima of all gaps over time at which there is no contact."""

@@ -14,11 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox.model.paths import replaced
 from rattlebox.prepare.pack import pack
 from rattlebox.studies.orbits.flow import Flow
 
 if TYPE_CHECKING:
+    from rattlebox.studies.orbits.flow_end import End
     from rattlebox.studies.orbits.forcing import Forcing
+    from rattlebox.studies.orbits.motion import GapLines
 
 Vector = NDArray[np.float64]
 
@@ -87,9 +90,9 @@ class ReturnMap:
         step = self.length(1.0)
         self.phases = [self.phase + k * step for k in range(segments)]
         self._flows = [Flow(forcing.shifted(each % 1.0), self.parameters) for each in self.phases]
-        problem = pack(forcing.case)
-        self.modes = int(problem.mode_decay.size)
-        self.rows = [int(np.size(damper.mass)) for damper in problem.dampers]
+        self.problem = pack(forcing.case)
+        self.modes = int(self.problem.mode_decay.size)
+        self.rows = [int(np.size(damper.mass)) for damper in self.problem.dampers]
         self.reflection = _reflection(self.modes, self.rows) if mirrored else np.eye(self.size)
 
     @property
@@ -128,6 +131,20 @@ class ReturnMap:
                 stretch = np.outer(end.by_time, self.length(1.0) * np.array(slopes)) if self.parameters else 0.0
                 by.append(turn @ (end.by_parameter + stretch) if self.parameters else np.zeros((n, 0)))
         return Shot(residual, tuple(ends), np.array(blocks), np.array(by))
+
+    def forcing_at(self, values: Sequence[float]) -> Forcing:
+        """Return the forcing of the case at values of the parameters."""
+        case = replaced(self.forcing.case, dict(zip(self.parameters, map(float, values), strict=True)))
+        return type(self.forcing).of(case)
+
+    def stretch(self, state: Vector, values: Sequence[float], begin: float, end: float) -> End:
+        """Return the motion between two shares of the time of the map, from a state at the first one."""
+        whole = self.length(self.forcing.period_of(self.parameters, values)[0]) * self.segments
+        return self._flows[0].over(state, (end - begin) * whole, tuple(map(float, values)), start=begin * whole)
+
+    def gap_lines(self, values: Sequence[float]) -> tuple[GapLines, list[GapLines]]:
+        """Return the gaps as functions of the state at values of the parameters, and their derivatives in each of these."""
+        return self._flows[0].gap_lines(tuple(map(float, values)))
 
     def part(self, duration: float, state: Vector, value: float, share: float) -> tuple[Vector, Vector, Vector] | None:
         """Return the state after a share of the period of the loads, and its derivatives by state and parameter."""

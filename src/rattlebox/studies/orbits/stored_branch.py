@@ -77,7 +77,12 @@ class BranchFile:
             point = corrector.finish(returns, state, value, shot, last.scale, guide) if shot.is_complete else None
             if point is None:
                 return
-            last = replace(point, special=str(row.special.item()), located=float(row.located))
+            last = replace(
+                point,
+                special=str(row.special.item()),
+                located=float(row.located),
+                passage=str(row.passage.item()),
+            )
             self.sides[side].append(last)
 
     def collect(self, side: int, most: int, proceed: Callable[[], bool]) -> None:
