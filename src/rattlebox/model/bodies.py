@@ -6,7 +6,7 @@ import math
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -18,10 +18,11 @@ from .base import Part
 from .elementwise import Vector
 from .errors import Hint
 from .kinds import AnyKind
+from .round_part import RoundPart
 from .solids import Solid, body, mesh
 from .space import Direction, Lengths, unit_vector
 from .triangle_surface import TriangleSurface, surface_notes, surface_words
-from .units import Angle, PositiveLength, Whole, radius_of_diameter
+from .units import Angle, PositiveLength, Whole
 
 if TYPE_CHECKING:
     from .cavities import Cavity
@@ -80,23 +81,7 @@ class Body(Part):
         return self.model_dump_json()
 
 
-class _Round(Body):
-    """A body with a radius."""
-
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("radius", "diameter"),)
-    kind: str
-    radius: PositiveLength
-    diameter: PositiveLength | None = Field(default=None, exclude=True)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _radius_of_diameter(cls, values: object) -> Any:
-        if isinstance(values, dict) and values.get("radius") is None and values.get("diameter") is None:
-            raise Hint("either radius or diameter is needed", 'diameter = "6 mm"')
-        return radius_of_diameter(values)
-
-
-class RodBody(_Round):
+class RodBody(RoundPart, Body):
     """A circular rod with flat ends.
 
     Parameters
@@ -182,7 +167,7 @@ class PlateBody(Body):
         return f"a plate of {sizes(self.size)}"
 
 
-class BallBody(_Round):
+class BallBody(RoundPart, Body):
     """A fixed ball.
 
     Parameters

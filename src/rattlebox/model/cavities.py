@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
 from rattlebox._util.phrases import sizes
 from rattlebox._util.quantities import amount
@@ -19,10 +19,11 @@ from rattlebox._util.quantities import amount
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint, nearest
+from .round_part import RoundPart
 from .solids import Solids
 from .space import AXES, Direction, Lengths, components_along, to_global, unit_vector, wrapped
 from .surfaces import Surface, bands, circle, facing_inward
-from .units import PositiveLength, radius_of_diameter
+from .units import PositiveLength
 
 WallForm = Literal["plane", "cylinder", "sphere"]
 
@@ -400,23 +401,7 @@ class PlaneCavity(Cavity):
         return self._polyhedron.area / self.volume
 
 
-class _Round(Cavity):
-    """A cavity with a radius."""
-
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("radius", "diameter"),)
-    kind: str
-    radius: PositiveLength
-    diameter: PositiveLength | None = Field(default=None, exclude=True)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _radius_of_diameter(cls, values: object) -> Any:
-        if isinstance(values, dict) and values.get("radius") is None and values.get("diameter") is None:
-            raise Hint("either radius or diameter is needed", 'diameter = "40 mm"')
-        return radius_of_diameter(values)
-
-
-class Cylinder(_Round):
+class Cylinder(RoundPart, Cavity):
     """A circular cylinder with flat ends.
 
     Parameters
@@ -497,7 +482,7 @@ class Cylinder(_Round):
         return float(self.length * abs(np.sum(along * direction)) + 2 * self.radius * across)
 
 
-class SphericalCavity(_Round):
+class SphericalCavity(RoundPart, Cavity):
     """A hollow sphere.
 
     Parameters

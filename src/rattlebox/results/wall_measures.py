@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from rattlebox.model.errors import Hint
 
 if TYPE_CHECKING:
-    from .arrays import RunArrays
     from .record import Record
 
 
-def _walls(run: Record) -> RunArrays:
-    """Return the arrays of a run that has recorded its walls."""
+def _over_area_and_time(run: Record, name: str) -> dict[str, float]:
+    """Return the growth of a sum of each wall from the first to the last sample, over its area and the time."""
     arrays = run.arrays
     if not arrays.walls:
         raise Hint(
@@ -24,13 +23,8 @@ def _walls(run: Record) -> RunArrays:
             else "a 1-D run has no faces of a cavity; its impacts are in run.impacts",
             "output = rb.Output(walls=True)" if arrays.engine == "dem" else "a ParticleDamper",
         )
-    return arrays
-
-
-def _over_area_and_time(arrays: RunArrays, sums: NDArray[np.float64]) -> dict[str, float]:
-    """Return the growth of a sum from the first to the last sample, over the area of each wall and the time."""
-    length = float(arrays.time[-1] - arrays.time[0])
-    rates = (sums[-1] - sums[0]) / arrays.wall_area / length
+    sums: NDArray[np.float64] = getattr(arrays, name)
+    rates = (sums[-1] - sums[0]) / arrays.wall_area / float(arrays.time[-1] - arrays.time[0])
     return dict(zip(arrays.walls, rates.tolist(), strict=True))
 
 
@@ -74,8 +68,7 @@ def wall_pressures(run: Record) -> dict[str, float]:
     >>> round(float(rb.analysis.wall_pressures(run)["-z"] * 0.02**2 / weight), 2)
     1.0
     """
-    arrays = _walls(run)
-    return _over_area_and_time(arrays, arrays.wall_normal_impulse)
+    return _over_area_and_time(run, "wall_normal_impulse")
 
 
 def wall_wear(run: Record) -> dict[str, float]:
@@ -125,15 +118,4 @@ def wall_wear(run: Record) -> dict[str, float]:
     >>> wear["-z"] > wear["+z"] == 0
     True
     """
-    arrays = _walls(run)
-    return _over_area_and_time(arrays, arrays.wall_sliding_loss)
-
-
-def largest_wall_pressure(run: Record) -> float:
-    """Return the largest mean normal pressure of all walls [Pa]; see `wall_pressures`."""
-    return max(wall_pressures(run).values())
-
-
-def largest_wall_wear(run: Record) -> float:
-    """Return the largest power of friction over the area of a wall [W/m^2]; see `wall_wear`."""
-    return max(wall_wear(run).values())
+    return _over_area_and_time(run, "wall_sliding_loss")

@@ -18,7 +18,7 @@ from rattlebox.engines.batch import BlockOutput
 from rattlebox.model.errors import Hint
 from rattlebox.results.extremes import largest_acceleration, largest_drift
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.results.wall_measures import largest_wall_pressure, largest_wall_wear
+from rattlebox.results.wall_measures import wall_pressures, wall_wear
 from rattlebox.studies.work.work import Values
 
 if TYPE_CHECKING:
@@ -125,8 +125,8 @@ MEASURES = Measures(
 OF_RUN: dict[str, Callable[[Run], float]] = {
     "largest_drift": largest_drift,
     "largest_acceleration": largest_acceleration,
-    "largest_wall_pressure": largest_wall_pressure,
-    "largest_wall_wear": largest_wall_wear,
+    "largest_wall_pressure": lambda run: max(wall_pressures(run).values()),
+    "largest_wall_wear": lambda run: max(wall_wear(run).values()),
 }
 """Functions of the measures that are computed from a Run."""
 
