@@ -58,6 +58,11 @@ class Body(Part):
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return the solids in a cavity, which decides on lengths that are not given."""
 
+    @property
+    def number(self) -> int:
+        """Number of bodies for which it stands at least: millions are refused before they are made."""
+        return 1
+
     @abstractmethod
     def words(self) -> str:
         """Return a phrase with the sizes: "a rod, 6 mm in diameter"."""
@@ -272,6 +277,11 @@ class BodyRing(Body):
         """The name, or that of the body."""
         return self.name or self.body.label
 
+    @property
+    def number(self) -> int:
+        """That of the body, times the count."""
+        return self.count * self.body.number
+
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return all bodies."""
         frame = frame_along(self.axis)
@@ -323,6 +333,11 @@ class BodyRow(Body):
     def label(self) -> str:
         """The name, or that of the body."""
         return self.name or self.body.label
+
+    @property
+    def number(self) -> int:
+        """That of the body, times the count."""
+        return self.count * self.body.number
 
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return all bodies."""

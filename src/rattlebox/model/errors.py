@@ -330,4 +330,8 @@ def _complaint_and_suggestion(
         return _PLAIN[what], "[" + (f'"{value}"' if isinstance(value, str) else f"{value!r}") + "]"
     if what == "greater_than":
         return f"must be greater than {format(context['gt'], 'g') if context['gt'] else 'zero'}", ""
-    return _PLAIN[what].format(**context) if what in _PLAIN else finding["msg"], ""
+    while len(location) > 1 and isinstance(location[-1], int):  # the example of a list
+        location = location[:-1]
+    has_example = what == "finite_number" or what.endswith(("_type", "_parsing"))
+    advice = _example_of(location, source, vocabulary) if has_example else ""
+    return _PLAIN[what].format(**context) if what in _PLAIN else finding["msg"], advice

@@ -44,7 +44,8 @@ def existing(path: str | os.PathLike[str]) -> Path:
     if file.is_file():
         return file
     if file.is_dir():
-        raise DataError(f"{file} is a folder, not a file")
+        names = sorted(other.name for other in file.iterdir() if other.is_file())[:2]
+        raise DataError(f"{file} is a folder, not a file", " or ".join(str(file / name) for name in names) or "a file")
     folder = file.parent
     if not folder.is_dir():
         raise DataError(f"there is no file {file}: there is no folder {folder}")

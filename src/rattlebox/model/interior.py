@@ -8,6 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from rattlebox._util.quantities import amount
+
 from .bodies import MOST_BODIES, Body, bodies_words
 from .cavities import Cavity, Walls
 from .elementwise import Vector
@@ -15,6 +17,8 @@ from .errors import Hint
 from .necks import neck_notes, widest_sphere
 from .solids import Solid, Solids
 from .surfaces import Surface
+
+_SMALL = 0.05  # size of a body over the radius of a particle that suggests a wrong unit
 
 
 class Interior(Cavity):
@@ -34,15 +38,16 @@ class Interior(Cavity):
         """The bodies, with names of their own; an array of bodies has one name."""
         solids: list[Solid] = []
         names = list(self.shape.walls().names)
-        for each in self.bodies:
+        total = sum(each.number for each in self.bodies)
+        for each in self.bodies if total <= MOST_BODIES else ():
             name, number = each.label, 1
             while name in names:
                 number += 1
                 name = f"{each.label}{number}"
             names.append(name)
             solids += [replace(solid, name=name) for solid in each.solids(self.shape)]
-        if len(solids) > MOST_BODIES:
-            raise Hint(f"{len(solids)} bodies are too many", f"at most {MOST_BODIES}", ["bodies"])
+        if max(total, len(solids)) > MOST_BODIES:
+            raise Hint(f"{max(total, len(solids))} bodies are too many", f"at most {MOST_BODIES}", ["bodies"])
         return tuple(solids)
 
     @cached_property
@@ -64,7 +69,7 @@ class Interior(Cavity):
             before = [
                 other for other in self.solids[:k] if (other.bounds[0] < high).all() and (other.bounds[1] > low).all()
             ]
-            points = solid.samples
+            points = solid.samples(len(self.solids))
             free = self.shape.depth(points) >= 0
             for other in before:
                 free &= ~other.is_within(points)
@@ -138,6 +143,16 @@ class Interior(Cavity):
         """Yield notes on the bodies, and where spheres do not pass."""
         for each in self.bodies:
             yield from each.notes()
+        sizes: dict[str, float] = {}
+        for solid in self.solids:
+            low, high = solid.bounds
+            sizes[solid.name] = max(sizes.get(solid.name, 0.0), float((high - low).max()))
+        for name, size in sizes.items():
+            if size < _SMALL * radius:
+                yield (
+                    f"warning: the body {name!r} is {amount(size, 'm')} large, and particles of {amount(2 * radius, 'm')} "
+                    "hardly notice it; try: another unit of its sizes, or no body"
+                )
         yield from neck_notes(self, radius)
 
     @cached_property
@@ -157,7 +172,7 @@ class Interior(Cavity):
         inside: dict[str, bool] = {}
         for solid, share in zip(self.solids, self._shares, strict=True):
             # The outer plates of an array may be outside of the cavity, but not all of them.
-            is_inside = share > 0 or bool(self.shape.depth(solid.samples).max() >= 0)
+            is_inside = share > 0 or bool(self.shape.depth(solid.samples(len(self.solids))).max() >= 0)
             inside[solid.name] = inside.get(solid.name, False) or is_inside
         for name, is_inside in inside.items():
             if not is_inside:

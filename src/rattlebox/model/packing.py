@@ -499,6 +499,9 @@ def _from_arrays(file: Path, arrays: dict[str, Vector]) -> dict[str, Vector]:
 
 
 _COUNTABLE = 1_000_000  # lattices with more sites are not built to count them
+_MOST_SITES = (
+    4_000_000  # of a lattice in the bounding box, unless particles need more; of more, evenly spread ones are built
+)
 
 
 @dataclass(frozen=True)
@@ -516,14 +519,20 @@ class _Grid:
         """Return the coordinates of sites along the axes of the cavity [m]."""
         step = cell / np.sqrt(2) if self.centred else cell
         most = max(1000, 4 * self.count)  # limits the memory in cavities that are far wider than high
-        axes = []
+        counts, halves = [], []
         for length, inside in zip(cavity.lengths, cavity.inside, strict=True):
             count = int(np.floor((length - cell) / step * (1 + 1e-12) + 1e-9)) + 1
             if self.middle and count == 2 and inside < length:
                 count = 1
             half = (length - cell) / 2 if count > 1 else 0.0
-            axes.append(np.linspace(-half, half, min(count, most)))
-        return axes
+            counts.append(min(count, most))
+            halves.append(half)
+        # A surface of triangles in a wrong unit would have billions of sites, of which a few are needed.
+        box = float(np.prod(cavity.lengths)) / cavity.volume
+        spare = math.prod(counts) / max(_MOST_SITES, 8 * self.count * box)
+        if spare > 1:
+            counts = [max(min(count, 2), math.floor(count * spare ** (-1 / 3))) for count in counts]
+        return [np.linspace(-half, half, count) for half, count in zip(halves, counts, strict=True)]
 
     def __call__(self, cavity: AnyCavity, cell: float) -> Vector:
         """Return the sites at which a sphere as large as the cell is inside the cavity, (n, 3) [m]."""

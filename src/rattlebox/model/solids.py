@@ -19,7 +19,7 @@ from .surfaces import Surface, bands, circle, facing_inward
 
 SolidForm = Literal["rod", "plate", "ball", "mesh"]
 
-_SAMPLES = 2**18  # points by which the share of a solid in a cavity is computed
+_SAMPLES = 2**18, 2**22  # points by which the share of a solid in a cavity is computed, and those of all together
 _AROUND, _LATITUDES = 36, 17  # corners of drawn rods and balls
 _SPREAD = 1.2207440846057596  # of the sequence in `Cavity.spread`
 
@@ -89,11 +89,10 @@ class Solid:
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         return 0.5 * float(np.linalg.norm(normals, axis=1).sum())
 
-    @cached_property
-    def samples(self) -> Vector:
-        """Points that fill the body evenly, (n, 3) [m]; see `Cavity.spread` for the sequence."""
-        steps = _SPREAD ** -np.arange(1.0, 4.0)
-        share = (np.arange(_SAMPLES)[:, None] * steps + 0.5) % 1.0
+    def samples(self, solids: int) -> Vector:
+        """Return points that fill one of several bodies evenly, (n, 3) [m]; see `Cavity.spread` for the sequence."""
+        count = min(_SAMPLES[0], _SAMPLES[1] // solids)
+        share = (np.arange(count)[:, None] * _SPREAD ** -np.arange(1.0, 4.0) + 0.5) % 1.0
         if self.form == "mesh":
             low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
             points = low + share * (high - low)

@@ -29,7 +29,10 @@ def triple(unit: str, what: str, example: str) -> Any:
         read = []
         for index, item in enumerate(_three(value, what, example)):
             with at(index):
-                read.append(parse(item, (unit,))[0])
+                try:
+                    read.append(parse(item, (unit,))[0])
+                except Hint as hint:
+                    raise hint.restated(suggestion=hint.suggestion or f"three {what}, such as {example}") from None
         return read[0], read[1], read[2]
 
     item = {"anyOf": [{"type": "number"}, {"type": "string"}]}
@@ -49,7 +52,10 @@ def _direction(value: object) -> Any:
         if value.removeprefix("-") not in AXES:
             raise Hint("a direction is x, y, z, one of them with a minus, or three numbers", '"z"')
         return value
-    vector = numbers(_three(value, "numbers", "[0, 0, 1]"))
+    try:
+        vector = numbers(_three(value, "numbers", "[0, 0, 1]"))
+    except Hint as hint:
+        raise hint.restated(suggestion=hint.suggestion or "[0, 0, 1]") from None
     if not np.linalg.norm(vector) > 0:
         raise Hint("a direction must not be zero", "[0, 0, 1]")
     return tuple(vector.tolist())

@@ -31,6 +31,10 @@ MOST_TRIANGLES = 500_000
 _MERGED = 1e-7
 """Distance of corners that are one, over the size of the surface: files in single precision round to half of it."""
 _SLIVER = 1e-9  # height over the longest edge of a triangle that has no normal
+_LARGEST = 1e6  # coordinates [m]: squares and volumes stay finite
+_FOLD = 1e-4  # angle between two triangles that lie on each other [rad]
+_FLAT = 1e-9  # volume of a shell without space inside, over its area to the power of 3/2
+_PROBES = 500  # corners and middles of triangles by which a shell is inside or outside of another one
 _LENGTHS = ("mm", "m", "in")
 
 
@@ -60,7 +64,7 @@ class TriangleSurface(FilePart):
     elementwise: ClassVar[bool] = False
     kind: str
     file: str | None = None
-    unit: str | None = None
+    unit: str | None = Field(default=None, examples=["mm"])
     vertices: Annotated[tuple[tuple[float, float, float], ...], *_table(3, False, "corners")] = Field(
         examples=[[[0, 0, 0], [40, 0, 0], [0, 40, 0], [0, 0, 40]]]
     )
@@ -135,8 +139,13 @@ class TriangleSurface(FilePart):
     @cached_property
     def triangles(self) -> Triangles:
         """The surface in metres, checked, with normals out of the space between its shells."""
-        factor = self.factor
-        return checked(factor * np.array(self.vertices), np.array(self.faces, dtype=np.int64))
+        corners = self.factor * np.array(self.vertices)
+        if (largest := float(np.abs(corners).max(initial=0.0))) > _LARGEST:
+            raise Hint(
+                f"the surface has a corner {largest:.3g} m from the origin; at most {_LARGEST:g} m are allowed",
+                "another unit, or another export: numbers of this size are no coordinates",
+            )
+        return checked(corners, np.array(self.faces, dtype=np.int64))
 
     @property
     def smooth(self) -> float:
@@ -190,8 +199,8 @@ def checked(vertices: Vector, faces: Faces) -> Triangles:
     faces = _without_slivers(vertices, faces, notes)
     vertices, faces = _used(vertices, faces)
     owner, other = _edges(vertices, faces)
+    _check_folds(vertices, faces, owner, other)
     shell = _shells(len(faces), owner, other)
-    faces = _oriented(vertices, faces, shell, notes)
     crossing = np.asarray(_core.crossing_triangles(np.ascontiguousarray(vertices), np.ascontiguousarray(faces)))
     if len(crossing):
         at_least = "at least " if len(crossing) == 100 else ""
@@ -200,6 +209,7 @@ def checked(vertices: Vector, faces: Faces) -> Triangles:
             f"{_place(vertices[faces[crossing[0, 0]]].mean(axis=0))}",
             "a single boolean union in the CAD program before the export; bodies that overlap are separate `bodies`",
         )
+    faces = _oriented(vertices, faces, shell, notes)
     return Triangles(vertices, faces, int(shell.max()) + 1, tuple(notes))
 
 
@@ -238,7 +248,7 @@ def _without_slivers(vertices: Vector, faces: Faces, notes: list[str]) -> Faces:
         raise Hint("the surface has no triangle with an area", "a closed surface; check its unit and precision")
     points = vertices[faces]
     sides = np.linalg.norm(points - np.roll(points, 1, axis=1), axis=2).max(axis=1)
-    twice = np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1)
+    twice = _double_areas(points)
     flat = np.flatnonzero(twice < _SLIVER * sides**2)
     if flat.size:
         raise Hint(
@@ -247,6 +257,11 @@ def _without_slivers(vertices: Vector, faces: Faces, notes: list[str]) -> Faces:
             "another export, or a repair that removes degenerate triangles",
         )
     return faces
+
+
+def _double_areas(points: Vector) -> Vector:
+    """Return twice the areas of triangles with these corners, (m,) [m^2]."""
+    return np.asarray(np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1))
 
 
 def _used(vertices: Vector, faces: Faces) -> tuple[Vector, Faces]:
@@ -291,6 +306,20 @@ def _edges(vertices: Vector, faces: Faces) -> tuple[Faces, Faces]:
     return first, second
 
 
+def _check_folds(vertices: Vector, faces: Faces, first: Faces, second: Faces) -> None:
+    """Raise if two neighbours lie on each other: between them the surface has no inside."""
+    points = vertices[faces]
+    normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    folded = np.flatnonzero(np.linalg.norm(normals[first] + normals[second], axis=1) < _FOLD)
+    if folded.size:
+        raise Hint(
+            f"the surface is folded onto itself at {counted(folded.size, 'edge')}, the first near "
+            f"{_place(points[first[folded[0]]].mean(axis=0))}: two neighbouring triangles lie on each other",
+            "another export, or a repair that removes folded triangles; a sheet has a thickness",
+        )
+
+
 def _shells(count: int, first: Faces, second: Faces) -> Faces:
     """Return the number of the shell of each triangle."""
     from scipy.sparse import coo_array
@@ -305,21 +334,30 @@ def _oriented(vertices: Vector, faces: Faces, shell: Faces, notes: list[str]) ->
     faces = faces.copy()
     numbers = range(int(shell.max()) + 1)
     volumes = np.array([volume_of(vertices, faces[shell == k]) for k in numbers])
+    for k in numbers:
+        points = vertices[faces[shell == k]]
+        if abs(volumes[k]) <= _FLAT * _double_areas(points).sum() ** 1.5:
+            raise Hint(
+                f"a shell of the surface near {_place(points[0].mean(axis=0))} contains no volume",
+                "a surface around a space: a sheet without thickness is no cavity and no body; check its unit and precision",
+            )
     outer = int(np.abs(volumes).argmax())
     inside = [Solids((mesh("", vertices, _outward(faces[shell == k], volumes[k]), 0.9),)) for k in numbers]
     for k in numbers:
         if k == outer:
             continue
-        one = vertices[faces[shell == k][0, 0]][None]
-        if inside[outer].distances(one)[0, 0] < 0:
+        # Shells do not cross, but may touch: of the points of one, the farthest from the other shows its side.
+        corners = vertices[faces[shell == k][:_PROBES]]
+        points = np.concatenate([corners.mean(axis=1), corners.reshape(-1, 3)])
+        if _side(inside[outer], points) < 0:
             raise Hint(
-                f"the surface has {len(volumes)} shells, of which one near {_place(one[0])} is outside of the largest one",
+                f"the surface has {len(volumes)} shells; one near {_place(points[0])} is outside of the largest one",
                 "one file for each cavity; bodies inside are shells of the same file, or `bodies`",
             )
         for other in numbers:
-            if other not in (k, outer) and inside[other].distances(one)[0, 0] > 0:
+            if other not in (k, outer) and _side(inside[other], points) > 0:
                 raise Hint(
-                    f"the shell near {_place(one[0])} is inside of another inner shell, where there is no space",
+                    f"the shell near {_place(points[0])} is inside of another inner shell, where there is no space",
                     "an outer shell, and bodies inside that do not contain each other",
                 )
         faces[shell == k] = _outward(faces[shell == k], -volumes[k])
@@ -330,6 +368,12 @@ def _oriented(vertices: Vector, faces: Faces, shell: Faces, notes: list[str]) ->
         notes.append("warning: the normals of the surface point inward; they are turned around")
         faces[shell == outer] = _outward(faces[shell == outer], volumes[outer])
     return faces
+
+
+def _side(surface: Solids, points: Vector) -> float:
+    """Return the distance of the point that is farthest from a surface, positive inside [m]."""
+    distances = surface.distances(points)[:, 0]
+    return float(distances[np.abs(distances).argmax()])
 
 
 def _outward(faces: Faces, volume: float) -> Faces:

@@ -1,0 +1,122 @@
+"""Losses of turning, meshed and divided cavities: the work of the structure, without that of the drive.
+
+Losses were compared with other losses of the same run, so that work of the drive in both would not have been seen.
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from support.triangle_meshes import box
+
+import rattlebox as rb
+from rattlebox.analysis.cycle_loss import cycle_loss
+
+FREQUENCY = 60.0
+ABOUT_X = {
+    "steady": rb.Rotation(speed="600 rpm", axis="x", arm=(0, 0, 0)),
+    "rocking": rb.Rotation(amplitude="20 deg", frequency="7 Hz", axis="x", arm=(0, 0, 0)),
+}
+WEDGE = rb.Mesh(vertices=box((24, 18, 16))[0], faces=box((24, 18, 16))[1], unit="mm")
+
+
+def smooth_can(rotation: rb.Rotation | None, structure: Any) -> rb.Case:
+    """Return one ball, beside the axis, in a can without friction that vibrates along its axis."""
+    return rb.Case(
+        structure=structure,
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="6 mm", count=1),
+            cavity=rb.Cylinder(diameter="20 mm", length="12 mm", axis="x"),
+            contact=rb.Tsuji(restitution=0.5),
+            gravity=(0, 0, 0),
+            packing=rb.Lattice(seed=1, noise=0.8),
+            rotation=rotation,
+            softening=200,
+        ),
+        duration="0.5 s",
+        method=rb.Dem(dt="4 us"),
+    )
+
+
+@pytest.mark.parametrize("motion", list(ABOUT_X))
+def test_rotation_about_the_line_of_vibration_changes_no_loss(motion: str) -> None:
+    """A smooth can that turns about its axis pushes a ball along it as one at rest: the same damping ratios."""
+    mass = rb.SDOF(mass="0.1 kg", frequency="60 Hz", damping_ratio=0.005)
+    for way, options in {"decay": {}, "energy": {}, "shaking": {"cycles": (10, 20)}}.items():
+        still, turning = (
+            rb.damping_curve(
+                smooth_can(rotation, mass), ["2 mm", "4 mm"], way=way, packings=2, progress=False, **options
+            ).damping_ratio.values
+            for rotation in (None, ABOUT_X[motion])
+        )
+        assert np.isfinite(still[1]) and np.allclose(turning, still, rtol=1e-5, equal_nan=True)
+
+
+def test_map_of_a_can_that_turns_about_the_line_of_vibration() -> None:
+    """The loss map and the measures of a sweep of a smooth can are those of one at rest."""
+    shaker = rb.Shaker(motion=rb.Harmonic(amplitude="200 m/s^2", frequency="60 Hz", direction="x"))
+    results = []
+    for rotation in (None, *ABOUT_X.values()):
+        case = smooth_can(rotation, shaker)
+        table = rb.loss_map(case, amplitudes=["400 m/s^2"], frequencies=["60 Hz"], cycles=(10, 20), progress=False)
+        swept = rb.sweep(case, {"seed": [0]}, ["reduced_loss", "effective_mass"], cycles=(10, 20), progress=False)
+        results.append([table.damping_mass.item(), swept.reduced_loss.item(), swept.effective_mass.item()])
+    assert results[0][1] > 1
+    assert np.allclose(results[1:], results[0], rtol=1e-5)
+
+
+def rough(**changes: Any) -> rb.Case:
+    """Return a bed with friction on an oscillator at resonance."""
+    values: dict[str, Any] = {
+        "particles": rb.Particles(material="steel", diameter="4 mm", count=25),
+        "cavity": rb.Cylinder(diameter="22 mm", length="16 mm", axis="y"),
+        "contact": rb.Tsuji(restitution=0.6),
+        "friction": 0.3,
+        "packing": rb.Settled(seed=2),
+        "softening": 1000,
+    }
+    return rb.Case(
+        structure=rb.SDOF(mass="0.4 kg", frequency=FREQUENCY, damping_ratio=0.01),
+        damper=rb.ParticleDamper(**(values | changes)),
+        load=rb.Harmonic(amplitude="6 N", frequency=FREQUENCY),
+        duration="0.25 s",
+        output=rb.Output(rate="12 kHz"),
+    )
+
+
+GEAR = rb.Rotation(speed="100 rpm", axis="y", arm=("150 mm", 0, 0))
+BLADE = rb.Rotation(speed="100 rpm", axis="y", arm=("150 mm", 0, 0), vibration="cavity")
+
+
+@pytest.mark.parametrize(
+    ("changes", "drives"),
+    [
+        ({"rotation": GEAR}, True),
+        ({"rotation": BLADE}, True),
+        ({"rotation": GEAR, "cavity": WEDGE}, True),
+        ({"rotation": GEAR, "bodies": [rb.RodBody(diameter="6 mm", axis="y")]}, True),
+        ({"rotation": GEAR, "offsets": [["-15 mm", 0, 0], ["15 mm", 0, 0]]}, True),
+        ({"cavity": WEDGE, "bodies": [rb.BallBody(diameter="5 mm")]}, False),
+        ({"offsets": [["-15 mm", 0, 0], ["15 mm", 0, 0]], "bodies": [rb.BodyCross(thickness="1 mm", axis="y")]}, False),
+    ],
+    ids=[
+        "gear",
+        "blade",
+        "mesh in a gear",
+        "rod in a gear",
+        "cells of a gear",
+        "mesh with a ball",
+        "cells with a cross",
+    ],
+)
+def test_loss_is_what_the_structure_loses(changes: dict[str, Any], drives: bool) -> None:
+    """The loss of the last cycles is what load, dashpot and energy of the structure leave, whatever the drive supplies."""
+    run = rb.simulate(rough(**changes))
+    arrays, cycles = run.arrays, 6
+    loss = cycle_loss(run, FREQUENCY, cycles).work
+    left = arrays.load_work - run.ledger.channels["viscous"] - run.ledger.structure
+    ends = arrays.time[-1] - np.array([cycles, 0]) / FREQUENCY
+    given = float(np.diff(np.interp(ends, arrays.time, left))[0]) / cycles
+    assert loss == pytest.approx(given, rel=2e-3)
+    driven = np.interp(ends, arrays.time, arrays.drive_work.sum(axis=1))
+    assert (abs(driven[1] - driven[0]) / cycles > 20e-3 * abs(given)) == drives
