@@ -45,7 +45,7 @@ def existing(path: str | os.PathLike[str]) -> Path:
         return file
     if file.is_dir():
         names = sorted(other.name for other in file.iterdir() if other.is_file())[:2]
-        raise DataError(f"{file} is a folder, not a file", " or ".join(str(file / name) for name in names) or "a file")
+        raise DataError(f"{file} is a folder, not a file", " or ".join(str(file / name) for name in names))
     folder = file.parent
     if not folder.is_dir():
         raise DataError(f"there is no file {file}: there is no folder {folder}")

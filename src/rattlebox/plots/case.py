@@ -14,7 +14,7 @@ from ..model.damper_base import Damper
 from ..results import Run
 from ..results.case_words import each_damper
 from ..results.figures import run_figure
-from .case_dampers import draw_damper
+from .case_dampers import Cells, draw_damper
 from .case_stops import draw_stops
 from .case_structures import draw_structure
 from .style import StyledFigure, figure_style, shorten
@@ -30,13 +30,15 @@ class _Group(NamedTuple):
 
     damper: Damper
     numbers: list[int]
+    cells: Cells
 
 
 def plot_case(case: Case, *, size: Size = "page") -> Figure:
     """Draw a case: the structure with its loads and the points of its dampers, each damper to scale, and its stops.
 
     Beams and plates are drawn to scale, with the shape of the first mode of a beam in grey; oscillators, buildings and modal
-    models have no geometry and are drawn as symbols. Beds of more than 2000 particles are drawn as a level.
+    models have no geometry and are drawn as symbols. Cells are drawn at their offsets. Beds of more than 2000 particles are
+    drawn as a level.
 
     Parameters
     ----------
@@ -79,7 +81,7 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
         draw_structure(panels[0], case, marks if len(marks) > 1 else dict.fromkeys(marks, ""))
         panels[0].set_title(_loads(case), parse_math=False)
         for k, (panel, group) in enumerate(zip(panels[1:], shown, strict=False)):
-            draw_damper(group.damper, panel)
+            draw_damper(group.damper, panel, group.cells)
             panel.set_title(_heading(case, group, k + 1 if len(groups) > 1 else 0), parse_math=False)
         if stops:
             draw_stops(panels[1 + len(shown)], stops, [case.modes.point(stop.point) for stop in stops])
@@ -99,11 +101,16 @@ def plot_run_case(run: Run, *, size: Size = "page") -> Figure:
 
 def _groups(case: Case) -> list[_Group]:
     """Return the dampers, equal ones in one group."""
+    together: list[Cells] = [[] for _ in case.impact_dampers]
+    for _, places in case.cell_groups:
+        first = len(together) - len(case.impact_dampers)
+        cells = list(zip(case.particle_dampers[first : first + len(places)], places, strict=True))
+        together += [cells] * len(places)
     groups: dict[str, _Group] = {}
-    for number, damper in enumerate(each_damper(case)):
+    for number, (damper, cells) in enumerate(zip(each_damper(case), together, strict=True)):
         # Dampers that differ in name, point, start and random seed only have equal drawings, which show no rotation.
         key = damper.alike().model_copy(update={"name": "", "point": None}).model_dump_json()
-        groups.setdefault(key, _Group(damper, [])).numbers.append(number)
+        groups.setdefault(key, _Group(damper, [], cells)).numbers.append(number)
     return list(groups.values())
 
 

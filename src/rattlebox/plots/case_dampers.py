@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import singledispatch
 from typing import Any
 
@@ -36,14 +37,18 @@ _FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Right, up and towards the viewer of a view along y."""
 
 
+Cells = Sequence[tuple[ParticleDamper, Array]]
+"""Cavities that are drawn together, and their places [m]."""
+
+
 @singledispatch
-def draw_damper(damper: Any, axes: Axes) -> None:
-    """Draw a damper to scale, with its dimensions."""
+def draw_damper(damper: Any, axes: Axes, cells: Cells) -> None:
+    """Draw a damper to scale, with its dimensions; one with particles with all its cells."""
     raise TypeError(f"no drawing of a {type(damper).__name__}")
 
 
 @draw_damper.register
-def _draw_impact_damper(damper: ImpactDamper, axes: Axes) -> None:
+def _draw_impact_damper(damper: ImpactDamper, axes: Axes, cells: Cells) -> None:
     """Draw the row of balls in its cavity to scale, with the clearance; a detail enlarges a small gap."""
     halves = np.array([ball.half for ball in damper.balls])
     # Strikers have no length and are drawn as large as the other bodies, or half as long as their clearance.
@@ -124,30 +129,43 @@ def _solid() -> Style:
 
 
 @draw_damper.register
-def _draw_particle_damper(damper: ParticleDamper, axes: Axes) -> None:
-    """Draw a cavity from the front (along y) to scale, with its particles and dimensions."""
+def _draw_particle_damper(damper: ParticleDamper, axes: Axes, cells: Cells) -> None:
+    """Draw the cells of a damper from the front (along y) to scale, with their particles and the dimensions of one."""
     cavity = damper.interior
     axes.set_aspect("equal")
     axes.set_axis_off()
-    half_x, half_z = (0.5 * cavity.extent(np.array(direction)) for direction in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
-    count = len(damper.contents.radius)
-    if count <= MAX_DRAWN:
-        _draw_particles(axes, damper, half_x, half_z)
+    half = np.array([0.5 * cavity.extent(np.array(direction)) for direction in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))])
+    places = np.array([place for _, place in cells]) @ _FRONT.T
+    (left, bottom), (right, top) = places[:, :2].min(axis=0) - half, places[:, :2].max(axis=0) + half
+    if len(cells) * len(damper.contents.radius) <= MAX_DRAWN:
+        _draw_particles(axes, cells, (left, right, bottom, top))
     else:
-        _draw_level(axes, damper, half_x, half_z)
-    unit = 0.16 * max(half_x, half_z)
-    _draw_walls(axes, cavity)
+        _draw_level(axes, damper, places[:, :2], *half)
+    unit = 0.08 * max(right - left, top - bottom)
+    # Those in front hide those behind.
+    for place in places[np.argsort(places[:, 2], kind="stable")]:
+        _draw_walls(axes, cavity, place[:2])
     if cavity.is_aligned:  # else the extents are no dimensions of the cavity
         corners = np.concatenate(cavity.outline(_FRONT)) @ _FRONT[:2].T
-        (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
-        dimension(axes, (left, low), (right, low), amount(right - left, "m"), -1.5 * unit)
-        dimension(axes, (right, low), (right, high), amount(high - low, "m"), -1.5 * unit, rotate=True)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        # The lowest and the rightmost cell, beside which nothing is in the way.
+        under, beside = places[np.lexsort((places[:, 0], places[:, 1]))[0]], places[np.argmax(places[:, 0])]
+        (x, z), (end, _) = low + under[:2], high + under[:2]
+        dimension(axes, (x, z), (end, z), amount(end - x, "m"), -1.5 * unit)
+        (_, z), (x, end) = low + beside[:2], high + beside[:2]
+        dimension(axes, (x, z), (x, end), amount(end - z, "m"), -1.5 * unit, rotate=True)
+    several = [f"{len(cells)} cells, in each:"] if len(cells) > 1 else []
     inside = [each.words() for each in damper.bodies]
-    words = [*_contents(damper), damper.cavity.words().removeprefix("a "), *(f"with {each}" for each in inside)]
-    _draw_directions(axes, damper, -half_x - 5.2 * unit, -half_z, unit)
-    text(axes, (0.0, -half_z - 3.4 * unit), "\n".join(words), va="top")
-    axes.set_xlim(-half_x - 7 * unit, half_x + 4 * unit)
-    axes.set_ylim(-half_z - 9 * unit, half_z + unit)
+    words = [
+        *several,
+        *_contents(damper),
+        damper.cavity.words().removeprefix("a "),
+        *(f"with {each}" for each in inside),
+    ]
+    _draw_directions(axes, damper, left - 5.2 * unit, bottom, unit)
+    text(axes, (0.5 * (left + right), bottom - 3.4 * unit), "\n".join(words), va="top")
+    axes.set_xlim(left - 7 * unit, right + 4 * unit)
+    axes.set_ylim(bottom - (9 + bool(several)) * unit, top + unit)
 
 
 def _contents(damper: ParticleDamper) -> list[str]:
@@ -163,13 +181,13 @@ def _contents(damper: ParticleDamper) -> list[str]:
     return [f"{balls} of {size}", f"{mass}, {amount(share, '%', 3)} of the volume"]
 
 
-def _draw_particles(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
-    species = damper.contents.species
-    colours = np.array([_rgb(series_colour(k)) for k in species])
-    extent = (-half_x, half_x, -half_z, half_z)
-    width = max(16, round(_PIXELS * min(1.0, half_x / half_z)))
-    places = start_positions(damper) @ _FRONT.T
-    picture = draw_spheres(places, damper.contents.radius, colours, extent, width, "plain")
+def _draw_particles(axes: Axes, cells: Cells, extent: tuple[float, float, float, float]) -> None:
+    left, right, bottom, top = extent
+    colours = np.array([_rgb(series_colour(k)) for damper, _ in cells for k in damper.contents.species])
+    width = max(16, round(_PIXELS * min(1.0, (right - left) / (top - bottom))))
+    centres = np.concatenate([start_positions(damper) + place for damper, place in cells]) @ _FRONT.T
+    radii = np.concatenate([damper.contents.radius for damper, _ in cells])
+    picture = draw_spheres(centres, radii, colours, extent, width, "plain")
     axes.imshow(picture, extent=extent, zorder=2, interpolation="antialiased")
 
 
@@ -177,8 +195,8 @@ def _rgb(colour: str) -> tuple[float, ...]:
     return tuple(0.5 + 0.5 * int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5))
 
 
-def _draw_level(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
-    """Draw the level of a bed of many particles."""
+def _draw_level(axes: Axes, damper: ParticleDamper, places: Array, half_x: float, half_z: float) -> None:
+    """Draw the level of a bed of many particles in each cell; `places`: of the cells in the drawing, (k, 2) [m]."""
     radii, cavity = damper.contents.radius, damper.interior
     filled = float((4 / 3 * math.pi * radii**3).sum()) / _PACKED
     rng = np.random.default_rng(0)
@@ -192,13 +210,14 @@ def _draw_level(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float
     shown = (inside & (grid_z.ravel() < level)).reshape(grid_x.shape)
     colour = np.zeros((*shown.shape, 4))
     colour[shown] = (*_rgb(SERIES_COLOURS[0]), 1.0)
-    axes.imshow(colour, extent=(-half_x, half_x, -half_z, half_z), origin="lower", zorder=2)
+    for x, z in places:
+        axes.imshow(colour, extent=(x - half_x, x + half_x, z - half_z, z + half_z), origin="lower", zorder=2)
 
 
-def _draw_walls(axes: Axes, cavity: Cavity) -> None:
-    """Draw the outline of the cavity as seen along y."""
+def _draw_walls(axes: Axes, cavity: Cavity, place: Array) -> None:
+    """Draw the outline of a cavity as seen along y, at a place in the drawing."""
     for line in cavity.outline(_FRONT):
-        axes.plot(*(line @ _FRONT.T)[:, :2].T, color=INK, lw=pen(1.0), zorder=4)
+        axes.plot(*((line @ _FRONT.T)[:, :2] + place).T, color=INK, lw=pen(1.0), zorder=4)
 
 
 def _draw_directions(axes: Axes, damper: ParticleDamper, x: float, z: float, unit: float) -> None:

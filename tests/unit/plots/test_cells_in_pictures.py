@@ -68,8 +68,14 @@ def test_cells_are_at_their_offsets(changes: dict[str, Any], tmp_path: Path) -> 
             assert alpha[max(0, row - reach) : row + reach, column - reach : column + reach].any()
     places = np.array([cavity["place"] for cavity in views._cavities(run.case)])
     assert np.allclose(places - places[0], OFFSETS - OFFSETS[0])
-    figure = rb.plot_case(run.case)
-    assert len(figure.axes) == 2
+    # The drawing of the case showed the first cell only, and its test counted panels.
+    _, panel = rb.plot_case(run.case).axes
+    assert np.allclose(panel.images[0].get_extent(), [-0.025, 0.035, -0.008, 0.033])
+    corners = np.concatenate([np.array(line.get_xydata()) for line in panel.lines])
+    for x, _, z in OFFSETS:
+        for side in np.array([x, z]) + np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]]) * SIZE[[0, 2]] / 2:
+            assert np.linalg.norm(corners - side, axis=1).min() < 1e-9
+    assert "3 cells, in each:" in " ".join(words.get_text() for words in panel.texts)
 
 
 def test_two_points_with_cells() -> None:
