@@ -240,3 +240,23 @@ def test_odd_shapes_are_computed_with_a_warning(changes: dict[str, Any], text: s
 def test_limits_of_shapes_are_allowed(changes: dict[str, Any]) -> None:
     """Bodies in a wall, repeated and unused corners, a shell with its tip on the wall, and cells that touch are allowed."""
     assert not any("warning" in note for note in noted(**changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [({"rotation": TURN}, "rotation"), ({"cavity": mesh(BOX)}, "cavity"), ({"bodies": [ROD]}, "bodies")],
+)
+def test_packed_cases_refuse_shapes_with_advice_that_works(changes: dict[str, Any], field: str, tmp_path: Path) -> None:
+    """Steppers, packed cases and FMUs name the field that they cannot contain; both pieces of advice work."""
+    file = tmp_path / "case.toml"
+    file.write_text(f'duration = "1 ms"\nstructure = {{ kind = "fixed" }}\ndamper = {toml(damper(**changes))}\n')
+    case = rb.Case.from_file(file)
+    with pytest.raises(rb.CaseError, match=rf"(?s)damper\.{field}.*try: .*rb\.simulate"):
+        rb.Stepper(case)
+    for name in ("pack", "fmu"):
+        answer = rattlebox(name, file, "-o", tmp_path / f"case.{'bin' if name == 'pack' else 'fmu'}")
+        assert answer.returncode == 2 and f"damper.{field}" in answer.stderr and "Traceback" not in answer.stderr
+    assert rb.simulate(case).ok
+    plain = damper(**(changes | {field: damper().get(field)}))
+    file.write_text(f'duration = "1 ms"\nstructure = {{ kind = "fixed" }}\ndamper = {toml(plain)}\n')
+    assert rb.Stepper(rb.Case.from_file(file))

@@ -141,13 +141,19 @@ class Cavity(Part):
         """Return positions with those of the images inside, (n, 3) [m]; only a periodic cavity has images."""
         return positions
 
+    @property
+    def face_instead(self) -> str:
+        """Advice for a face that does not exist; by default the nearest name."""
+        return ""
+
     def check_faces(self, names: Iterable[str]) -> None:
         """Raise unless the cavity has faces of these names."""
         labels = self.walls().labels
         for name in names:
             if name not in labels:
                 what = f"a {self.kind} has no face {name!r}"
-                raise Hint(f"{what}; its faces are {', '.join(labels)}", nearest(name, labels), [name])
+                advice = self.face_instead or nearest(name, labels)
+                raise Hint(f"{what}; its faces are {', '.join(labels)}", advice, [name])
 
     @property
     def frame(self) -> Vector:

@@ -18,6 +18,10 @@ from .necks import neck_notes, widest_sphere
 from .solids import Solid, Solids
 from .surfaces import Surface
 
+_SAMPLES, _LEAST = (
+    2**19,
+    2**11,
+)  # points on the surfaces of all bodies, and at least of one, by which areas are computed
 _SMALL = 0.05  # size of a body over the radius of a particle that suggests a wrong unit
 
 
@@ -98,14 +102,36 @@ class Interior(Cavity):
         return self.shape.frame
 
     @property
+    def face_instead(self) -> str:
+        """That of the cavity."""
+        return self.shape.face_instead
+
+    @property
     def face_areas(self) -> Vector:
-        """Area of each face of the cavity, then of each body, (f,) [m^2]; the bodies of an array are one face."""
+        """Area of each face of the cavity, then of each body, (f,) [m^2]; the bodies of an array are one face.
+
+        Of a body, the area that is inside of the cavity and in no other body, from points on its surface.
+        """
         labels = self.walls().labels
         areas = np.zeros(len(labels))
         areas[: len(self.shape.walls().labels)] = self.shape.face_areas
-        for share, solid in zip(self._shares, self.solids, strict=True):
-            areas[labels.index(solid.name)] += share * solid.area
+        count, tiny = max(_LEAST, _SAMPLES // len(self.solids)), 1e-9 * float(self.lengths.max())
+        for solid in self.solids:
+            points = solid.surface_samples(count)
+            free = self.shape.depth(points) > tiny
+            for other in self._beside(solid):
+                free &= ~other.is_within(points)
+            areas[labels.index(solid.name)] += float(free.mean()) * solid.area
         return areas
+
+    def _beside(self, solid: Solid) -> list[Solid]:
+        """Return the other bodies that may reach into a body."""
+        low, high = solid.bounds
+        return [
+            other
+            for other in self.solids
+            if other is not solid and (other.bounds[0] < high).all() and (other.bounds[1] > low).all()
+        ]
 
     @property
     def period(self) -> Vector:

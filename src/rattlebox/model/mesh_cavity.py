@@ -81,6 +81,14 @@ class Mesh(TriangleSurface, Cavity):
         """Return the surface as the only wall, with the name "mesh"."""
         return self._walls
 
+    @property
+    def face_instead(self) -> str:
+        """Advice for a part of the surface, or a group of its file, that should be a face."""
+        return (
+            "walls = { mesh = ... } for the whole surface, or a body in front of this part, which is a face: bodies = "
+            '[{ kind = "plate", name = "lid", size = ..., position = ... }], walls = { lid = ... }'
+        )
+
     @cached_property
     def volume(self) -> float:
         """Volume of the space for particles [m^3]."""

@@ -22,6 +22,7 @@ SolidForm = Literal["rod", "plate", "ball", "mesh"]
 _SAMPLES = 2**18, 2**22  # points by which the share of a solid in a cavity is computed, and those of all together
 _AROUND, _LATITUDES = 36, 17  # corners of drawn rods and balls
 _SPREAD = 1.2207440846057596  # of the sequence in `Cavity.spread`
+_FLAT_SPREAD = 1.324717957244746  # of the sequence in a plane: g^3 = g + 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +109,19 @@ class Solid:
                 radius, height = distance * np.sqrt(1 - slope**2), distance * slope
             local = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
         return to_global(local, self.axes) + self.centre
+
+    def surface_samples(self, count: int) -> Vector:
+        """Return points that cover the surface evenly, (count, 3) [m]."""
+        surface = self.surface()
+        fans = [(face[0], face[k], face[k + 1]) for face in surface.polygons for k in range(1, len(face) - 1)]
+        corners = surface.points[np.array(fans)]
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        # Each triangle has points by its area; in it they are a Kronecker sequence, as in `Cavity.spread`.
+        share = (np.arange(count) + 0.5) / count
+        u, v = ((np.arange(count)[:, None] * _FLAT_SPREAD ** -np.arange(1.0, 3.0) + 0.5) % 1.0).T
+        chosen = corners[np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(fans) - 1)]
+        u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
+        return np.asarray(chosen[:, 0] * (1 - u - v) + chosen[:, 1] * u + chosen[:, 2] * v)
 
     def is_within(self, points: Vector) -> NDArray[np.bool_]:
         """Return whether points are in the body, where there are no particles, (n,)."""

@@ -104,13 +104,13 @@ def _groups(case: Case) -> list[_Group]:
     together: list[Cells] = [[] for _ in case.impact_dampers]
     for _, places in case.cell_groups:
         first = len(together) - len(case.impact_dampers)
-        cells = list(zip(case.particle_dampers[first : first + len(places)], places, strict=True))
+        cells: Cells = list(zip(case.particle_dampers[first : first + len(places)], places, strict=True))
         together += [cells] * len(places)
     groups: dict[str, _Group] = {}
-    for number, (damper, cells) in enumerate(zip(each_damper(case), together, strict=True)):
+    for number, (damper, drawn) in enumerate(zip(each_damper(case), together, strict=True)):
         # Dampers that differ in name, point, start and random seed only have equal drawings, which show no rotation.
         key = damper.alike().model_copy(update={"name": "", "point": None}).model_dump_json()
-        groups.setdefault(key, _Group(damper, [], cells)).numbers.append(number)
+        groups.setdefault(key, _Group(damper, [], drawn)).numbers.append(number)
     return list(groups.values())
 
 

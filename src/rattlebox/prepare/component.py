@@ -16,7 +16,7 @@ from rattlebox.model.case import Case
 from rattlebox.model.contact_pairs import contact_pairs
 from rattlebox.model.damper_base import Damper
 from rattlebox.model.dampers import ImpactDamper
-from rattlebox.model.errors import Hint
+from rattlebox.model.errors import Hint, at
 from rattlebox.model.methods import Method
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
@@ -97,13 +97,9 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     """
     if not case.method.has_stepper:
         raise Hint(f"the method {case.method.kind} has no stepper", "method = EventDriven(), or Newton()")
-    for index, damper in enumerate(case.particle_dampers):
-        if damper.rotation is not None:
-            raise Hint(
-                "a stepper has cavities that do not turn about an axis, but this damper has a rotation",
-                "simulate(case), or a damper without rotation",
-                ["dampers", index, "rotation"],
-            )
+    for index, damper in enumerate(case.dampers):
+        with at(*(("dampers", index) if len(case.dampers) > 1 else ("damper",))):
+            _check_cavity(damper)
     if alone:
         refuse_stops(
             case.stops,
@@ -113,6 +109,29 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     if alone and len(_dampers(case)) != 1:
         raise Hint(f"a damper alone is needed, but the case has {len(_dampers(case))}", "a stepper for each of them")
     return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)
+
+
+def _check_cavity(damper: Damper) -> None:
+    """Raise if a cavity has what packed cases cannot contain."""
+    if not isinstance(damper, ParticleDamper):
+        return
+    if damper.rotation is not None:
+        raise Hint(
+            "a stepper has cavities that do not turn about an axis, but this damper has a rotation",
+            "rb.simulate, or a damper without rotation",
+            ["rotation"],
+        )
+    parts = {
+        "cavity": "a surface of triangles" if damper.cavity.walls().solids.each else "",
+        "bodies": "bodies inside of a cavity" if damper.bodies else "",
+    }
+    for name, what in parts.items():
+        if what:
+            raise Hint(
+                f"a packed case cannot contain {what}",
+                "rb.simulate, which can; or a Box, Cylinder or SphericalCavity without bodies",
+                [name],
+            )
 
 
 def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
@@ -145,13 +164,6 @@ def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
 
 
 def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
-    for index, damper in enumerate(case.particle_dampers):
-        if damper.interior.walls().solids.each:
-            raise Hint(
-                f"{damper.label(index)} has bodies inside or a surface of triangles, which packed cases cannot contain",
-                "a Box, Cylinder or SphericalCavity without bodies, or rb.simulate with a shaken cavity",
-                ["cavity"],
-            )
     prepared = prepare(case)
     problem = pack_particles(prepared)
     start = np.zeros(3)

@@ -193,6 +193,31 @@ def test_necks_narrower_than_particles_are_noted():
         assert any("2 parts" in note for note in notes) == divided
 
 
+@pytest.mark.parametrize("share", [20, 50, 125])
+@pytest.mark.parametrize(("neck", "parts"), [(0.95, 2), (2.2, 1), (0.0, 2)])
+def test_necks_of_any_width_are_checked(share, neck, parts):
+    """Particles down to 1/128 of a cavity pass a slit that is wider than they are, and no thin wall.
+
+    Only particles larger than 1/32 of the cavity were checked, and others passed every wall without a word.
+    """
+    wide, diameter = 0.06, 0.06 / share
+    side = (wide - neck * diameter) / 2
+    shape = rb.Box(size=(wide, wide / 3, wide))
+    walls = [
+        rb.PlateBody(size=(diameter / 20, wide, side), position=(0, 0, sign * (wide - side) / 2)) for sign in (-1, 1)
+    ]
+    interior = damper(shape, bodies=walls).interior
+    notes = list(interior.notes(diameter / 2))
+    assert any("2 parts" in note for note in notes) == (parts == 2)
+    assert not any("not checked" in note for note in notes)
+
+
+def test_necks_that_are_too_narrow_for_the_check_are_stated():
+    """Particles of less than 1/128 of a cavity with bodies have a warning with the width that is not checked."""
+    notes = list(damper(bodies=[rb.PlateBody(size=("1 um", "20 mm", "25 mm"))]).interior.notes(2e-5))
+    assert any(note.startswith("warning: necks and walls thinner than 0.47 mm") and "try: " in note for note in notes)
+
+
 @pytest.mark.parametrize("packing", [rb.Lattice(seed=1), rb.Settled(seed=1), rb.Compacted(seed=1)])
 def test_packings_avoid_walls_and_bodies(packing):
     """Packings place all particles inside of a surface and outside of bodies."""
@@ -239,3 +264,49 @@ def test_bed_of_a_file_that_has_changed_is_settled_again(tmp_path):
         beds.append(start_positions(damper(rb.Mesh(file=path, unit="m"), packing=rb.Settled(seed=1))))
     lowest = [bed[:, 2].min() for bed in beds]
     assert lowest == pytest.approx([-0.005 + 0.0015, -0.0125 + 0.0015], abs=1e-5)
+
+
+def test_part_of_a_surface_is_a_face_by_a_body_in_front_of_it():
+    """A part of a surface is no face; the plate that the message advises in its place has results and laws of its own.
+
+    The message listed the one name of the surface, which is no advice for a lid.
+    """
+    for bodies in ([], [rb.RodBody(diameter="3 mm", length="8 mm")]):
+        for name in ("+z", "lid"):
+            with pytest.raises(
+                rb.CaseError, match=r'(?s)no face .*; its faces are mesh.*try: .*kind = "plate", name = "lid"'
+            ):
+                damper(box(), walls={name: "frictionless"}, bodies=bodies)
+    floor = rb.PlateBody(name="floor", size=("34 mm", "24 mm", "4 mm"), position=(0, 0, "-13.5 mm"))
+    case = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="20 m/s^2", frequency="30 Hz", direction="x")),
+        damper=damper(
+            box(), bodies=[floor], walls={"floor": "frictionless"}, packing=rb.Settled(seed=1), softening=300
+        ),
+        duration="80 ms",
+        output=rb.Output(walls=True),
+    )
+    run = rb.simulate(case)
+    names = list(run.arrays.walls)
+    assert names == ["mesh", "floor"]
+    sliding, normal = run.arrays.wall_sliding_loss[-1], run.arrays.wall_normal_impulse[-1]
+    assert normal[1] > 3 * normal[0] > 0
+    assert sliding[1] == 0 < sliding[0]
+    # The area was a share of that of the whole plate, most of which is in the wall.
+    assert run.arrays.wall_area[1] == pytest.approx(30e-3 * 20e-3, rel=1e-3)
+    pressure = rb.analysis.wall_pressures(run)["floor"] * 30e-3 * 20e-3
+    assert pressure == pytest.approx(9.81 * run.arrays.particles.mass.sum(), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "area"),
+    [
+        ([rb.RodBody(diameter="8 mm")], math.pi * 8 * 25),
+        ([rb.BallBody(diameter="6 mm", position=("15 mm", 0, 0))], math.pi * 36 / 2),
+        ([rb.PlateBody(size=("2 mm", "80 mm", "10 mm"))], 2 * (20 * 10 + 20 * 2)),
+        ([rb.BodyCross(thickness="1 mm")], 2 * (29 + 19) * 25),
+    ],
+)
+def test_area_of_a_body_is_that_inside_the_cavity(bodies, area):
+    """What is in a wall, or in another body, is not an area of a body on which particles press."""
+    assert 1e6 * damper(bodies=bodies).interior.face_areas[-1] == pytest.approx(area, rel=2e-3)
