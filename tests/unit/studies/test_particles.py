@@ -261,6 +261,36 @@ def test_variants_that_cannot_run_have_a_status() -> None:
     assert why[0] == "damper.softening = 1" and "40.0 µs is too long" in why[2]
 
 
+def words(run: rb.Run) -> Any:
+    """Return no number."""
+    return "many"
+
+
+def missing_part(run: rb.Run) -> float:
+    """Raise an error of the package."""
+    raise rb.CaseError("there is no such part", "another part")
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (words, "measure words: the function returned str for variant \\d, not one number\n  try: float"),
+        (missing_part, "measure missing_part, variant \\d: there is no such part\n  try: another part"),
+    ],
+)
+@pytest.mark.parametrize("options", [{}, {"backend": "processes", "workers": 2}], ids=["threads", "processes"])
+def test_an_error_of_a_function_ends_the_study(function: Any, message: str, options: Any) -> None:
+    """A function that returns no number, or raises an error of the package, is named and ends sweeps and designs.
+
+    Variants were refused without a reason instead; only sweeps and designs of 1-D runs were tested with such functions.
+    """
+    with pytest.raises(rb.CaseError, match=message):
+        rb.sweep(struck(), {"damper.particles.count": [8, 12]}, function, progress=False, **options)
+    if not options:
+        with pytest.raises(rb.CaseError, match=message):
+            rb.design(struck(), {"damper.particles.count": [8, 12]}, function, packings=1, progress=False)
+
+
 def test_stores_have_the_reason_of_a_refusal(tmp_path: Path) -> None:
     """A study opened from disk and a repeated call have the reason of a refusal."""
     case, axes = struck(method=rb.Dem(dt="40 us")), {"damper.softening": [1e5, 1.0]}

@@ -35,7 +35,7 @@ from rattlebox.studies.run.runner import evaluate_cases, run_work
 from rattlebox.studies.run.study import known_measures
 from rattlebox.studies.work.measures import INTERVAL, about, check_names
 from rattlebox.studies.work.particles import ParticleEngine, engine_of
-from rattlebox.studies.work.variants import Variants, describe_case, fingerprint
+from rattlebox.studies.work.variants import MeasureError, Variants, describe_case, fingerprint
 from rattlebox.studies.work.work import Block, Work
 
 if TYPE_CHECKING:
@@ -425,6 +425,8 @@ class DesignSearch:
         before = time.monotonic(), time.process_time()
         try:
             return self._run(candidate, candidate.case, count)
+        except MeasureError:
+            raise
         except RattleboxError as error:
             return self._nothing(str(error))
         finally:

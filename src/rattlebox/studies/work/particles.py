@@ -30,7 +30,7 @@ from rattlebox.results import Run
 from rattlebox.studies.work.impact import ImpactEngine
 from rattlebox.studies.work.measures import MEASURES
 from rattlebox.studies.work.starting import check_starts, missing_value, window_start
-from rattlebox.studies.work.variants import Variants
+from rattlebox.studies.work.variants import MeasureError, Variants
 from rattlebox.studies.work.window import Window
 from rattlebox.studies.work.work import Cancelled, Outputs, Reduction, Signals, Values, proceed_unless
 
@@ -222,6 +222,8 @@ class ParticleEngine:
         for index in numbers:
             try:
                 row = self._row_of(index, threads, proceed, reduction)
+            except MeasureError:
+                raise
             except RattleboxError:  # the variant gets the status "refused"; see `refusal_reason`
                 continue
             if row is None:
@@ -252,6 +254,8 @@ class ParticleEngine:
                 if end is None and not settle_all(case, proceed):
                     return None
                 run, after = continue_dem(case, end, threads=threads, progress=proceed)
+            except MeasureError:
+                raise
             except RattleboxError:  # the variant gets the status "refused"; see `refusal_reason`
                 continue
             if run.status == "interrupted":

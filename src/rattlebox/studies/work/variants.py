@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.flags import flag_values
 from rattlebox.core import _core
 from rattlebox.model.base import Part, full_text
@@ -184,6 +185,10 @@ UserMeasure = Callable[["Run"], float]
 _function_lock = Lock()  # functions of users need not be thread-safe
 
 
+class MeasureError(Hint):
+    """Error of a function of a Run: it ends a study, while a variant that cannot run is only refused."""
+
+
 @dataclass(frozen=True)
 class Variants:
     """Variants of a case, the window in which they are evaluated, and the measures of each."""
@@ -288,15 +293,18 @@ class Variants:
         """Return the values of the functions of a Run, and of the measures of its evaluated part."""
         values = {name: OF_RUN[name](evaluated) for name in self.names_of_run}
         for name, function in self.functions.items():
-            with _function_lock:
-                value: Any = function(run)
+            try:
+                with _function_lock:
+                    value: Any = function(run)
+            except RattleboxError as error:
+                raise error.restated(MeasureError, f"measure {name}, variant {index}") from error
             try:
                 if isinstance(value, str) or np.ndim(value):
                     raise TypeError
                 values[name] = float(value)
             except TypeError:
                 kind = type(value).__name__
-                raise Hint(
+                raise MeasureError(
                     f"measure {name}: the function returned {kind} for variant {index}, not one number", "float(...)"
                 ) from None
         return values
