@@ -125,7 +125,8 @@ def damping_curve(
         packings that reach the amplitude, or a motion that is not steady), `quasi_steady_error` (see Notes), `bare` (of the
         structure alone), and over `packing`, too, `damping_ratios` of each. NaN where no decay passes the band of
         amplitudes, halfway to the nearer one, within the duration; with "shaking" also `steady`, whether the motion of each
-        was steady. Attributes: way, mode, point, frequency [Hz], the text of the case, `warnings`, such as that softening
+        was steady, and `drift`, the rise of the damping ratio of each from the first to the second half of the cycles.
+        Attributes: way, mode, point, frequency [Hz], the text of the case, `warnings`, such as that softening
         changes the loss or the bed still sinks, and `exceeded`, the names of the validity limits that runs exceeded.
 
     Raises
@@ -193,7 +194,7 @@ def curve_from(
     remarks = Remarks()
     steady = None
     if way == "shaking":
-        ratios, steady = _from_shaking(cases, about, levels, cycles, run, remarks)
+        ratios, steady, drift = _from_shaking(cases, about, levels, cycles, run, remarks)
     else:
         ratios = ratios_of_decays(cases, about, levels, way, run, remarks)
     result = _dataset(ratios, levels, about, way)
@@ -207,6 +208,11 @@ def curve_from(
         found["cycles"] = list(cycles or CYCLES)
         about_steady = {"long_name": "whether the motion of each random start is steady"}
         result["steady"] = ("packing", "amplitude"), steady, about_steady
+        about_drift = {
+            "units": "1",
+            "long_name": "rise of the damping ratio from the first to the second half of the cycles",
+        }
+        result["drift"] = ("packing", "amplitude"), drift, about_drift
     return result.assign_attrs(found)
 
 
@@ -381,7 +387,7 @@ class _Row(NamedTuple):
     failure: str
     warnings: tuple[str, ...]
     exceeded: tuple[str, ...]
-    values: FloatArray  # Damping ratios, or the work in a cycle [J]
+    values: FloatArray  # Damping ratios, or the work in a cycle and its rise [J]
     largest: float = math.inf  # Largest amplitude of a decay [m]
 
 
@@ -481,20 +487,22 @@ def _from_shaking(
     cycles: tuple[int, int] | None,
     evaluate: Evaluate,
     remarks: Remarks,
-) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return the damping ratio of each start at each amplitude, (starts, A), and whether the motions were steady."""
+) -> tuple[FloatArray, NDArray[np.bool_], FloatArray]:
+    """Return damping ratios, (starts, A), whether the motions were steady, and the rises of the ratios over the cycles."""
     extensions = EXTENSIONS if cycles is None else 0
     variants, owners = _shaken_variants(cases, mode, levels, cycles or CYCLES)
     _, kept = cycles or CYCLES
     ratios = np.full((len(cases), levels.size), mode.ratio + _tuned(cases[0], mode))
-    steady = np.full(ratios.shape, True)
+    steady, drift = np.full(ratios.shape, True), np.zeros(ratios.shape)
     simulate = partial(steady_run, frequency=mode.frequency, kept=kept, extensions=extensions)
     rows = evaluate(variants, partial(_work_in_cycles, frequency=mode.frequency, kept=kept), simulate=simulate)
     for (number, k), row in zip(owners, rows, strict=True):
         remarks.add(row, number)
-        ratios[number, k] += float(row.values[0]) / (2 * math.pi * (mode.omega * levels[k] / mode.shape) ** 2)
+        work, rise = row.values / (2 * math.pi * (mode.omega * levels[k] / mode.shape) ** 2)
+        ratios[number, k] += float(work)
+        drift[number, k] += float(rise)
         steady[number, k] &= UNSTEADY not in row.exceeded
-    return ratios, steady
+    return ratios, steady, drift
 
 
 def _shaken_variants(
@@ -517,14 +525,14 @@ def _shaken_variants(
 
 
 def _work_in_cycles(run: Run, frequency: float, kept: int) -> _Row:
-    """Return the work of the cavity in a cycle, averaged over the last ones."""
+    """Return the work of the cavity in a cycle, averaged over the last ones, and its rise between their halves."""
     row = _row(run)
     if row.failure:
         return row
     loss = cycle_loss(run, frequency, kept)
     if not loss.is_steady:
         row = row._replace(warnings=(*row.warnings, loss.warning()), exceeded=(*row.exceeded, UNSTEADY))
-    return row._replace(values=np.array([loss.work]))
+    return row._replace(values=np.array([loss.work, loss.drift]))
 
 
 def on_shaker(case: Case, damper: Any, frequency: float, moved: FloatArray, cycles: int) -> Case:

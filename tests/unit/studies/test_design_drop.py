@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,13 @@ import rattlebox as rb
 from rattlebox._util.exceptions import CaseError
 from rattlebox.report.kinds.design import KIND
 from rattlebox.studies.design.search import Candidate, DesignSearch, Evaluation, pooled
+from rattlebox.studies.kinds.design import Design
 from rattlebox.studies.run import runner
 from rattlebox.studies.run.estimate import Estimate
 from rattlebox.studies.run.runner import Stopped
 
 FILL, COUNT, GAP = "damper.particles.fill_ratio", "damper.particles.count", "damper.gap"
+LENGTH = "damper.cavity.size[2]"
 
 
 def with_bed(**particles: Any) -> rb.Case:
@@ -53,6 +56,22 @@ def shaken(case: rb.Case, parameters: Any, objective: Any = "damping_ratio", **o
 
 
 @pytest.fixture
+def cycles(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Return a list to which the number of cycles of each case is added that is simulated on a shaker."""
+    counted: list[float] = []
+    usual = runner._Cases.run
+
+    def run(self: Any, numbers: range, **options: Any) -> Any:
+        for case in (self.cases[number] for number in numbers):
+            (motion, *_) = case.harmonics.values()
+            counted.append(case.duration * motion.frequency)
+        return usual(self, numbers, **options)
+
+    monkeypatch.setattr(runner._Cases, "run", run)
+    return counted
+
+
+@pytest.fixture
 def runs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Return a list to which the number of cases of each call is added that simulates cases."""
     counted: list[int] = []
@@ -69,6 +88,7 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 GAPS9 = [float(gap) / 1e4 for gap in range(2, 11)]
 GAPS = ["0.2 mm", "0.4 mm", "0.6 mm", "0.8 mm", "1 mm", "1.2 mm", "1.4 mm", "2.5 mm", "3.5 mm", "5 mm"]
 FILLS = [0.04, 0.08, 0.12, 0.16, 0.2, 0.24, 0.28, 0.36, 0.44]
+LENGTHS = ["14 mm", "16 mm", "18 mm", "20 mm", "22 mm", "25 mm", "28 mm", "32 mm", "36 mm", "40 mm"]
 COUNTS = [2, 3, 5, 8, 12, 16, 20, 30, 40]
 PLANTED: dict[str, Any] = {
     "clearance of a ball": (with_ball(), GAP, GAPS, ["0.5 mm", "0.6 mm"], 1.4e-3),
@@ -91,6 +111,177 @@ def test_the_answer_is_the_same_at_a_third_of_the_runs(name: str, runs: list[int
     check_parts(short, full, path)
     assert short.dropped.sum() >= short.feasible.sum() - 2
     assert not (short.dropped & short.may_be_best).any()
+
+
+MANY_CYCLES: dict[str, Any] = {
+    "clearance of a ball": (with_ball(), GAP, GAPS, ["0.5 mm", "0.6 mm"], (40, 80), 1.4e-3),
+    "fill of a bed": (with_bed(fill_ratio=0.2), FILL, FILLS, ["2 mm", "3 mm"], (8, 24), 0.36),
+    "length of a cavity": (with_bed(count=12), LENGTH, LENGTHS, ["2 mm", "3 mm"], (8, 24), 0.016),
+}
+
+
+def check_few_cycles(name: str, cycles: list[float], **options: Any) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return a planted search with and without dropping, after checks of its answer, its evidence and its cycles."""
+    case, path, choices, amplitudes, numbers, best = MANY_CYCLES[name]
+    options = {"amplitudes": amplitudes, "cycles": numbers, **options}
+    full = shaken(case, {path: choices}, **options)
+    needed = sum(cycles)
+    cycles.clear()
+    short = shaken(case, {path: choices}, drop=True, **options)
+    assert sum(cycles) < needed / 3
+    assert short[path].values[short.front.item()] == full[path].values[full.front.item()] == best
+    assert short.case.item() == full.case.item()
+    few, total = max(8, sum(numbers) // 4), sum(numbers)
+    after_few = (short.cycles_run == few).values
+    assert set(short.cycles_run.values.tolist()) == {few, total} and after_few.sum() >= 5
+    check_parts(short.isel(trial=~after_few), full, path)
+    assert (short.packings_run.values[after_few] == 3).all() and short.dropped.values[after_few].all()
+    stage = f"dropped after 3 of 12 packings and {few} of {total} cycles: worse than trial "
+    assert all(reason.startswith(stage) for reason in short.reason.values[after_few])
+    assert np.isfinite(short.damping_curve.values).all()
+    # The values of few cycles are within their intervals, which cover the change with more of them.
+    for one in (short.isel(trial=number) for number in np.flatnonzero(after_few)):
+        other = full.isel(trial=int(np.flatnonzero(full[path].values == one[path].item())[0]))
+        assert abs(float(one.damping_ratio - other.damping_ratio)) < 1.5 * float(one.damping_ratio_interval)
+    return full, short
+
+
+def test_trials_are_dropped_after_few_cycles(cycles: list[float]) -> None:
+    """The best design is that without dropping, with the same bits, for a third of the cycles; the report has the stages.
+
+    Before, the first packings of each trial ran with all cycles.
+    """
+    _, short = check_few_cycles("clearance of a ball", cycles)
+    answer = " ".join(KIND.answer(short))
+    assert f"{int(short.dropped.sum())} trials were dropped early, as certainly not the best: " in answer
+    assert "after 3 random initial states of 30 cycles" in answer
+    table = next(each for each in KIND.tables(short) if "over the amplitude" in each.title)
+    assert table.header[1:3] == ("random initial states", "cycles of each")
+    assert table.rows[0][:3] == ("0", "12", "120") and ("3", "30") in {tuple(row[1:3]) for row in table.rows}
+    assert all(("dropped" in row[0]) == (row[1] == "3") for row in table.rows)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MANY_CYCLES)
+def test_few_cycles_need_a_third_of_the_processor_time(name: str, cycles: list[float]) -> None:
+    """The best design is that without dropping, for a third of the processor time of the trials."""
+    full, short = check_few_cycles(name, cycles, workers=1)
+    assert short.attrs["cpu_time"] < 0.36 * full.attrs["cpu_time"]  # the clock of a busy machine scatters
+
+
+def test_default_packings_are_dropped_after_few_cycles() -> None:
+    """With the three packings of the default, trials can be dropped after few cycles, also of default cycles."""
+    options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "packings": None, "cycles": None, "drop": True}
+    short = shaken(with_ball(), {GAP: GAPS[2:]}, **options)
+    assert short.cycles_run.values.tolist() == [60] + (len(GAPS[2:]) - 1) * [15]
+    assert set(short.packings_run.values.tolist()) == {3}
+    assert short[GAP].values[short.front.item()] == 1.4e-3
+    study = Design(with_ball(), {GAP: GAPS}, "damping_ratio", way="shaking", **options | {"packings": 12})
+    estimate = study.estimate()
+    assert estimate.least is not None and 0.05 < estimate.least / estimate.cpu_time < 0.5
+    assert estimate.runs == 10 * (24 + 6) and "if trials end as early as they can" in str(estimate)
+
+
+@pytest.mark.parametrize("option", [{"way": "decay", "cycles": None}, {"packings": 2}, {"cycles": (5, 10)}])
+def test_runs_that_cannot_be_shorter(option: Any) -> None:
+    """Decays, and runs of few cycles, are not shortened: then more than three packings are needed."""
+    with pytest.raises(CaseError, match="drop decides after 3 packings, and packings = "):
+        shaken(
+            with_ball(),
+            {GAP: GAPS},
+            amplitudes=["0.5 mm", "0.6 mm"],
+            drop=True,
+            **{"packings": 3, "cycles": (20, 40)} | option,
+        )
+
+
+class Killed(BaseException):
+    """Stop of a process, after which nothing is stored."""
+
+
+@pytest.mark.parametrize("gaps", [GAPS[3:], ("0.2 mm", "4 mm")], ids=["all combinations", "between bounds"])
+def test_a_kill_at_any_stage_changes_nothing(gaps: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a kill in any evaluation, whatever was finished before, the same trials are dropped at the same stages."""
+    options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "cycles": (4, 20), "packings": 8, "drop": True}
+    options |= {} if isinstance(gaps, list) else {"trials": 6}
+    usual, left = DesignSearch.evaluate, [10**9]
+
+    def evaluate(self: DesignSearch, candidate: Candidate, count: int) -> Evaluation:
+        left[0] -= 1
+        if not left[0]:
+            raise Killed
+        return usual(self, candidate, count)
+
+    monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
+    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
+    one = shaken(with_ball(), {GAP: gaps}, workers=1, **options)
+    evaluations = 10**9 - left[0]
+    assert set(one.cycles_run.values.tolist()) == ({8, 24} if isinstance(gaps, list) else {24}) and one.dropped.any()
+    for step in range(3, evaluations + 1, 7):
+        store = tmp_path / str(step)
+        for count in (step, max(2, evaluations - step)):
+            left[0] = count
+            try:
+                shaken(with_ball(), {GAP: gaps}, workers=1, store=store, **options)
+            except Killed:
+                continue
+        left[0] = 10**9
+        again = shaken(with_ball(), {GAP: gaps}, workers=1, store=store, **options)
+        xr.testing.assert_identical(one.drop_attrs(), again.drop_attrs())
+
+
+def transients(generator: np.random.Generator, designs: int) -> Any:
+    """Return random transients over the number of cycles, one for each design: factors that end at one, (designs,)."""
+    size, time = generator.uniform(-0.6, 0.8, designs), np.exp(generator.uniform(np.log(1.0), np.log(30.0), designs))
+    is_slow = generator.random(designs) < 0.3
+
+    def factor(cycles: float) -> Any:
+        return 1 + np.where(is_slow, 0.4 * size * np.log(60 / cycles) / np.log(4), size * np.exp(-cycles / time))
+
+    return factor
+
+
+@pytest.mark.parametrize("scatter", [0.02, 0.1], ids=["little scatter", "much scatter"])
+def test_transients_do_not_decide(scatter: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In 100 planted searches whose values relax or creep by up to 80 % after few cycles, the best design is found.
+
+    Without the terms for the transient, five of those with little scatter had another answer.
+    """
+    generator = np.random.default_rng(11)
+
+    def evaluate(self: DesignSearch, candidate: Candidate, count: int) -> Evaluation:
+        assert candidate.case is not None and self.curve is not None
+        candidate.ran = count
+        number = GAPS9.index(candidate.case.dampers[0].gap)
+        skip, kept = self.curve.cycles or (20, 40)
+        halves = [
+            np.mean([factor(n + 0.5)[number] for n in range(*part)])
+            for part in ((skip, skip + kept // 2), (skip + kept // 2, skip + kept))
+        ]
+        some = (planted[number] * np.mean(halves) * (1 + noise[number, :count] * math.sqrt(60 / (skip + kept))))[None]
+        drift = np.array([planted[number] * (halves[1] - halves[0])])
+        half = t.ppf(0.975, count - 1) * some.std(axis=1, ddof=1) / np.sqrt(count)
+        return Evaluation(some.mean(axis=1), half, some, drift=drift)
+
+    monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
+    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
+    few, wrong = [], 0
+    for _ in range(100):
+        planted, noise, factor = (
+            generator.uniform(1, 4, 9),
+            scatter * generator.normal(size=(9, 12)),
+            transients(generator, 9),
+        )
+        options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "cycles": (20, 40)}
+        found = shaken(with_ball(), {GAP: GAPS9}, drop=True, **options)
+        best = max(
+            range(9),
+            key=lambda k: planted[k] * np.mean([factor(n + 0.5)[k] for n in range(20, 60)]) * (1 + noise[k].mean()),
+        )
+        wrong += found[GAP].values[found.front.item()] != GAPS9[best]
+        few.append((found.cycles_run.values == 15).mean())
+    assert wrong == 0
+    assert np.mean(few) > 0.3
 
 
 def check_parts(short: xr.Dataset, full: xr.Dataset, path: str, name: str = "damping_ratio", rel: float = 0.0) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
 from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Limit, Picture, Table
-from rattlebox.studies.design.evidence import CURVE, DROPPED, LEVEL, curves_of
+from rattlebox.studies.design.evidence import CURVE, CYCLES_RUN, DROPPED, LEVEL, PACKINGS_RUN, curves_of
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.run.estimate import duration
 from rattlebox.studies.work.measures import INTERVAL, MEASURES
@@ -82,9 +83,25 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
         yield f"Values are the {robust} over all levels, starts and amplitudes of a trial."
     if DROPPED in study and (count := int(study[DROPPED].sum())):
         verb = "was" if count == 1 else "were"
-        yield f"{counted(count, 'trial')} {verb} dropped early, with fewer random initial states: certainly not the best."
+        yield f"{counted(count, 'trial')} {verb} dropped early, as certainly not the best: {_stages(study)}."
     if order := str(study.attrs.get("order", "")):
         yield f"{order[0].upper()}{order[1:].partition('; try: ')[0]}."
+
+
+def _stages(study: xr.Dataset) -> str:
+    """Return after how many random initial states and cycles trials were dropped."""
+    rows = zip(*(study[name].values[study[DROPPED].values].tolist() for name in _ran(study)), strict=True)
+    parts = []
+    for row, count in sorted(Counter(rows).items()):
+        cycles = f" of {row[1]} cycles" if len(row) > 1 else ""
+        parts.append(f"{count} after {row[0]} random initial states{cycles}")
+    return joined(parts)
+
+
+def _ran(study: xr.Dataset) -> dict[str, str]:
+    """Return the variables of what ran of each trial, with the headings of their columns."""
+    headings = {PACKINGS_RUN: "random initial states", CYCLES_RUN: "cycles of each"}
+    return {name: text for name, text in headings.items() if name in study}
 
 
 def _choice(study: xr.Dataset, trial: xr.Dataset) -> str:
@@ -142,14 +159,21 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
 def _curve_table(study: xr.Dataset) -> Table:
     """Return the damping ratio of the trials at each amplitude, with its interval."""
     trials = _ranked(study, _MAX_ROWS)
-    curves = curves_of(study, trials)
+    curves, ran = curves_of(study, trials), _ran(study)
     rows = []
-    for name, curve in curves.items():
+    for number, (name, curve) in enumerate(curves.items()):
+        trial = trials[number // study.sizes.get(LEVEL, 1)]
+        runs = (str(int(study[each][trial])) for each in ran)
         mean = curve.damping_ratio.values
         half = curve.upper.values - mean
         cells = (with_interval(float(one), float(width), "%") for one, width in zip(mean, half, strict=True))
-        rows.append((name.removeprefix("trial "), *cells, amount(float(curve.bare[0]), "%", 3)))
-    header = ("trial", *(amount(each, "m") for each in study.amplitude.values.tolist()), "structure alone")
+        rows.append((name.removeprefix("trial "), *runs, *cells, amount(float(curve.bare[0]), "%", 3)))
+    header = (
+        "trial",
+        *ran.values(),
+        *(amount(each, "m") for each in study.amplitude.values.tolist()),
+        "structure alone",
+    )
     left = int(study.feasible.sum()) - len(trials)
     note = f"{left} more are in the dataset." if left > 0 else ""
     return Table("Damping ratio over the amplitude", header, rows, note, numbers=True)

@@ -27,6 +27,8 @@ BARE_DECIDES = "bare_decides"
 """Variable of the trials whose damper adds nothing at the amplitude that decides."""
 DROPPED = "dropped"
 """Variable of the trials that ended early because they are certainly worse than another one."""
+PACKINGS_RUN, CYCLES_RUN = "packings_run", "cycles_run"
+"""Variables of the numbers of packings that ran, and of the cycles of each run."""
 LEVEL = "level"
 """Dimension of the levels of damping curves."""
 
@@ -172,6 +174,7 @@ def curves_of(found: xr.Dataset, trials: list[int]) -> dict[str, xr.Dataset]:
         for number in range(found.sizes.get(LEVEL, 1)):
             each = one.isel({LEVEL: number}) if LEVEL in found.dims else one
             name = f"trial {trial}" + (f", {each[LEVEL].item()}" if LEVEL in found.dims else "")
+            name += ", dropped" if DROPPED in found and bool(one[DROPPED]) else ""
             mean, half = each[CURVE].reset_coords(drop=True), each[CURVE + INTERVAL].reset_coords(drop=True)
             parts = {"damping_ratio": mean, "lower": mean - half, "upper": mean + half}
             bare = each[BARE].reset_coords(drop=True).broadcast_like(mean)

@@ -24,8 +24,16 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.prepare.time_step import WARNINGS
-from rattlebox.studies.damping_curve import OTHER_MOTION, Evaluate, Way, curve_from, damping_curve_cases
-from rattlebox.studies.design.evidence import DROPPED, deciding_note, order_note, with_curves, with_order
+from rattlebox.studies.damping_curve import CYCLES, OTHER_MOTION, Evaluate, Way, curve_from, damping_curve_cases
+from rattlebox.studies.design.evidence import (
+    CYCLES_RUN,
+    DROPPED,
+    PACKINGS_RUN,
+    deciding_note,
+    order_note,
+    with_curves,
+    with_order,
+)
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, Objective, pareto_front
 from rattlebox.studies.grid.axes import ParsedAxes, materials_in, packing_axis, parse_axes, read_axes
 from rattlebox.studies.grid.grid import Grid, Parameter
@@ -34,7 +42,7 @@ from rattlebox.studies.run.estimate import SEARCH, START, TRIAL, Estimate, RunGr
 from rattlebox.studies.run.runner import evaluate_cases, run_work
 from rattlebox.studies.run.study import known_measures
 from rattlebox.studies.work.measures import INTERVAL, about, check_names
-from rattlebox.studies.work.particles import ParticleEngine, engine_of
+from rattlebox.studies.work.particles import EXTENSIONS, ParticleEngine, engine_of
 from rattlebox.studies.work.variants import MeasureError, Variants, describe_case, fingerprint
 from rattlebox.studies.work.work import Block, Work
 
@@ -54,6 +62,10 @@ FLAGS = {**WARNINGS, OTHER_MOTION: "decays with another frequency than that of t
 
 FIRST = 3
 """Number of packings after which a trial can be dropped."""
+_SHORTER = 4
+"""Factor by which the first runs of a trial are shorter than all its runs, if it can be dropped after few cycles."""
+_FEWEST_CYCLES = 8
+"""Smallest number of cycles of such a run; below twice as many, runs are not shortened."""
 _GROWTH = 1.5
 """Factor by which the number of packings grows from one decision about a trial to the next one."""
 
@@ -103,11 +115,22 @@ class Evaluation:
     reason: str = ""
     curves: Curves | None = None
     dropped: bool = False
+    cycles: int = 0  # Number of cycles of its runs if they are known
+    # Rise of the objectives from the first to the second half of the cycles of shaken runs, (objectives,)
+    drift: Vector = field(default_factory=lambda: np.zeros(1))
 
     def widened(self, scatter: Vector) -> Evaluation:
         """Return the result with intervals of its packings for at least a given scatter, (objectives,)."""
         count = np.isfinite(self.packings).sum(axis=1)
         return replace(self, intervals=np.fmax(self.intervals, scatter / np.sqrt(count)))
+
+
+class _Costs(NamedTuple):
+    """Runs of a trial."""
+
+    runs: float  # Number of runs
+    groups: list[RunGroup]  # Particle runs of some designs
+    others: float  # Processor time of the 1-D runs of these designs [s]
 
 
 def pooled(found: Sequence[Evaluation]) -> Vector:
@@ -116,7 +139,8 @@ def pooled(found: Sequence[Evaluation]) -> Vector:
     It is the root mean square of their standard deviations, times the quantile of Student's t. A few packings of one trial
     may agree by chance, as where each has one of two steady motions, and their own interval is then too narrow.
     """
-    variances = np.mean([np.nanvar(each.packings, axis=1, ddof=1) for each in found], axis=0)
+    # Sorted, so that the order of the trials, which a stop may change, has no effect on the last digit.
+    variances = np.mean(np.sort([np.nanvar(each.packings, axis=1, ddof=1) for each in found], axis=0), axis=0)
     freedom = sum(np.isfinite(each.packings).sum(axis=1) - 1 for each in found)
     return np.asarray(stdtrit(freedom, 0.975) * np.sqrt(variances))
 
@@ -129,6 +153,7 @@ class Candidate:
     mass: float = math.nan
     refused: str = ""
     ran: int = 0  # Number of packings in the tables
+    short: Evaluation | None = None  # Result of its shortened runs
     tables: dict[str, tuple[Vector, Vector | None]] = field(default_factory=dict)
     missing: float = 0.0
     warnings: int = 0
@@ -203,6 +228,45 @@ class DesignSearch:
             stages.append(min(self.count, math.ceil(_GROWTH * stages[-1])))
         return stages
 
+    @cached_property
+    def shortened(self) -> DesignSearch | None:
+        """The search with few cycles, after which trials can be dropped; None if runs cannot be shortened.
+
+        A decay must pass all amplitudes, and the window of a measure may have to follow the transient of a structure, while
+        the contents of a shaken cavity forget their start within some cycles.
+        """
+        if not self.drop or self.measured or self.curve is None or self.curve.way != "shaking":
+            return None
+        skip, kept = self.curve.cycles or CYCLES
+        few = max(_FEWEST_CYCLES, math.ceil((skip + kept) / _SHORTER))
+        if 2 * few > skip + kept:
+            return None
+        skipped = min(max(1, round(few * skip / (skip + kept))), few - 2)  # at least a cycle in each half of the others
+        return replace(self, curve=replace(self.curve, cycles=(skipped, few - skipped)))
+
+    @property
+    def cycles(self) -> int:
+        """Number of cycles of each run of a damping curve by shaking, before those that a run adds until it is steady."""
+        return sum(instance(self.curve, Curve).cycles or CYCLES)
+
+    def transient(self, short: Evaluation, changes: Sequence[Vector]) -> Vector:
+        """Return by how much objectives may still change after shortened runs, (objectives,).
+
+        `changes`: objectives of complete trials over those of their shortened runs, (objectives,) each.
+
+        Notes
+        -----
+        A bed that compacts changes about as much in each doubling of the number of cycles, and any that relaxes changes
+        less. The change from the first to the second half of the cycles is that of about one doubling. Changes that begin
+        later show in complete trials only.
+        """
+        longest = self.cycles
+        if instance(self.curve, Curve).cycles is None:
+            longest += EXTENSIONS * CYCLES[1]
+        doublings = math.log2(longest / instance(self.shortened, DesignSearch).cycles)
+        ratio = np.max([np.fmax(change, 1 / change) for change in changes], axis=0)
+        return np.asarray(doublings * np.abs(short.drift) + (ratio - 1) * np.abs(short.values))
+
     def work_of(self, case: Case) -> Work:
         """Return the work that measures the runs of a trial."""
         measures = [each.measure for each in self.measured]
@@ -273,6 +337,7 @@ class DesignSearch:
         curve = {} if self.curve is None else {"curve": vars(self.curve)}
         early: dict[str, Any] = {"drop": True} if self.drop else {}
         early |= {} if self.precision is None else {"precision": self.precision}
+        early |= {} if self.shortened is None else {"drop_cycles": self.shortened.cycles}
         return {
             **describe_case(self.case, self.grid.columns),
             "parameters": {path: about for each in self.variables for path, about in each.describe().items()},
@@ -332,11 +397,37 @@ class DesignSearch:
     # ---- cost
 
     def predict(self, trials: int) -> Estimate:
-        """Return the predicted cost of a number of trials."""
-        designs = self.sample(_SAMPLED)
-        runs = 0
+        """Return the predicted cost of a number of trials: of all packings and cycles, and the least if trials end early."""
+        designs, first = self.sample(_SAMPLED), self._first
+        parts = [self._costs(designs)] + ([] if first is None else [first._costs(designs)])
+        groups = [group for part in parts for group in part.groups]
+        times, share = time_of_particle_runs(groups) if groups else ([], 1.0)
+        own = len(parts[0].groups)
+        trial, runs = self._time_of(parts[0], times[:own], designs), parts[0].runs
+        early = trial * self.stages[0] / self.count
+        if first is not None:  # shortened runs are repeated with all cycles
+            early = first._time_of(parts[1], times[own:], designs)
+            trial, runs = trial + early, runs + parts[1].runs
+        cpu_time = START + trials * trial
+        # At least one trial is complete, unless it is precise enough before.
+        least = START + trials * early + (trial - early if self.precision is None else 0.0)
+        workers = workers_of(self.where.get("backend", "threads"), self.where.get("workers"))
+        wall_time = cpu_time / share / max(1, min(workers, runs))
+        return Estimate(trials, round(trials * runs), cpu_time, wall_time, workers, least=min(least, cpu_time))
+
+    @cached_property
+    def _first(self) -> DesignSearch | None:
+        """The search of the shortened runs of all trials; None if runs are not shortened."""
+        if self.shortened is None:
+            return None
+        count = self.stages[0]
+        axis = None if self.packings is None else parse_axes(self.case, packing_axis(self.case, count), source="levels")
+        return replace(self.shortened, count=count, packings=axis, drop=False, precision=None)
+
+    def _costs(self, designs: Sequence[Values]) -> _Costs:
+        """Return the runs of a trial, whose time is predicted, from some designs."""
+        runs, others = 0, 0.0
         groups: list[RunGroup] = []
-        others = 0.0
         for case in self._valid(designs):
             curves = self.curve_runs(case)
             sweep = self.grid.size if self.measured else 0
@@ -345,18 +436,16 @@ class DesignSearch:
                 groups += self._groups(case, sweep, curves)
             elif not others:  # 1-D designs cost about the same
                 others = len(designs) * self._time_of_impact_runs(case, curves)
-        times, share = time_of_particle_runs(groups) if groups else ([others], 1.0)
-        runs_each = runs / max(1, len(designs))
-        each = TRIAL + sum(times) / max(1, len(designs))
-        if each < _TINY:  # what is done beside the runs counts
-            each = self._time_of_trial(designs) or each
-        cpu_time = START + trials * each
-        workers = workers_of(self.where.get("backend", "threads"), self.where.get("workers"))
-        wall_time = cpu_time / share / max(1, min(workers, runs_each))
-        return Estimate(trials, round(trials * runs_each), cpu_time, wall_time, workers)
+        return _Costs(runs / max(1, len(designs)), groups, others)
+
+    def _time_of(self, costs: _Costs, times: Sequence[float], designs: Sequence[Values]) -> float:
+        """Return the processor time of a trial [s]; `times`: those of the groups of particle runs [s]."""
+        each = TRIAL + (sum(times) if costs.groups else costs.others) / max(1, len(designs))
+        # If it is short, what is done beside the runs counts.
+        return (self._time_of_trial(designs) or each) if each < _TINY else each
 
     def _time_of_trial(self, designs: Sequence[Values]) -> float:
-        """Return the processor time of a trial [s], from a few whole ones; 0 if there is no valid design."""
+        """Return the processor time of a trial [s], from the first packings of a few; 0 if there is no valid design."""
         times = []
         for values in designs:
             before = time.process_time()
@@ -367,7 +456,7 @@ class DesignSearch:
             if len(times) == _WHOLE_TRIALS:
                 break
         # The first one also reads modules.
-        return SEARCH + float(np.mean(times[1:] or times)) if times else 0.0
+        return SEARCH + self.count / self.stages[0] * float(np.mean(times[1:] or times)) if times else 0.0
 
     def _valid(self, designs: Sequence[Values]) -> Iterator[Case]:
         """Yield the cases of the designs that a trial would run."""
@@ -457,7 +546,7 @@ class DesignSearch:
         tables, missing, warnings = dict(candidate.tables), candidate.missing, candidate.warnings
         curves: Curves | None = None
         if self.curve is not None:
-            curves, names = self._curves(candidate, case, count)
+            curves, drift, names = self._curves(candidate, case, count)
             warnings |= sum(2**bit for bit, name in enumerate(FLAGS) if name in names)
             tables[DAMPING_RATIO] = curves.ratios.reshape(-1, count), None
             missing = max(missing, float(1 - np.isfinite(curves.ratios).mean()))
@@ -467,7 +556,13 @@ class DesignSearch:
             return replace(nothing, curves=curves)
         parts = [self._reduced(each, *tables[each.name]) for each in self.computed]
         values, halves, packings = (np.array(part) for part in zip(*parts, strict=True)) if parts else 3 * [np.zeros(0)]
-        return Evaluation(values, halves, packings.reshape(len(parts), count), 0.0, warnings, curves=curves)
+        found = Evaluation(values, halves, packings.reshape(len(parts), count), 0.0, warnings, curves=curves)
+        if curves is None or self.measured:
+            return found
+        late, early = (
+            self._reduced(self.computed[0], tables[DAMPING_RATIO][0] + side * drift, None)[0] for side in (0.5, -0.5)
+        )
+        return replace(found, drift=np.array([late - early]))
 
     def _measure(self, candidate: Candidate, case: Case, count: int) -> None:
         """Add the measures of the packings that a design lacks to its tables."""
@@ -498,8 +593,8 @@ class DesignSearch:
             return np.asarray(values.values.reshape(-1, 1))
         return np.asarray(values.transpose(..., PACKING).values.reshape(-1, self.count))
 
-    def _curves(self, candidate: Candidate, case: Case, count: int) -> tuple[Curves, set[str]]:
-        """Return the damping curves of a trial, and the names of exceeded limits."""
+    def _curves(self, candidate: Candidate, case: Case, count: int) -> tuple[Curves, Vector, set[str]]:
+        """Return the damping curves of a trial, the drift of all values, (..., P), and the names of exceeded limits."""
         run: Evaluate = partial(evaluate_cases, **self.where)
         if len(self.stages) > 1:
             run = candidate.remember(run)
@@ -510,7 +605,8 @@ class DesignSearch:
             np.array([(each.upper - each.lower).values / 2 for each in found]),
             np.array([float(each.bare[0]) for each in found]),
         )
-        return curves, {name for each in found for name in each.attrs["exceeded"]}
+        drift = [each.drift.values.T if "drift" in each else np.zeros((each.amplitude.size, count)) for each in found]
+        return curves, np.concatenate(drift), {name for each in found for name in each.attrs["exceeded"]}
 
     def _reduced(self, objective: Objective, values: Vector, half: Vector | None) -> tuple[float, float, Vector]:
         """Return an objective, half of the width of its interval, and its value for each packing.
@@ -576,11 +672,14 @@ class DesignSearch:
         found["warnings"] = ("trial", exceeded, flags)
         reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)
         found["reason"] = ("trial", reasons, {"long_name": "why a trial is not feasible"})
-        if len(self.stages) > 1:
+        if self.drop or self.precision is not None:
             dropped = np.array([trial.user_attrs[DROPPED] for trial in trials], bool)
             found[DROPPED] = "trial", dropped, {"long_name": "ended early, because certainly worse than another trial"}
             ran = {"units": "1", "long_name": "number of packings that ran"}
-            found["packings_run"] = "trial", [trial.user_attrs["ran"] for trial in trials], ran
+            found[PACKINGS_RUN] = "trial", [trial.user_attrs["ran"] for trial in trials], ran
+        if self.shortened is not None:
+            cycles = {"units": "1", "long_name": "number of cycles of each run, before those until it is steady"}
+            found[CYCLES_RUN] = "trial", [trial.user_attrs["cycles"] for trial in trials], cycles
         front = pareto_front(values * np.array([each.sign for each in self.objectives]), feasible)
         if notes := [_exceeded(number, exceeded[number]) for number in front if exceeded[number]]:
             found.attrs["flagged"] = "; ".join(notes)

@@ -8,7 +8,7 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -173,7 +173,7 @@ class Trials:
         self._stored = finished_trials(optuna, study)
         combinations = search.combinations
         self._all = combinations is not None and (wanted is None or wanted >= len(combinations))
-        self._begun: dict[str, tuple[Candidate, Evaluation]] = {}  # Designs after their first packings
+        self._begun: dict[str, _Begun] = {}  # Designs after their first packings
         self.total = wanted or MOST_COMBINATIONS
         if self._all:
             self.total = len(self._stored) + len(self._missing())
@@ -208,13 +208,10 @@ class Trials:
         samplers = self._optuna.samplers
         if self._all:
             missing = self._missing()
-            if self._search.drop:
-                for values in missing:
-                    if _key(values) not in self._begun:
-                        self._begin(values)
-                        return
-                missing.sort(key=self._order())
-            self._study.sampler = _fixed(samplers, missing[0])
+            values = self._next(missing) if self._search.drop else missing[0]
+            if values is None:
+                return
+            self._study.sampler = _fixed(samplers, values)
         else:
             self._study.sampler = samplers.TPESampler(seed=trial_seed(self._seed, self.done))
         trial = self._study.ask()
@@ -235,6 +232,8 @@ class Trials:
             "seconds": candidate.seconds.tolist(),
             DROPPED: found.dropped,
             "ran": candidate.ran,
+            "cycles": None if self._search.shortened is None else found.cycles or self._search.cycles,
+            "short": None if candidate.short is None else candidate.short.packings.tolist(),
             "curves": None if found.curves is None else [each.tolist() for each in found.curves],
         }
         for name, value in attributes.items():
@@ -250,22 +249,54 @@ class Trials:
         tried = [trial.params for trial in self._stored]
         return [values for values in self._search.combinations or () if values not in tried]
 
-    def _begin(self, values: Values) -> tuple[Candidate, Evaluation]:
-        """Return a design after its first packings."""
-        candidate = self._search.candidate(values)
-        begun = candidate, self._search.evaluate(candidate, self._search.stages[0])
-        self._begun[_key(values)] = begun
+    def _next(self, missing: list[Values]) -> Values | None:
+        """Return the combination whose trial is the next one; None if first packings of a combination ran instead.
+
+        Shortened runs of all come first. The best one is completed, each of the others is compared with it, and those that
+        are left run their first packings with all cycles. Then the best ones are completed first. All decisions depend on
+        results alone that are the same after a stop, whatever was finished before it.
+        """
+        for values in missing:
+            if _key(values) not in self._begun:
+                self._begin(values)
+                return None
+        shortened = self._search.shortened is not None
+        missing.sort(key=self._order(short=shortened))
+        if shortened and self._complete():
+            for values in missing:
+                begun = self._begun[_key(values)]
+                if begun.found is None:
+                    return values if self._continue(begun).dropped else None
+            missing.sort(key=self._order(short=False))
+        return missing[0]
+
+    def _begin(self, values: Values) -> _Begun:
+        """Return a design after its first packings, with few cycles if runs can be shortened."""
+        search, candidate = self._search, self._search.candidate(values)
+        found = (search.shortened or search).evaluate(candidate, search.stages[0])
+        candidate.short = found if search.shortened else None
+        begun = self._begun[_key(values)] = _Begun(candidate, None if search.shortened else found)
         return begun
 
-    def _order(self) -> Callable[[Values], float]:
+    def _continue(self, begun: _Begun) -> Evaluation:
+        """Return the result of the first packings of a design: with all cycles, unless few of them exclude it."""
+        if begun.found is None:
+            begun.found = self._dropped_after_few_cycles(begun.candidate)
+        if begun.found is None:
+            begun.found = self._search.evaluate(begun.candidate, self._search.stages[0])
+        return begun.found
+
+    def _order(self, *, short: bool) -> Callable[[Values], float]:
         """Return the rank of a combination after its first packings, summed over the objectives: the best one runs first.
 
-        It is the same after a stop, since it covers the finished trials, too.
+        It is the same after a stop, since it covers the finished trials, too. `short`: whether shortened runs decide.
         """
         first = self._search.stages[0]
-        found = {_key(trial.params): _stored(self._search, trial) for trial in self._stored} | self._begun
+        found = {_key(trial.params): _stored(self._search, trial) for trial in self._stored}
+        found |= {key: (each.candidate, each.found) for key, each in self._begun.items()}
         parts = []
         for candidate, each in found.values():
+            each = candidate.short if short or each is None else each
             values = np.mean(each.packings[:, :first], axis=1)
             parts.append(self._search.objective_values(candidate.mass, replace(each, values=values))[0])
         signs = np.array([each.sign for each in self._search.objectives])
@@ -279,8 +310,12 @@ class Trials:
         for trial in self._stored:
             if trial.params == values:
                 return _stored(self._search, trial)
-        candidate, found = self._begun.get(_key(values)) or self._begin(values)
+        begun = self._begun.get(_key(values)) or self._begin(values)
+        found = self._continue(begun)
+        candidate = begun.candidate
         del self._begun[_key(values)]
+        if found.dropped:
+            return candidate, found
         for count in self._search.stages[1:]:
             if found.missing or self._search.is_precise(found):
                 break
@@ -290,23 +325,72 @@ class Trials:
             found = self._search.evaluate(candidate, count)
         return candidate, found
 
-    def _better(self, mass: float, found: Evaluation) -> int | None:
-        """Return the first complete trial that is certainly better than a design, within the intervals of both."""
-        rivals = {
-            number: _result(self._search, trial)
+    def _complete(self) -> dict[int, Any]:
+        """Return the trials that are complete, by number."""
+        return {
+            number: trial
             for number, trial in enumerate(self._stored)
             if trial.values is not None and not trial.user_attrs[DROPPED]
         }
-        dropped = [_result(self._search, each)[1] for each in self._stored if each.user_attrs[DROPPED]]
-        begun = [each for _, each in self._begun.values() if not each.missing]
-        scatter = pooled([found, *(each for _, each in rivals.values()), *dropped, *begun])
+
+    def _better(self, mass: float, found: Evaluation) -> int | None:
+        """Return the first complete trial that is certainly better than a design, within the intervals of both."""
+        rivals = self._complete()
+        others = [_result(self._search, each)[1] for each in self._stored if each.values is not None]
+        begun = [each.found for each in self._begun.values() if each.found is not None and not each.found.missing]
+        scatter = pooled([found, *others, *begun])
+        return self._rival(mass, found.widened(scatter), rivals, scatter)
+
+    def _dropped_after_few_cycles(self, candidate: Candidate) -> Evaluation | None:
+        """Return the result of the shortened runs of a design if a complete trial excludes it; otherwise None."""
+        search, found = self._search, candidate.short
+        rivals = self._complete()
+        if self._all:  # later ones may be complete or not after a stop
+            rivals = dict(list(rivals.items())[:1])
+        if search.shortened is None or found is None or found.missing or not rivals:
+            return None
+        known = {number: _stored(search, trial) for number, trial in enumerate(self._stored)}
+        candidates = [each for each, _ in known.values()] + [each.candidate for each in self._begun.values()]
+        scatter = pooled([each.short for each in candidates if each.short is not None and not each.short.missing])
+        of_rivals = [known[number] for number in rivals]
+        changes = [
+            result.packings[:, : search.stages[0]].mean(axis=1) / before.values
+            for each, result in of_rivals
+            if (before := each.short) is not None and not before.missing
+        ]
+        if not changes or np.any(np.array(changes) <= 0):
+            return None
+        bias = search.transient(found, changes)
+        wide = found.widened(scatter)
+        rival = self._rival(candidate.mass, replace(wide, intervals=wide.intervals + bias), rivals, scatter)
+        if rival is None:
+            return None
+        runs = f"{candidate.ran} of {search.count} packings and {search.shortened.cycles} of {search.cycles} cycles"
+        reason = f"dropped after {runs}: worse than trial {rival}"
+        cycles = search.shortened.cycles
+        return replace(found, intervals=found.intervals + bias, dropped=True, cycles=cycles, reason=reason)
+
+    def _rival(self, mass: float, found: Evaluation, rivals: Mapping[int, Any], scatter: Any) -> int | None:
+        """Return the first of some trials that is certainly better than a design, within the intervals of both.
+
+        `scatter`: that with which the intervals of the trials are widened; those of the design are `found`.
+        """
         signs = np.array([each.sign for each in self._search.objectives])
-        values, half = self._search.objective_values(mass, found.widened(scatter))
-        for number, (other, rival) in rivals.items():
+        values, half = self._search.objective_values(mass, found)
+        for number, trial in rivals.items():
+            other, rival = _result(self._search, trial)
             best, width = self._search.objective_values(other, rival.widened(scatter))
             if certainly_worse((signs * values - half)[None], (signs * best + width)[None]).item():
                 return number
         return None
+
+
+@dataclass
+class _Begun:
+    """A design after its first packings."""
+
+    candidate: Candidate
+    found: Evaluation | None  # Their result with all cycles; None as long as only shortened runs are known
 
 
 def _key(values: Values) -> str:
@@ -328,13 +412,19 @@ def _result(search: DesignSearch, trial: Any) -> tuple[float, Evaluation]:
         about["reason"],
         None if about["curves"] is None else Curves(*map(np.array, about["curves"])),
         about[DROPPED],
+        about["cycles"] or 0,
     )
 
 
 def _stored(search: DesignSearch, trial: Any) -> tuple[Candidate, Evaluation]:
     """Return the design of a finished trial, which needs no time, and its result."""
     mass, found = _result(search, trial)
-    return Candidate(None, mass, ran=trial.user_attrs["ran"]), found
+    short = trial.user_attrs["short"]
+    if short is not None:
+        packings = np.array(short, float)
+        values = packings.mean(axis=1)
+        short = Evaluation(values, np.full(values.shape, np.nan), packings, float(not np.isfinite(values).all()))
+    return Candidate(None, mass, ran=trial.user_attrs["ran"], short=short), found
 
 
 def _fixed(samplers: Any, values: Values) -> Any:

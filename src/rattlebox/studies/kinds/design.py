@@ -79,7 +79,8 @@ class Design(Study):
         Number of random initial states: packings of particles, and positions of balls for a damping ratio. Default 3 with
         random packings, otherwise 1.
     drop
-        Whether a trial ends before all its packings as soon as it is certainly worse than a complete trial; see Notes.
+        Whether a trial ends before all its packings, or after few cycles, as soon as it is certainly worse than a complete
+        trial; see Notes.
     precision
         Half width of the 95 % interval over the mean, such as 0.05, below which a trial ends before all its packings, in all
         objectives; default none.
@@ -97,7 +98,8 @@ class Design(Study):
         Number of trials; default 100, or all combinations.
     budget
         Longest wall time of this call, such as "10 min"; the search stops there with the trials that are finished. If more
-        is predicted for all combinations or a given number of trials, nothing runs.
+        is predicted for all combinations or a given number of trials, even if they are dropped as early as they can be,
+        nothing runs.
     seed
         Random seed of the trials.
     skip, cycles, samples, point, workers, backend
@@ -118,7 +120,8 @@ class Design(Study):
         `may_be_best`, whether it is on the front or cannot be excluded from it within the 95 % intervals. With a damping
         ratio, over `amplitude`, too (and `level`): `damping_curve`, its `..._interval` and `..._packings`; `bare`, of the
         structure alone; and, for the worst amplitude, `bare_decides`, whether the damper adds nothing there. With `drop` or
-        `precision`: `dropped`, and `packings_run`, the number of packings that a trial has; the others are NaN. Over
+        `precision`: `dropped`, with the stage and the better trial in `reason`; `packings_run`, the number of packings that
+        a trial has (the others are NaN); and, where trials can be dropped after few cycles, `cycles_run`. Over
         `front`: the numbers of the Pareto-optimal trials (of the best trial for one objective) and their case files; if no
         trial is feasible it is empty, and a warning, also in the attribute `warnings`, lists the reasons.
         Attributes: `predicted_wall_time` and `predicted_cpu_time` [s] of all trials before the first one, `wall_time`
@@ -152,7 +155,20 @@ class Design(Study):
     root mean square of the standard deviations of all trials. If all combinations are
     tried, the first packings of all run first, and those that are then best are completed first: this is the order of the
     trials. Decisions depend on results only, and are the same for any number of workers and after a stop. Predicted times
-    are those of all packings.
+    are those of all packings, and the least time is stated, too.
+
+    With `drop`, if damping ratios by "shaking" are the only objectives beside the mass and there are at least 16 cycles, the
+    first packings run with a quarter of the cycles, at least 8, before they run with all. If all combinations are tried, the
+    best one of them is completed; each of the others is dropped if that one (otherwise any complete trial) excludes it as
+    above, although its half width is increased by
+
+        abs(d) log2(N / n) + abs(f) (r - 1)
+
+    with its objective f after n cycles, the change d of f from the first to the second half of the evaluated cycles, the
+    largest number N of cycles, and the ratio r, above one, by which the objective of the complete trial changed from then
+    on. The first term bounds the change of a motion that relaxes, or compacts with the logarithm of time; the second one
+    is for changes that begin later. The runs of trials that are left start again, so that complete trials have the bits of a
+    search without `drop`.
 
     `bare_decides`: at the amplitude with the least damping ratio the damper adds less than a tenth of the ratio of the
     structure alone, or less than the half width of the interval. A warning is issued if this holds for the best trial.
@@ -218,13 +234,7 @@ class Design(Study):
             )
         levels = robust_axes(self.case, self.levels, self.starts)
         count, packings = self._packings(bool(measured))
-        if (self.drop or self.precision is not None) and count <= FIRST:
-            name = "drop" if self.drop else "precision"
-            raise Hint(
-                f"{name} decides after {FIRST} packings, and packings = {count} has no more of them",
-                f"packings = 12, or no {name}",
-            )
-        return DesignSearch(
+        search = DesignSearch(
             case=self.case,
             variables=[DesignVariable.read(self.case, key, each, log) for key, each in parameters.items()],
             objectives=objectives,
@@ -243,6 +253,13 @@ class Design(Study):
                 "point": self.point,
             },
         )
+        if (self.drop or self.precision is not None) and count < FIRST + (search.shortened is None):
+            name = "drop" if self.drop else "precision"
+            raise Hint(
+                f"{name} decides after {FIRST} packings, and packings = {count} has no more of them",
+                f"packings = 12, or no {name}",
+            )
+        return search
 
     def _packings(self, measured: bool) -> tuple[int, ParsedAxes | None]:
         """Return the number of random initial states, and the axis of random packings."""
@@ -303,16 +320,18 @@ class Design(Study):
             return
         predicted = search.predict(left)
         line, wall = f"design: {predicted}", predicted.wall_time
+        least = wall if predicted.least is None else wall * predicted.least / predicted.cpu_time
         allowed = math.inf if self.budget is None else float(self.budget)
         if wall > allowed:
             given, fitting = duration(allowed), math.floor(left * allowed / wall)
-            if self.trials is not None or search.combinations is not None or not fitting:
+            if least > allowed and (self.trials is not None or search.combinations is not None or not fitting):
                 fewer = f"trials = {fitting}, " if fitting else ""
                 raise Hint(
                     f"budget = {given} is less than predicted for {predicted}",
                     f'{fewer}budget = "{duration(1.2 * wall)}", fewer levels, packings or particles, or more softening',
                 )
-            line += f"; about {fitting} trials within the budget of {given}"
+            end = f"about {fitting} trials" if least == wall else "perhaps not all trials are"
+            line += f"; {end} within the budget of {given}"
         if self.budget is not None or wall > _SHOWN_FROM:
             announce(self.progress, line)
         trials.store_prediction(predicted)

@@ -64,6 +64,8 @@ class Estimate:
         Factor within which the processor time is expected.
     unit
         Word for a run: "run", or "point" of a branch.
+    least
+        Processor time if all trials of a design end as early as they can [s]; default none.
     """
 
     trials: int
@@ -73,13 +75,17 @@ class Estimate:
     workers: int
     factor: float = 1.5
     unit: str = "run"
+    least: float | None = None
 
     def __str__(self) -> str:
         trials = f"{self.trials:,} trials, " if self.trials else ""
+        early = ""
+        if self.least is not None and self.least < self.cpu_time:
+            early = f"; {duration(self.least)} of processor time if trials end as early as they can"
         return (
             f"{trials}{self.runs:,} {self.unit}{'s' * (self.runs != 1)}: about {duration(self.cpu_time)} of processor time "
             f"(within a factor of {self.factor:.1f}), {duration(self.wall_time)} with {self.workers} "
-            f"worker{'s' * (self.workers != 1)}"
+            f"worker{'s' * (self.workers != 1)}{early}"
         )
 
 

@@ -197,6 +197,9 @@ _DESIGN_NAMES = {
     "bare",
     "may_be_best",
     "bare_decides",
+    "dropped",
+    "packings_run",
+    "cycles_run",
     "level",
     "amplitude",
 }
