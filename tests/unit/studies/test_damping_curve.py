@@ -335,3 +335,15 @@ def test_amplitudes_in_metres_are_noted() -> None:
         warnings.simplefilter("error")
         read_amplitudes(["0.5 g", "2 g"], 100 * math.pi)
         read_amplitudes(["0.5 mm", "2 mm"], 100 * math.pi)
+
+
+def test_the_drift_is_the_change_between_the_halves_of_the_cycles() -> None:
+    """The drift of shaken motions is the change between curves over the first and the second half of the cycles."""
+    options: dict[str, Any] = {"way": "shaking", "packings": 3, "progress": False}
+    whole, first, second = (
+        rb.damping_curve(ball_case(), LEVELS, cycles=n, **options) for n in ((1, 8), (1, 4), (5, 4))
+    )
+    change = second.damping_ratios - first.damping_ratios
+    assert float(abs(change).max()) > 1e-3
+    np.testing.assert_allclose(whole.drift, change, atol=1e-6)
+    assert "drift" not in rb.damping_curve(ball_case(), LEVELS, packings=1, progress=False)

@@ -14,6 +14,7 @@ from scipy.stats import t
 import rattlebox as rb
 from rattlebox._util.exceptions import CaseError
 from rattlebox.report.kinds.design import KIND
+from rattlebox.studies.design.evidence import curves_of
 from rattlebox.studies.design.search import Candidate, DesignSearch, Evaluation, pooled
 from rattlebox.studies.kinds.design import Design
 from rattlebox.studies.run import runner
@@ -343,6 +344,21 @@ def test_the_front_of_several_objectives_is_the_same() -> None:
     full, short = shaken(case, counts, goals, **options), shaken(case, counts, goals, drop=True, **options)
     assert list(short.case.values) == list(full.case.values) and short.sizes["front"] > 2
     assert short.dropped.any()
+
+
+def test_the_front_is_the_same_after_few_cycles() -> None:
+    """With the mass as a second objective and two levels, trials are dropped after few cycles, and the front is the same."""
+    choices = {GAP: ["0.4 mm", "1.4 mm", "4 mm"], "damper.ball.diameter": ["20 mm", "30 mm"]}
+    options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "cycles": (8, 24), "packings": 5}
+    options["levels"] = {"damper.contact.restitution": [0.4, 0.6]}
+    goals = ["added_mass", "damping_ratio"]
+    full = shaken(with_ball(), choices, goals, **options)
+    short = shaken(with_ball(), choices, goals, drop=True, **options)
+    assert list(short.case.values) == list(full.case.values)
+    few = short.cycles_run.values == 8
+    assert few.any() and short.dropped.values[few].all()
+    assert short.damping_curve.dims == ("trial", "level", "amplitude") and np.isfinite(short.damping_curve).all()
+    assert [name.count("dropped") for name in curves_of(short, [0, int(np.flatnonzero(few)[0])])] == [0, 0, 1, 1]
 
 
 def stopped_after(count: int) -> Any:

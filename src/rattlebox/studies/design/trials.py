@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.exceptions import StoreError
+from rattlebox._util.narrow import instance
 from rattlebox._util.owned_folder import read_marker
 from rattlebox.model.differences import differences
 from rattlebox.results.provenance import with_version
@@ -292,11 +293,13 @@ class Trials:
         It is the same after a stop, since it covers the finished trials, too. `short`: whether shortened runs decide.
         """
         first = self._search.stages[0]
-        found = {_key(trial.params): _stored(self._search, trial) for trial in self._stored}
+        found: dict[str, tuple[Candidate, Evaluation | None]] = {
+            _key(trial.params): _stored(self._search, trial) for trial in self._stored
+        }
         found |= {key: (each.candidate, each.found) for key, each in self._begun.items()}
         parts = []
-        for candidate, each in found.values():
-            each = candidate.short if short or each is None else each
+        for candidate, own in found.values():
+            each = instance(candidate.short if short or own is None else own, Evaluation)
             values = np.mean(each.packings[:, :first], axis=1)
             parts.append(self._search.objective_values(candidate.mass, replace(each, values=values))[0])
         signs = np.array([each.sign for each in self._search.objectives])
