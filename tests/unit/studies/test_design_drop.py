@@ -444,3 +444,19 @@ def test_too_few_packings_are_refused(option: Any) -> None:
     """With three packings there is nothing to leave out: the option is refused and does not pass silently."""
     with pytest.raises(CaseError, match="decides after 3 packings"):
         shaken(with_bed(count=4), {COUNT: [4, 8]}, amplitudes=["1 mm", "2 mm"], packings=3, **option)
+
+
+@pytest.mark.parametrize("least", [20.0, 90.0])
+def test_a_budget_suffices_for_the_least_time(
+    least: float, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A budget below the time of all packings and cycles is refused only if trials that end early need more, too."""
+    estimate = Estimate(3, 1, 100.0, 100.0, 1, least=least)
+    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: estimate)
+    options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "packings": 4, "drop": True, "progress": True}
+    if least > 60:
+        with pytest.raises(CaseError, match=r"budget = 60 s is less than predicted for .* if trials end as early"):
+            shaken(with_ball(), {GAP: GAPS[:3]}, budget="60 s", **options)
+        return
+    assert shaken(with_ball(), {GAP: GAPS[:3]}, budget="60 s", **options).sizes["trial"] == 3
+    assert "20 s of processor time if trials end as early as they can; perhaps not all" in capsys.readouterr().err
