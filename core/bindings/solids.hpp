@@ -91,14 +91,17 @@ public:
             const Row c = row(points.data() + 3 * i);
             const real radius = radii.data()[i];
             near.clear();
+            const auto add = [&](int leaf) {
+                const dem::LeafPoint p = solids_.nearest_on(leaf, c);
+                if (solids_.distance(p) < radius) near.push_back(p);
+            };
             for (std::size_t s = 0; s < solids_.solids().size(); ++s) {
                 const dem::Solid& one = solids_.solids()[s];
                 const int first = first_leaf_[s];
                 if (one.form != dem::Solid::mesh)
-                    near.push_back(solids_.nearest_on(first, c));
+                    add(first);
                 else
-                    one.triangles->within(c, radius,
-                                          [&](int f) { near.push_back(solids_.nearest_on(first + f, c)); });
+                    one.triangles->within(c, radius, [&](int f) { add(first + f); });
             }
             solids_.select(c, radius, {}, near.data(), static_cast<int>(near.size()));
             for (const dem::LeafPoint& p : near) {

@@ -97,7 +97,10 @@ struct ContactList {
     std::vector<int> first, second; // particles; at walls the second is a wall
     std::vector<int> origin;        // index in the neighbour list
     std::vector<int> slot;          // of its history, or none
-    std::vector<Row> near;          // outward normal and distance of a wall, where there are solids
+    // Where a candidate is a body or a triangle: outward normal and distance of the wall in this step, and a
+    // lower bound on the gap at the last scan; else empty.
+    std::vector<Row> near;
+    std::vector<real> gap;
     int candidate_count = 0;
     std::vector<int> touching; // candidates that touch, ascending
     int touching_count = 0;

@@ -214,7 +214,7 @@ class ContactLoop {
 public:
     ContactLoop(Bed& bed, const Problem& problem, const ContactLaws& pair, const ContactLaws& wall)
         : bed_(bed), problem_(problem), pair_(pair), wall_(wall) {
-        for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
+        for (const Wall& w : bed.cavity->walls) curved_ |= w.form == Wall::cylinder || w.form == Wall::sphere;
         for (const int e : bed.cavity->particle_pair) pair_mu_.push_back(at(problem.pair_laws, e).friction());
         for (const int e : bed.cavity->wall_pair) wall_mu_.push_back(at(problem.pair_laws, e).friction());
     }
@@ -236,7 +236,7 @@ public:
             });
         };
         with_pairs(chunk.pairs, [&](const auto& view) { change(chunk.pairs, view, pair_, particle); });
-        if (!bed_.cavity->solids.empty()) find_wall_points(chunk.walls, bed_, false);
+        find_wall_points(chunk.walls, bed_, chunk.begin, false);
         change(chunk.walls, wall_view(chunk), wall_, wall);
         if (has_forces && !chunk.each_wall.empty()) change_impulses(chunk, dt_before);
     }
@@ -267,7 +267,7 @@ public:
             at(bed_.chunk_motion, chunk.begin / Bed::chunk_size).moved + bed_.cavity_moved;
         ++chunk.walls.steps_since_scan, ++chunk.walls.steps;
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
-        if (!bed_.cavity->solids.empty()) find_wall_points(chunk.walls, bed_, true);
+        find_wall_points(chunk.walls, bed_, chunk.begin, true);
         compute(chunk.walls, wall_view(chunk), wall_, wall, sampled, chunk, Prefetch());
         // The reaction on the cavity. Its moment is a result, computed for samples, unless a drive turns the
         // cavity against it.

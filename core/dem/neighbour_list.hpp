@@ -17,6 +17,7 @@
 
 #include "dem/bed.hpp"
 #include "dem/cell_list.hpp"
+#include "dem/solid_contacts.hpp"
 #include "dem/walls.hpp"
 #include "math/masks.hpp"
 
@@ -392,8 +393,9 @@ public:
         const int leaves = solids.leaves();
         ContactList& list = chunk.walls;
         thread_local std::vector<int> origins;
+        thread_local std::vector<real> gaps;
         thread_local std::vector<std::pair<int, int>> touching; // origin and slot
-        origins.clear(), touching.clear();
+        origins.clear(), gaps.clear(), touching.clear();
         for (int a = 0; a < list.touching_count; ++a) {
             const int k = at(list.touching, a);
             touching.emplace_back(at(list.origin, k), at(list.slot, k));
@@ -402,10 +404,12 @@ public:
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const int from = (i - chunk.begin) * leaves;
             for (std::uint32_t rest = masks[i - chunk.begin]; rest != 0; rest &= rest - 1)
-                origins.push_back(from + __builtin_ctz(rest));
+                origins.push_back(from + __builtin_ctz(rest)), gaps.push_back(0);
             const Row place = (at(bed.position, i) - bed.motion.displacement) * row(1, 1, 1, 0);
-            const int outside = solids.near(place, at(bed.position, i)[3] + list.skin,
-                                            [&](int leaf) { origins.push_back(from + leaf); });
+            const real radius = at(bed.position, i)[3];
+            const int outside = solids.near(place, radius + list.skin, [&](int leaf, real distance) {
+                origins.push_back(from + leaf), gaps.push_back(distance * (1 - 1e-12) - radius);
+            });
             if (outside >= 0) chunk.stop_reason = {Status::escaped, i, outside, 0};
         }
         const int count = static_cast<int>(origins.size());
@@ -417,8 +421,34 @@ public:
             const bool has_slot = old != touching.end() && old->first == origin;
             list.set_candidate(k, chunk.begin + own, solids.wall_of(origin - own * leaves), origin,
                                has_slot ? old->second : none);
+            if (has_slot) old->second = none;
         }
         list.pad(chunk.begin, 0);
+        for (const auto& [origin, slot] : touching)
+            if (slot != none) keep_contact(bed, chunk, origin, slot);
+        find_surfaces(list, *bed.cavity);
+        if (!list.gap.empty()) list.gap.assign(gaps.begin(), gaps.end());
+    }
+
+    // Gives the history of a contact whose leaf is not listed any more to the leaf that has taken its place:
+    // a plane, or the nearest of the triangles in it.
+    static void keep_contact(const Bed& bed, Chunk& chunk, int origin, int slot) {
+        const Solids& solids = bed.cavity->solids;
+        const int leaves = solids.leaves(), from = origin / leaves * leaves;
+        const Row place = at(bed.position, chunk.begin + origin / leaves) - bed.motion.displacement;
+        ContactList& list = chunk.walls;
+        const auto begin = std::ranges::lower_bound(list.origin, from) - list.origin.begin();
+        int to = none;
+        real least = infinity;
+        for (int k = static_cast<int>(begin); k < list.size() && at(list.origin, k) < from + leaves; ++k) {
+            const int leaf = at(list.origin, k) - from;
+            if (at(list.slot, k) != none || !solids.is_in_place_of(origin - from, leaf)) continue;
+            const real apart = leaf < solids.first_plane()
+                                   ? solids.distance(solids.nearest_on(leaf, place * row(1, 1, 1, 0)))
+                                   : 0;
+            if (apart < least) least = apart, to = k;
+        }
+        if (to != none) at(list.slot, to) = slot;
     }
 };
 

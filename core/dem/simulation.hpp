@@ -103,7 +103,7 @@ class Simulation {
             real largest = 0;
             for (const Row& p : cavity.position) largest = larger(largest, p[3]);
             // A scan lists walls within half of the smallest radius.
-            cavity.solids.build(bed.smallest, largest, 0.5 * bed.smallest);
+            cavity.solids.build(bed.smallest, largest, 0.5 * bed.smallest, cavity.walls);
         }
         bed.position.assign(cavity.position.begin(), cavity.position.end());
         bed.species.assign(cavity.species.begin(), cavity.species.end());
@@ -237,7 +237,10 @@ class Simulation {
     template <class Reader> void read(Reader& reader, const std::vector<RestartCheck>& fixed) {
         serialize(reader);
         check_state(reader, fixed);
-        for (Bed& bed : beds_) clear_wall_totals(bed), update_cavity_motion(bed);
+        for (Bed& bed : beds_) {
+            clear_wall_totals(bed), update_cavity_motion(bed);
+            for (Chunk& c : bed.chunks) find_surfaces(c.walls, *bed.cavity);
+        }
     }
 
     template <class Reader>

@@ -11,7 +11,13 @@
 //    act as one surface. The potential of a contact is then continuous across the edge;
 //  - a contact point behind a nearer surface does not count.
 //
-// Leaves near a point are found in a grid of cells in the frame of the cavity, which is built once.
+// Leaves near a point are found in a grid of cells in the frame of the cavity, which is built once. In a cell
+// near which the space of the particles is convex, between planes that meet at 120 degrees or less, the
+// planes take the place of all triangles: the foot of a particle on such a plane is on the surface, since
+//  - the space near the cell is what is below all planes: a straight line that leaves it crosses a triangle,
+//    and one that does not leave it crosses none, because all triangles are below all planes;
+//  - the foot is below the other planes, unless the centre is nearer to one of them than half of its radius.
+// Such a plane is one more wall (Cavity::walls) and one more leaf, however many triangles lie in it.
 #pragma once
 
 #include <memory>
@@ -99,8 +105,8 @@ struct Solid {
 
 // The nearest point of one leaf to a particle.
 struct LeafPoint {
-    int leaf = 0;
-    Row near{}; // outward normal, and the distance
+    int leaf = 0, candidate = 0; // number of the leaf, and in the list of a chunk
+    Row near{};                  // outward normal, and the distance
     Row place{};
     int region = Triangles::on_face;
     bool counts = false; // whether it is a contact
@@ -114,23 +120,23 @@ class Solids {
     std::vector<int> solid_, face_; // by leaf
     int plain_ = 0;                 // plain walls, which have the leaves before
 
-    // The grid: leaves within `reach_` of any point of a cell, ascending.
+    // By leaf: the plane of a triangle, zero for a body, and the planes that take the place of triangles.
+    std::vector<Row> planes_;
+    std::vector<int> plane_leaf_; // by leaf of a solid: that of the plane that takes its place, or -1
+    int first_plane_wall_ = 0;
+
+    // The grid: leaves within `reach_` of any point of a cell, ascending, or their planes.
     Row origin_{};
     real width_ = 1, reach_ = 0;
     int cells_[3] = {};
     std::vector<int> begin_, listed_;
-    std::vector<real> apart_;      // distance of a listed leaf from the middle of the cell
+    std::vector<real> apart_;      // distance of a listed leaf from the middle of the cell; 0 for planes
     std::vector<real> clearance_;  // the smallest of them, by cell; infinite without leaves
     std::vector<char> solid_cell_; // whether the middle of a cell is outside of the space of particles
     bool encloses_ = false;        // whether a surface is the cavity itself
 
     const Solid& solid_of(int leaf) const { return solids_[static_cast<std::size_t>(solid_[index(leaf)])]; }
     std::size_t index(int leaf) const { return static_cast<std::size_t>(leaf - plain_); }
-
-    // Distance by which the leaves near a particle are compared.
-    real distance(const LeafPoint& p) const {
-        return solid_of(p.leaf).form == Solid::mesh ? std::fabs(p.near[3]) : p.near[3];
-    }
 
     Row middle(int x, int y, int z) const { return origin_ + row(x + 0.5, y + 0.5, z + 0.5) * width_; }
     int cell_index(int x, int y, int z) const { return (z * cells_[1] + y) * cells_[0] + x; }
@@ -159,27 +165,38 @@ public:
     // Adds a solid; walls are added before.
     void add(Solid solid, int plain_walls, bool encloses) {
         plain_ = plain_walls;
-        for (int f = 0; f < solid.leaves(); ++f)
+        for (int f = 0; f < solid.leaves(); ++f) {
             solid_.push_back(static_cast<int>(solids_.size())), face_.push_back(f);
+            planes_.push_back(solid.form == Solid::mesh ? solid.triangles->plane(f) : Row{});
+        }
         solids_.push_back(std::move(solid));
         encloses_ |= encloses;
     }
 
     bool empty() const { return solids_.empty(); }
-    int leaves() const { return plain_ + static_cast<int>(solid_.size()); }
+    int first_plane() const { return plain_ + static_cast<int>(solid_.size()); }
+    int leaves() const { return plain_ + static_cast<int>(planes_.size()); }
     int plain_walls() const { return plain_; }
-    int wall_of(int leaf) const { return leaf < plain_ ? leaf : solid_of(leaf).wall; }
+    int wall_of(int leaf) const {
+        if (leaf >= first_plane()) return first_plane_wall_ + leaf - first_plane();
+        return leaf < plain_ ? leaf : solid_of(leaf).wall;
+    }
+    // Whether one leaf is a triangle and the other one the plane that takes its place elsewhere.
+    bool is_in_place_of(int one, int other) const {
+        if (one > other) std::swap(one, other);
+        return one >= plain_ && one < first_plane() && plane_leaf_[index(one)] == other;
+    }
     const std::vector<Solid>& solids() const { return solids_; }
     std::size_t memory() const {
-        return (begin_.capacity() + listed_.capacity() + solid_.capacity() + face_.capacity()) * sizeof(int) +
-               (apart_.capacity() + clearance_.capacity()) * sizeof(real);
+        return (begin_.capacity() + listed_.capacity() + solid_.capacity() + face_.capacity() +
+                plane_leaf_.capacity()) *
+                   sizeof(int) +
+               planes_.capacity() * sizeof(Row) + (apart_.capacity() + clearance_.capacity()) * sizeof(real);
     }
 
     // Whether a triangle is beyond reach because its plane is, which costs less than its nearest point.
     bool is_beyond(int leaf, Row c, real reach) const {
-        const Solid& solid = solid_of(leaf);
-        if (solid.form != Solid::mesh) return false;
-        const Row plane = solid.triangles->plane(face_[index(leaf)]);
+        const Row plane = planes_[index(leaf)];
         return std::fabs(plane[3] - dot(plane, c)) > reach;
     }
 
@@ -210,29 +227,28 @@ public:
         return point;
     }
 
-    // Marks which of the leaves near a particle are its contacts. `points` are all leaves that may touch it.
+    // Distance by which the leaves near a particle are compared.
+    real distance(const LeafPoint& p) const {
+        return solid_of(p.leaf).form == Solid::mesh ? std::fabs(p.near[3]) : p.near[3];
+    }
+
+    // Marks which of the leaves near a particle are its contacts. `points` are all leaves that touch it; they
+    // are sorted by their distance.
     void select(Row c, real radius, const std::vector<Wall>& walls, LeafPoint* points, int count) const {
-        thread_local std::vector<int> order;
-        order.clear();
-        for (int k = 0; k < count; ++k) {
-            points[k].counts = false;
-            if (distance(points[k]) < radius) order.push_back(k);
-        }
-        if (order.empty()) return;
-        const auto before = [&](int a, int b) {
-            const real one = distance(points[a]), other = distance(points[b]);
-            return one != other ? one < other : points[a].leaf < points[b].leaf;
+        const auto before = [&](const LeafPoint& a, const LeafPoint& b) {
+            const real one = distance(a), other = distance(b);
+            return one != other ? one < other : a.leaf < b.leaf;
         };
-        if (order.size() > 1) std::sort(order.begin(), order.end(), before);
+        if (count > 1) std::sort(points, points + count, before);
         const real tolerance = 1e-9 * radius;
-        for (std::size_t b = 0; b < order.size(); ++b) {
-            LeafPoint& p = points[order[b]];
+        for (int b = 0; b < count; ++b) {
+            LeafPoint& p = points[b];
             const Solid& own = solid_of(p.leaf);
             const int f = face_[index(p.leaf)];
             // A triangle that faces away from the particle is the other side of a thin body.
             bool counts = own.form != Solid::mesh || p.near[3] >= 0;
-            for (std::size_t a = 0; counts && a < b; ++a) {
-                const LeafPoint& nearer = points[order[a]];
+            for (int a = 0; counts && a < b; ++a) {
+                const LeafPoint& nearer = points[a];
                 const Solid& other = solid_of(nearer.leaf);
                 if (&own == &other && own.form == Solid::mesh) {
                     const int g = face_[index(nearer.leaf)];
@@ -260,8 +276,8 @@ public:
 
     // ---- the grid
 
-    // Builds the grid for particles of these radii, and gaps up to `skin`.
-    void build(real smallest, real largest, real skin) {
+    // Builds the grid for particles of these radii, and gaps up to `skin`. Planes are added to the walls.
+    void build(real smallest, real largest, real skin, std::vector<Wall>& walls) {
         Row low = row(infinity), high = -low;
         for (const Solid& solid : solids_) {
             const Row l = solid.low(), h = solid.high();
@@ -283,7 +299,7 @@ public:
             real apart;
         };
         std::vector<Pair> pairs;
-        for (int leaf = plain_; leaf < leaves(); ++leaf) {
+        for (int leaf = plain_; leaf < first_plane(); ++leaf) {
             const Solid& solid = solid_of(leaf);
             Row l = solid.low(), h = solid.high();
             if (solid.form == Solid::mesh) {
@@ -321,6 +337,7 @@ public:
             listed_[k] = pair.leaf, apart_[k] = pair.apart;
             clearance_[cell] = std::fmin(clearance_[cell], pair.apart);
         }
+        replace_by_planes(within, 1e-9 * smallest, walls);
         solid_cell_.assign(count, 0);
         for (int z = 0; z < cells_[2]; ++z)
             for (int y = 0; y < cells_[1]; ++y)
@@ -332,6 +349,90 @@ public:
                 }
     }
 
+private:
+    // Lists planes in place of triangles in the cells near which the space of the particles is convex. The
+    // triangles of a cell are those within a distance of its middle.
+    void replace_by_planes(real within, real tolerance, std::vector<Wall>& walls) {
+        std::vector<int> flat; // by leaf: that of the largest triangle in its plane
+        for (const Solid& solid : solids_) {
+            const int first = plain_ + static_cast<int>(flat.size());
+            if (solid.form == Solid::mesh)
+                for (const int f : solid.triangles->flats(tolerance)) flat.push_back(first + f);
+            else
+                flat.push_back(first);
+        }
+        plane_leaf_.assign(solid_.size(), -1);
+        first_plane_wall_ = static_cast<int>(walls.size());
+        std::vector<int> begin{0}, listed, found;
+        std::vector<real> apart;
+        for (int z = 0; z < cells_[2]; ++z)
+            for (int y = 0; y < cells_[1]; ++y)
+                for (int x = 0; x < cells_[0]; ++x) {
+                    const auto cell = static_cast<std::size_t>(cell_index(x, y, z));
+                    const int from = begin_[cell], until = begin_[cell + 1];
+                    bool convex = find_convex_planes(from, until, flat, tolerance, found);
+                    // A contact point beyond a plain wall would not count.
+                    for (int w = 0; convex && w < plain_; ++w)
+                        convex =
+                            nearest_wall_point(walls[static_cast<std::size_t>(w)], middle(x, y, z)).distance >
+                            within;
+                    if (convex) {
+                        for (int& leaf : found) leaf = plane_of(leaf, walls);
+                        std::sort(found.begin(), found.end());
+                        listed.insert(listed.end(), found.begin(), found.end());
+                        apart.resize(listed.size(), 0);
+                    } else {
+                        listed.insert(listed.end(), listed_.begin() + from, listed_.begin() + until);
+                        apart.insert(apart.end(), apart_.begin() + from, apart_.begin() + until);
+                    }
+                    begin.push_back(static_cast<int>(listed.size()));
+                }
+        begin_.swap(begin), listed_.swap(listed), apart_.swap(apart);
+        for (std::size_t k = 0; k < flat.size(); ++k) plane_leaf_[k] = plane_leaf_[index(flat[k])];
+    }
+
+    // Returns the leaf of the plane of a triangle, which becomes a wall when it is first asked for.
+    int plane_of(int leaf, std::vector<Wall>& walls) {
+        int& plane = plane_leaf_[index(leaf)];
+        if (plane < 0) {
+            const Solid& solid = solid_of(leaf);
+            Wall wall = walls[static_cast<std::size_t>(solid.wall)];
+            wall.form = Wall::plane, wall.axis = solid.triangles->plane(face_[index(leaf)]);
+            plane = leaves();
+            planes_.push_back(wall.axis), walls.push_back(wall);
+        }
+        return plane;
+    }
+
+    // Whether listed leaves are triangles of one surface, each below the planes of all others, and no two
+    // planes meet at more than 120 degrees or smoothly. `found` is the largest triangle of each plane.
+    bool find_convex_planes(int from, int until, const std::vector<int>& flat, real tolerance,
+                            std::vector<int>& found) const {
+        found.clear();
+        if (from == until) return false;
+        const Solid& solid = solid_of(listed_[static_cast<std::size_t>(from)]);
+        if (solid.form != Solid::mesh) return false;
+        const Triangles& t = *solid.triangles;
+        const real most = std::fmin(0.5, solid.smooth) + 1e-9;
+        for (int k = from; k < until; ++k) {
+            const int leaf = listed_[static_cast<std::size_t>(k)], seed = flat[index(leaf)];
+            if (&solid_of(leaf) != &solid) return false;
+            if (std::find(found.begin(), found.end(), seed) != found.end()) continue;
+            for (const int other : found)
+                if (dot(t.plane(face_[index(seed)]), t.plane(face_[index(other)])) > most) return false;
+            found.push_back(seed);
+        }
+        for (int k = from; k < until; ++k)
+            for (const int seed : found)
+                for (int corner = 0; corner < 3; ++corner)
+                    if (t.above(face_[index(seed)],
+                                t.corner(face_[index(listed_[static_cast<std::size_t>(k)])], corner)) >
+                        tolerance)
+                        return false;
+        return true;
+    }
+
+public:
     // Smallest distance of a point from the surfaces, positive where particles may be.
     real depth(Row c) const {
         real least = infinity;
@@ -339,8 +440,9 @@ public:
         return least;
     }
 
-    // Calls f(leaf) for the leaves within `reach` of a particle, ascending, and returns the wall outside of
-    // which its centre is, or -1. `reach` is at most the sum of largest radius and skin of the grid.
+    // Calls f(leaf, distance) for the leaves within `reach` of a particle, ascending, and returns the wall
+    // outside of which its centre is, or -1. `reach` is at most the sum of largest radius and skin of the
+    // grid.
     template <class F> int near(Row c, real reach, F&& f) const {
         int cell[3];
         for (int a = 0; a < 3; ++a) {
@@ -349,6 +451,19 @@ public:
             cell[a] = static_cast<int>(at);
         }
         const auto here = static_cast<std::size_t>(cell_index(cell[0], cell[1], cell[2]));
+        const int from = begin_[here], until = begin_[here + 1];
+        if (from == until) return solid_cell_[here] ? wall_around(c) : -1;
+        if (listed_[static_cast<std::size_t>(from)] >= first_plane()) {
+            bool below = true;
+            for (int k = from; k < until; ++k) {
+                const int leaf = listed_[static_cast<std::size_t>(k)];
+                const Row plane = planes_[index(leaf)];
+                const real far = plane[3] - dot(plane, c);
+                below &= far > 0;
+                if (far < reach) f(leaf, far);
+            }
+            return below ? -1 : wall_around(c);
+        }
         const real off = length(c - middle(cell[0], cell[1], cell[2])) * (1 + 1e-9),
                    clearance = clearance_[here];
         // The particle is on the side of the middle of its cell if no surface is as near to that.
@@ -364,7 +479,7 @@ public:
             inside &= least < reach * reach &&
                       mesh->triangles->signed_distance(c, face, {nearest.place, nearest.region}) > 0;
         };
-        for (int k = begin_[here]; k < begin_[here + 1]; ++k) {
+        for (int k = from; k < until; ++k) {
             if (apart_[static_cast<std::size_t>(k)] > reach + off) continue;
             const int leaf = listed_[static_cast<std::size_t>(k)];
             if (is_beyond(leaf, c, reach)) continue;
@@ -372,12 +487,12 @@ public:
             const LeafPoint p = nearest_on(leaf, c);
             if (solid.form != Solid::mesh) {
                 inside &= p.near[3] > 0;
-                if (p.near[3] < reach) f(leaf);
+                if (p.near[3] < reach) f(leaf, p.near[3]);
                 continue;
             }
             const Row apart = p.place - c;
             const real squared = dot(apart, apart);
-            if (squared < reach * reach) f(leaf);
+            if (squared < reach * reach) f(leaf, std::sqrt(squared));
             if (mesh != &solid) finish(), mesh = &solid, least = infinity;
             if (squared < least) least = squared, nearest = p;
         }

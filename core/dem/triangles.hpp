@@ -198,6 +198,48 @@ public:
         return e[0] == number || e[1] == number || e[2] == number;
     }
 
+    // Height of a point over the plane of a triangle, positive outside.
+    real above(int f, Row p) const { return dot(plane(f), p) - plane(f)[3]; }
+
+    // Returns for each triangle the largest one of its flat: of the triangles that are connected with it and
+    // lie in one plane, to a tolerance.
+    std::vector<int> flats(real tolerance) const {
+        const auto count = face_.size();
+        std::vector<std::array<int, 2>> beside(edge_normal_.size(), {-1, -1});
+        std::vector<real> area(count);
+        for (int f = 0; f < faces(); ++f) {
+            area[static_cast<std::size_t>(f)] =
+                length(cross(corner(f, 1) - corner(f, 0), corner(f, 2) - corner(f, 0)));
+            for (const int e : edge_[static_cast<std::size_t>(f)]) {
+                auto& sides = beside[static_cast<std::size_t>(e)];
+                sides[sides[0] < 0 ? 0 : 1] = f;
+            }
+        }
+        // The plane of the largest triangle has the smallest errors of rounding.
+        std::vector<int> order(count), flat(count, -1), open;
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+            return area[static_cast<std::size_t>(a)] > area[static_cast<std::size_t>(b)];
+        });
+        for (const int seed : order) {
+            const auto add = [&](int f) { flat[static_cast<std::size_t>(f)] = seed, open.push_back(f); };
+            const auto is_part = [&](int f) {
+                bool level = dot(plane(f), plane(seed)) > 0;
+                for (int k = 0; k < 3; ++k) level &= std::fabs(above(seed, corner(f, k))) <= tolerance;
+                return level;
+            };
+            if (flat[static_cast<std::size_t>(seed)] < 0) add(seed);
+            while (!open.empty()) {
+                const int f = open.back();
+                open.pop_back();
+                for (const int e : edge_[static_cast<std::size_t>(f)])
+                    for (const int g : beside[static_cast<std::size_t>(e)])
+                        if (g >= 0 && flat[static_cast<std::size_t>(g)] < 0 && is_part(g)) add(g);
+            }
+        }
+        return flat;
+    }
+
     Row pseudonormal(int f, int region) const {
         if (region == on_face) return normal(f);
         if (region < on_corner)
