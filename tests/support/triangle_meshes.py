@@ -25,6 +25,26 @@ def box(size, parts=1):
     return np.array(vertices), np.array(faces)
 
 
+def blocks(filled, width):
+    """Return corners and triangles of the surface of a grid of cubes around the origin, of which some are filled."""
+    vertices, faces = [], []
+    filled = np.pad(np.asarray(filled, bool), 1)
+    middle = np.array(filled.shape) / 2
+    for cell in np.argwhere(filled):
+        for axis in range(3):
+            one, other = np.roll(np.eye(3), axis + 1, axis=0)[[0, 1]]
+            normal = np.cross(one, other)
+            for side in (-1, 1):
+                if filled[tuple((cell + side * normal).astype(int))]:
+                    continue
+                start = len(vertices)
+                corner = cell + (normal if side > 0 else 0)
+                vertices += [corner, corner + one, corner + one + other, corner + other]
+                a, b, c, d = range(start, start + 4)
+                faces += [(a, b, c), (a, c, d)] if side > 0 else [(a, c, b), (a, d, c)]
+    return (np.array(vertices) - middle) * width, np.array(faces)
+
+
 def cylinder(radius, length, around, along=1):
     """Return corners and triangles of a cylinder along z, whose facets have the cylinder's mean distance from its axis."""
     # The facets are as far inside of the cylinder as their edges are outside.

@@ -96,6 +96,52 @@ def test_ball_rolls_over_seams_without_bump(velocity):
         assert np.abs(across).max() < 1e-12 * RADIUS + 1e-15
 
 
+def test_contact_goes_on_where_planes_take_the_place_of_triangles():
+    """A ball that rolls past a body keeps its contact with the floor where triangles stand for it, and planes elsewhere.
+
+    Such a change is in no run of a ball in an empty box, whose walls are planes everywhere.
+    """
+    height = -SIZE[2] / 2 + RADIUS
+    beside = rb.BallBody(diameter="3 mm", position=(0, 0.0045, height))
+    runs = [
+        fly(
+            cavity,
+            (-0.011, -0.0014 + RADIUS, height),
+            (0.4, 0, 0),
+            duration=0.06,
+            gravity=(0, 0, -9.81),
+            bodies=[beside],
+        )
+        for cavity in (rb.Box(size=SIZE), box_mesh(1), box_mesh(12))
+    ]
+    assert touches(runs[0]) == 1
+    assert path(runs[0])[-1, 0] > 0.005
+    for run in runs[1:]:
+        assert touches(run) == 1
+        assert np.allclose(end(run), end(runs[0]), rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_ball_flies_around_step_of_surface_as_around_plate(seed):
+    """A ball in a pocket with a step of triangles has the path that it has in a box with a plate in its corner.
+
+    A box is convex, so that no test had a place where planes reach beyond their surface.
+    """
+    filled, width = np.ones((6, 4, 5), bool), 0.005
+    filled[4:, :, :2] = False
+    vertices, faces = triangle_meshes.blocks(filled, width)
+    pocket = rb.Mesh(vertices=vertices, faces=faces, unit="m")
+    step = rb.PlateBody(size=(0.01, 0.02, 0.01), position=(0.01, 0, -0.0075))
+    generator = np.random.default_rng(seed)
+    start = np.array([generator.uniform(-0.012, 0.003), generator.uniform(-0.007, 0.007), 0.004])
+    aim = np.array([generator.uniform(0.002, 0.008), generator.uniform(-0.01, 0.01), -0.003])
+    velocity, spin = (aim - start) / np.linalg.norm(aim - start), 100 * generator.normal(size=3)
+    exact = fly(rb.Box(size=(0.03, 0.02, 0.025)), start, velocity, spin, bodies=[step])
+    of_triangles = fly(pocket, start, velocity, spin)
+    assert touches(of_triangles) == touches(exact) >= 2
+    assert np.allclose(end(of_triangles), end(exact), rtol=1e-9, atol=1e-11)
+
+
 @pytest.mark.parametrize("shape", ["cylinder", "ball"])
 def test_facets_converge_to_curved_wall_with_order_two(shape):
     """With twice as many facets, the wall is a quarter as far from the exact one, and so is a mean rebound."""
@@ -285,9 +331,10 @@ def test_mean_loss_in_box_of_triangles_is_that_between_planes():
     assert max(errors) < 0.05 * means[0]
 
 
-def test_bits_in_surface_depend_neither_on_threads_nor_on_restart():
-    """A bed in a ball of facets with a rod has the same bits on one to three threads, and after a restart."""
-    vertices, faces = triangle_meshes.ball(0.015, 8)
+@pytest.mark.parametrize("shape", ["ball", "box"])
+def test_bits_in_surface_depend_neither_on_threads_nor_on_restart(shape):
+    """A bed around a rod in a ball of facets or a box has the same bits on one to three threads, and after a restart."""
+    vertices, faces = triangle_meshes.ball(0.015, 8) if shape == "ball" else triangle_meshes.box((0.025,) * 3, 4)
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="steel", diameter="2 mm", count=400),
         cavity=rb.Mesh(vertices=vertices, faces=faces, unit="m"),
