@@ -58,6 +58,9 @@ class Damper(Part):
         """Whether the identical dampers that this one stands for have equal losses on average."""
         return True
 
+    def check_packable(self) -> None:
+        """Raise if the damper has what packed cases, of steppers and FMUs, cannot contain."""
+
     @abstractmethod
     def facts(self) -> list[tuple[str, str]]:
         """Return numbers that follow from the fields, with their names."""

@@ -296,6 +296,26 @@ class ParticleDamper(Damper):
         """Mass of the particles [kg]."""
         return float(self.contents.mass.sum())
 
+    def check_packable(self) -> None:
+        """Raise if the cavity turns, is a surface of triangles or has bodies inside."""
+        if self.rotation is not None:
+            raise Hint(
+                "a stepper has cavities that do not turn about an axis, but this damper has a rotation",
+                "rb.simulate, or a damper without rotation",
+                ["rotation"],
+            )
+        parts = {
+            "a surface of triangles": ("cavity", self.cavity.walls().solids.each),
+            "bodies": ("bodies", self.bodies),
+        }
+        for what, (field, solids) in parts.items():
+            if solids:
+                raise Hint(
+                    f"a packed case cannot contain {what}",
+                    "rb.simulate, which can; or a Box, Cylinder or SphericalCavity without bodies",
+                    [field],
+                )
+
     def facts(self) -> list[tuple[str, str]]:
         """Return numbers that follow from the fields, with their names."""
         radii = self.contents.radius

@@ -99,7 +99,7 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
         raise Hint(f"the method {case.method.kind} has no stepper", "method = EventDriven(), or Newton()")
     for index, damper in enumerate(case.dampers):
         with at(*(("dampers", index) if len(case.dampers) > 1 else ("damper",))):
-            _check_cavity(damper)
+            damper.check_packable()
     if alone:
         refuse_stops(
             case.stops,
@@ -109,29 +109,6 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     if alone and len(_dampers(case)) != 1:
         raise Hint(f"a damper alone is needed, but the case has {len(_dampers(case))}", "a stepper for each of them")
     return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)
-
-
-def _check_cavity(damper: Damper) -> None:
-    """Raise if a cavity has what packed cases cannot contain."""
-    if not isinstance(damper, ParticleDamper):
-        return
-    if damper.rotation is not None:
-        raise Hint(
-            "a stepper has cavities that do not turn about an axis, but this damper has a rotation",
-            "rb.simulate, or a damper without rotation",
-            ["rotation"],
-        )
-    parts = {
-        "cavity": "a surface of triangles" if damper.cavity.walls().solids.each else "",
-        "bodies": "bodies inside of a cavity" if damper.bodies else "",
-    }
-    for name, what in parts.items():
-        if what:
-            raise Hint(
-                f"a packed case cannot contain {what}",
-                "rb.simulate, which can; or a Box, Cylinder or SphericalCavity without bodies",
-                [name],
-            )
 
 
 def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:

@@ -328,7 +328,7 @@ def test_mean_loss_in_box_of_triangles_is_that_between_planes():
         errors.append(2.36 * np.std(losses, ddof=1) / np.sqrt(count))  # Student's t for 7 degrees of freedom
     for mean, error in zip(means[1:], errors[1:], strict=True):
         assert abs(mean - means[0]) < np.hypot(error, errors[0])
-    assert max(errors) < 0.05 * means[0]
+    assert max(errors) < 0.15 * means[0]
 
 
 @pytest.mark.parametrize("shape", ["ball", "box"])
