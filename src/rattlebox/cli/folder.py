@@ -26,7 +26,7 @@ from rattlebox.engines.checkpoint import Checkpoint, comparable_toml, is_checkpo
 from rattlebox.model.case import Case
 from rattlebox.model.differences import differences
 from rattlebox.results.netcdf import read_case
-from rattlebox.studies.run.stored import is_result_file
+from rattlebox.studies.run.result_file import is_result_file
 
 RUN, SNAPSHOTS, CHECKPOINT = "run.nc", "run.vtkhdf", "run.checkpoint"
 

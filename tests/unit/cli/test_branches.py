@@ -86,6 +86,18 @@ def test_a_branch_that_was_stopped_has_the_same_special_points(stops: tuple[int,
         assert not partial_file(store).exists()
 
 
+def test_damaged_points_count_as_not_computed(run_cli: RunCli) -> None:
+    """A damaged file of the points so far is named when it is shown, and the command of the study begins again."""
+    with pytest.raises(Stopped):
+        read_study("branch.toml").run(store="branch.zarr", progress=lambda done, _: done < 9)
+    content = bytearray(partial_file("branch.zarr").read_bytes())
+    content[len(content) // 2] ^= 8
+    partial_file("branch.zarr").write_bytes(content)
+    code, _, errors = run_cli("show", "branch.zarr")
+    assert code == 2 and "so_far.nc" in errors and "begins again" in errors
+    assert run_cli("sweep", "branch.toml")[0] == 0 and run_cli("show", "branch.zarr")[0] == 0
+
+
 @pytest.mark.slow
 def test_a_killed_branch_resumes(run_cli: RunCli) -> None:
     """After kill -9 the same command continues from the stored points; meanwhile they can be shown, drawn and reported."""

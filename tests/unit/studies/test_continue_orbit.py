@@ -116,6 +116,22 @@ def test_file(branch, tmp_path):
         rb.Branch.load(tmp_path / "missing.nc")
 
 
+def test_flipped_bits_of_a_file(branch, tmp_path):
+    """A flipped bit in the file of a branch is an error, or changes nothing: files of branches had no digest."""
+    file = branch.save(tmp_path / "branch.nc")
+    content, random = file.read_bytes(), np.random.default_rng(5)
+    whole, damaged = rb.Branch.load(file).data, 0
+    for place, bit in zip(random.integers(0, len(content), 60), random.integers(0, 8, 60), strict=True):
+        changed = bytearray(content)
+        changed[place] ^= 1 << bit
+        file.write_bytes(changed)
+        try:
+            assert rb.Branch.load(file).data.identical(whole)
+        except rb.DataError:
+            damaged += 1
+    assert damaged > 20
+
+
 def test_branch_of_motions_without_symmetry(branch):
     """At the pitchfork a branch of motions begins that are not symmetric; at a torus none is computed."""
     pitchfork, torus = branch.specials

@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from rattlebox._util.exceptions import DataError
 from rattlebox._util.interrupts import raise_if_pressed
 from rattlebox._util.progress import progress_bar
 from rattlebox.engines.continued import read_start
@@ -27,6 +28,7 @@ from rattlebox.studies.orbits.continuation import continue_orbit
 from rattlebox.studies.orbits.find import check_state, find_orbit, state_of
 from rattlebox.studies.orbits.orbit import Orbit
 from rattlebox.studies.run.estimate import Estimate
+from rattlebox.studies.run.result_file import read_file
 from rattlebox.studies.run.runner import Stopped
 from rattlebox.studies.run.store import open_whole, save_result
 from rattlebox.studies.run.stored import has_map, open_study
@@ -102,6 +104,11 @@ class ContinueOrbit(Study):
         with open_whole(self.kind, self.store, self._manifest) as so_far:
             if so_far is not None and has_map(self.store):
                 return open_study(self.store).load()
+            if so_far is not None and so_far.exists():
+                try:
+                    read_file(so_far)
+                except DataError:  # a damaged part of the result counts as not computed
+                    so_far.unlink()
             with self._stoppable() as proceed:
                 found = self._follow(self._find(), store=so_far, progress=proceed).data
         # What belongs to the resumption is not part of the result.

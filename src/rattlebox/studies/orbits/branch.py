@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.html import code_block
 from rattlebox.model.case import Case
@@ -23,6 +22,7 @@ from rattlebox.studies.orbits.forcing import Forcing
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
 from rattlebox.studies.orbits.switching import switched
+from rattlebox.studies.run.result_file import write_file
 from rattlebox.studies.run.stored import open_study
 
 if TYPE_CHECKING:
@@ -226,9 +226,7 @@ class Branch:
         ResourceError
             If no space is left on the disk.
         """
-        check_suffix(Path(path), ".nc")
-        require_folder(Path(path))
-        return write_branch(self.data, Path(path))
+        return write_file(self.data, path)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Branch:
@@ -261,10 +259,3 @@ class Branch:
 
     def _repr_html_(self) -> str:
         return code_block(str(self))
-
-
-def write_branch(data: xarray.Dataset, file: Path, *, replace: bool | None = None) -> Path:
-    """Write the dataset of a branch to a netCDF file; with `replace`, also over a file that this process has not read."""
-    with atomic_write(file, "make room and save the branch again", replace=replace) as name:
-        data.to_netcdf(name, engine="h5netcdf")
-    return file

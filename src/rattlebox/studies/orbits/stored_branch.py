@@ -12,11 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from rattlebox._util.exceptions import DataError
-from rattlebox.studies.orbits.branch import Branch, write_branch
+from rattlebox.studies.orbits.branch import Branch
 from rattlebox.studies.orbits.branch_data import data_of
 from rattlebox.studies.orbits.corrector import Point
 from rattlebox.studies.orbits.follow import Follower
 from rattlebox.studies.orbits.orbit import Orbit
+from rattlebox.studies.run.result_file import write_file
 
 _EVERY = 50
 """Number of points after which the file is written."""
@@ -109,4 +110,4 @@ class BranchFile:
     def write(self) -> None:
         """Write the points so far."""
         if self.path is not None:
-            write_branch(self.branch().data, self.path, replace=True)
+            write_file(self.branch().data, self.path, replace=True)

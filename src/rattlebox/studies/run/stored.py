@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder, require_readable
+from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
 from rattlebox._util.exceptions import DataError, RattleboxError, StoreError
 from rattlebox._util.flags import type_flags
 from rattlebox._util.owned_folder import DamagedError, Marker, damaged_files, read_marker
@@ -23,6 +23,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.export import as_cells, as_column
 from rattlebox.results.provenance import with_version
+from rattlebox.studies.run.result_file import read_file
 from rattlebox.studies.work.work import Blocks
 
 if TYPE_CHECKING:
@@ -68,11 +69,14 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
         If there is no study, or it is damaged.
     """
     if Path(path).is_file() or Path(path).suffix == ".nc":
-        return open_file(path)
+        return read_file(path)
     if has_map(path):
         return _open_map(Path(path) / MAP)
     if (partial := partial_file(path)).is_file():
-        return open_file(partial)
+        try:
+            return read_file(partial)
+        except DataError as error:
+            raise StoreError(error.complaint, "the command that started the study, which begins again") from None
     with report_damage(path):
         marker = study_marker(path)
         return open_runs(Path(path), marker).assign_attrs(marker.about.get("added", {}))
@@ -81,36 +85,6 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
 def partial_file(path: str | os.PathLike[str]) -> Path:
     """Return the file in a store that holds the result so far of a study without runs."""
     return Path(path) / PROGRESS / "so_far.nc"
-
-
-def is_result_file(path: str | os.PathLike[str]) -> bool:
-    """Return whether a path is a netCDF file with the result of a study."""
-    import h5netcdf  # type: ignore[import-untyped]
-
-    file = Path(path)
-    if file.suffix != ".nc" or not file.is_file():
-        return False
-    try:
-        with h5netcdf.File(file, "r") as content:
-            return "study" in content.attrs
-    except HDF5_ERRORS:
-        return False
-
-
-def open_file(path: str | os.PathLike[str]) -> xr.Dataset:
-    """Read the result of a study from a netCDF file."""
-    import xarray
-
-    require_readable(Path(path))
-    try:
-        found: xr.Dataset = type_flags(xarray.load_dataset(path, engine="h5netcdf"))
-    except HDF5_ERRORS as error:
-        raise DataError(f"{path} cannot be read: {error!s:.80}", "a file with the result of a study") from None
-    if "study" not in found.attrs:
-        raise DataError(
-            f"{path} is not the result of a study", "a file that Branch.save wrote, or the folder of a study"
-        )
-    return found
 
 
 def has_map(path: str | os.PathLike[str]) -> bool:
