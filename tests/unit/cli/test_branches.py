@@ -59,10 +59,11 @@ def specials(data: object) -> list[tuple[str, float]]:
 
 
 @pytest.mark.parametrize("stops", [(51,), pytest.param((1, 7, 50, 60, 75, -1), marks=pytest.mark.slow)])
-def test_a_branch_that_was_stopped_has_the_same_special_points(stops: tuple[int, ...], run_cli: RunCli) -> None:
-    """A study that is stopped after any number of points, on either side, finishes with the special points of one without.
+def test_a_branch_that_was_stopped_has_the_same_bits(stops: tuple[int, ...], run_cli: RunCli) -> None:
+    """A study that is stopped after any number of points, on either side, finishes with the bits of one without a stop.
 
-    Files of branches were resumed in Python at two places only, and the reason why a finished side ended was lost.
+    Files of branches were resumed in Python at two places only, where special points were compared; steps began anew,
+    and the reason why a finished side ended was lost.
     """
     seen: list[int] = []
     whole = read_study("branch.toml").run(progress=lambda done, _: seen.append(done))
@@ -78,11 +79,8 @@ def test_a_branch_that_was_stopped_has_the_same_special_points(stops: tuple[int,
         code, out, errors = run_cli("show", store)
         assert (code, errors) == (0, "") and "in progress" in out and "not finished" in out
         found = read_study("branch.toml").run(store=store, progress=False)
+        assert found.equals(whole)
         assert found.attrs["ended"] == whole.attrs["ended"]
-        for one, other in zip(specials(found), specials(whole), strict=True):
-            assert one[0] == other[0] and one[1] == pytest.approx(other[1], rel=1e-8)
-        for one, other in ((found.value.min(), whole.value.min()), (found.value.max(), whole.value.max())):
-            assert float(one) == pytest.approx(float(other), rel=1e-9)
         assert not partial_file(store).exists()
 
 
@@ -90,9 +88,8 @@ def test_damaged_points_count_as_not_computed(run_cli: RunCli) -> None:
     """A damaged file of the points so far is named when it is shown, and the command of the study begins again."""
     with pytest.raises(Stopped):
         read_study("branch.toml").run(store="branch.zarr", progress=lambda done, _: done < 9)
-    content = bytearray(partial_file("branch.zarr").read_bytes())
-    content[len(content) // 2] ^= 8
-    partial_file("branch.zarr").write_bytes(content)
+    content = partial_file("branch.zarr").read_bytes()
+    partial_file("branch.zarr").write_bytes(content[: len(content) // 2])
     code, _, errors = run_cli("show", "branch.zarr")
     assert code == 2 and "so_far.nc" in errors and "begins again" in errors
     assert run_cli("sweep", "branch.toml")[0] == 0 and run_cli("show", "branch.zarr")[0] == 0

@@ -142,6 +142,6 @@ def _collect(file: BranchFile, down: Point, most: int, report: Report) -> None:
         file.collect(0, most, proceed)
         file.finished = 2 if file.follower.is_closed and going else int(going)
     if file.finished == 1:
-        up, file.start = file.start, down if not file.sides[1] else file.start
+        up, file.start, file.loop = file.start, down, [] if not file.sides[1] else file.loop
         file.collect(1, most, proceed)
         file.start, file.finished = up, 2 if going else 1

@@ -9,7 +9,7 @@ Applications of Bifurcation Theory, Academic Press, 359-384.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,17 @@ _LOOP = 10
 """Number of points after which a branch may be closed."""
 
 
+@dataclass(frozen=True)
+class Restart:
+    """State in which the loop of a continuation goes on from a point, with the same bits as without a stop."""
+
+    point: Point
+    before: Point | None
+    length: float
+    count: int
+    tiny: int
+
+
 class Follower:
     """Continuation of a periodic motion along one parameter between limits."""
 
@@ -37,14 +48,21 @@ class Follower:
         self.is_closed = False
         self.reasons: list[str] = []
         """Reason why the branch ends on each side that was followed; empty at a limit."""
+        self.loop: tuple[float, int, int, bool] = 0.0, 0, 0, False
+        """Length, count and tiny steps of the loop when it asks whether to proceed; whether it knows the point before."""
 
-    def follow(self, start: Point, most: int, proceed: Callable[[], bool]) -> Iterator[Point]:
+    def follow(
+        self, start: Point, most: int, proceed: Callable[[], bool], restart: Restart | None = None
+    ) -> Iterator[Point]:
         """Yield the points after a start, with special points, up to the limits or the end of the branch."""
         corrector = self.corrector
         limits, longest = corrector.limits, corrector.longest
         point, length, count, tiny = corrector.resection(start), longest / 4, 0, 0
         before: Point | None = None
-        while count < most and proceed():
+        if restart is not None:
+            point, length, count, tiny = corrector.resection(restart.point), restart.length, restart.count, restart.tiny
+            before = None if restart.before is None else corrector.resection(restart.before)
+        while count < most and self._goes_on(proceed, (length, count, tiny, before is not None)):
             tiny = tiny + 1 if length < _TINY * longest else 0
             taken = corrector.step(point, length)
             is_near = taken is not None and corrector.is_near(point, taken[0])
@@ -94,6 +112,11 @@ class Follower:
             # Distances are between points whose maps begin at the same phase.
             before, point = (point if moved is after else None), moved
         self.reasons.append(f"it was ended after {several(count, 'point')}")
+
+    def _goes_on(self, proceed: Callable[[], bool], loop: tuple[float, int, int, bool]) -> bool:
+        """Return whether to proceed, while the state of the loop is known."""
+        self.loop = loop
+        return proceed()
 
     def _has_returned(self, start: Point, point: Point, after: Point) -> bool:
         """Return whether the branch passes its start between two points, in the same direction."""

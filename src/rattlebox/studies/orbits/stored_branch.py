@@ -15,7 +15,7 @@ from rattlebox._util.exceptions import DataError
 from rattlebox.studies.orbits.branch import Branch
 from rattlebox.studies.orbits.branch_data import data_of
 from rattlebox.studies.orbits.corrector import Point
-from rattlebox.studies.orbits.follow import Follower
+from rattlebox.studies.orbits.follow import Follower, Restart
 from rattlebox.studies.orbits.orbit import Orbit
 from rattlebox.studies.run.result_file import write_file
 
@@ -42,6 +42,9 @@ class BranchFile:
     request: str = ""
     sides: tuple[list[Point], list[Point]] = field(default_factory=lambda: ([], []))
     finished: int = 0  # number of finished sides
+    loop: list[float] = field(default_factory=list)  # number of points of the side and state of the loop after them
+    restart: Restart | None = None
+    written: int = 0
 
     def resume(self, path: str | os.PathLike[str] | None, request: str) -> Branch | None:
         """Use a file; return its branch if it is complete, and restore the points of one in progress."""
@@ -59,9 +62,19 @@ class BranchFile:
         if self.finished == 2:
             return branch
         self.follower.reasons[:] = json.loads(branch.data.attrs["reasons"])
-        begin = int(branch.data.attrs["start"])
+        begin, loop = int(branch.data.attrs["start"]), json.loads(branch.data.attrs["loop"])
         self._restore(branch, range(begin + 1, len(branch)), 0)
         self._restore(branch, range(begin - 1, -1, -1), 1)
+        row = self.sides[self.finished]
+        if loop and len(row) >= loop[0]:
+            # Points after the last restart are the beginning of a step that was not finished.
+            del row[int(loop[0]) :]
+            if row:
+                length, count, tiny, has_before = loop[1:]
+                before = [self.start, *(each for each in row[:-1] if not each.special)][-1] if has_before else None
+                self.restart = Restart(row[-1], before, length, int(count), int(tiny))
+        else:
+            row.clear()
         return None
 
     def _restore(self, branch: Branch, rows: Iterable[int], side: int) -> None:
@@ -73,9 +86,12 @@ class BranchFile:
             state, value = np.ascontiguousarray(row.state.values, dtype=float), float(row.value)
             before = branch.data.isel(point=k - 1 if side == 0 else k + 1)
             change = (state - before.state.values) / last.scale
-            guide = np.append(change, (value - float(before.value)) / corrector.width)
+            guide, scale = np.append(change, (value - float(before.value)) / corrector.width), last.scale
+            if float(before.phase) != float(row.phase):  # states of different phases have no difference
+                moved = corrector.resection(last)
+                guide, scale = moved.tangent, moved.scale
             shot = returns.shoot(state[None], [value])
-            point = corrector.finish(returns, state, value, shot, last.scale, guide) if shot.is_complete else None
+            point = corrector.finish(returns, state, value, shot, scale, guide) if shot.is_complete else None
             if point is None:
                 return
             last = replace(
@@ -88,12 +104,19 @@ class BranchFile:
 
     def collect(self, side: int, most: int, proceed: Callable[[], bool]) -> None:
         """Follow a side to its end."""
-        row = self.sides[side]
-        begin = row[-1] if row else self.start
-        for point in self.follower.follow(begin, most - len(row), proceed):
-            row.append(point)
-            if len(row) % _EVERY == 0:
+        row, follower = self.sides[side], self.follower
+
+        def goes_on() -> bool:
+            # All points that the loop has made are in the row now, so that it can restart after them.
+            self.loop = [len(row), *follower.loop]
+            if len(row) >= self.written + _EVERY:
                 self.write()
+                self.written = len(row)
+            return proceed()
+
+        restart, self.restart, self.written = self.restart, None, len(row)
+        for point in follower.follow(self.start, most, goes_on, restart):
+            row.append(point)
 
     def branch(self) -> Branch:
         """Return the branch so far."""
@@ -105,6 +128,7 @@ class BranchFile:
             # The reason of a side in progress is that it was stopped.
             reasons = json.dumps(self.follower.reasons[: self.finished])
             about |= {"request": self.request, "finished_sides": self.finished, "reasons": reasons}
+            about["loop"] = json.dumps(self.loop)
         return Branch(data.assign_attrs(about))
 
     def write(self) -> None:
