@@ -45,6 +45,16 @@ _BYTES = 60  # memory of a point during the transform
 LEVELS: dict[str, tuple[tuple[float, float], ...]] = {
     "gevs_qualification": ((20.0, 0.026), (50.0, 0.16), (800.0, 0.16), (2000.0, 0.026)),
     "gevs_acceptance": ((20.0, 0.013), (50.0, 0.08), (800.0, 0.08), (2000.0, 0.013)),
+    "truck_vertical": ((10.0, 0.015), (40.0, 0.015), (500.0, 0.00015)),
+    "truck_transverse": (
+        *((10.0, 0.00013), (20.0, 0.00065), (30.0, 0.00065), (78.0, 0.00002), (79.0, 0.00019)),
+        *((120.0, 0.00019), (500.0, 0.00001)),
+    ),
+    "truck_longitudinal": (
+        *((10.0, 0.0065), (20.0, 0.0065), (120.0, 0.0002), (121.0, 0.003), (200.0, 0.003)),
+        *((240.0, 0.0015), (340.0, 0.00003), (500.0, 0.00015)),
+    ),
+    "minimum_integrity": ((20.0, 0.04), (1000.0, 0.04), (2000.0, 0.01)),
 }
 """Named densities: frequency [Hz] and density [g^2/Hz]."""
 
@@ -82,7 +92,9 @@ class Random(FileSignal):
         Break points (frequency [Hz], one-sided density), numbers or text with units: ("20 Hz", "0.04 g^2/Hz"). The density
         is linear in log-log scales between points, and zero outside. Or a name: "gevs_qualification" (14.1 g RMS, 20 to
         2000 Hz, 0.16 g^2/Hz from 50 to 800 Hz) or "gevs_acceptance" (10.0 g RMS, half of that density), for components of
-        up to 22.7 kg.
+        up to 22.7 kg; of MIL-STD-810 "truck_vertical" (1.04 g RMS, 10 to 500 Hz), "truck_transverse" (0.20 g),
+        "truck_longitudinal" (0.74 g), cargo on highways, and "minimum_integrity" (7.7 g, 20 to 2000 Hz, 0.04 g^2/Hz up to
+        1 kHz). Editions of that standard differ, as in the lowest frequency on trucks: compare the break points with yours.
     file
         File with the density, instead of `psd`: a table of frequencies and densities (text, spreadsheet, NPY, NPZ, MAT), or
         a power spectral density (type 9) of a universal file. The unit is that above the column or of the label, such
@@ -119,6 +131,9 @@ class Random(FileSignal):
 
     NASA Goddard Space Flight Center (2013): General Environmental Verification Standard for GSFC Flight Programs and
     Projects, GSFC-STD-7000A, Table 2.4-3, generalized random vibration test levels of components of 22.7 kg or less.
+
+    MIL-STD-810F (2000), Method 514.5, Vibration, Annex C: highway truck vibration exposures and general minimum integrity
+    exposure.
 
     Examples
     --------

@@ -25,6 +25,8 @@ PULSES: dict[str, tuple[float, float]] = {
     "MIL-STD-810H 516.8 weapon launch": (30.0, 0.011),
     "MIL-STD-810H 516.8 ground": (40.0, 0.011),
     "MIL-STD-810H 516.8 truck": (20.0, 0.011),
+    "MIL-STD-810F 516.5 crash, flight vehicle": (40.0, 0.011),
+    "MIL-STD-810F 516.5 crash, ground": (75.0, 0.006),
 }
 """Named sawtooth pulses: peak [g] and duration [s]."""
 
@@ -149,7 +151,8 @@ class Sawtooth(Shock, Polyline):
         ----------
         name
             "MIL-STD-810H 516.8 flight vehicle" (20 g), "... weapon launch" (30 g, also captive carry), "... ground" (40 g)
-            or "... truck" (20 g, mounted only in trucks and semi-trailers); all of 11 ms.
+            or "... truck" (20 g, mounted only in trucks and semi-trailers); all of 11 ms. Crash hazard:
+            "MIL-STD-810F 516.5 crash, flight vehicle" (40 g, 11 ms) or "... crash, ground" (75 g, 6 ms).
         **options
             Other fields: start, direction; `amplitude="-40 g"` for the other direction.
 
@@ -165,12 +168,13 @@ class Sawtooth(Shock, Polyline):
 
         Notes
         -----
-        These are the default parameters of functional shocks, procedure I, for which the standard prefers measured data. It
-        applies classical pulses in both directions.
+        These are the default parameters of functional shocks, procedure I, and of crash hazard, procedure V, for which the
+        standard prefers measured data. It applies classical pulses in both directions. Editions differ: compare the pulse
+        with the edition of your contract.
 
         References
         ----------
-        MIL-STD-810H (2019), Method 516.8, Shock, Table 516.8-IV with note 3.
+        MIL-STD-810H (2019), Method 516.8, Shock, Table 516.8-IV with note 3; MIL-STD-810F (2000), Method 516.5, procedure V.
 
         Examples
         --------

@@ -134,6 +134,21 @@ def test_levels_of_gevs() -> None:
     assert rb.Random("gevs_acceptance", 1.0).rms / G == pytest.approx(10.0, abs=0.05)
 
 
+@pytest.mark.parametrize(
+    ("name", "rms"),
+    [
+        ("truck_vertical", "1.04"),
+        ("truck_transverse", "0.204"),
+        ("truck_longitudinal", "0.740"),
+        ("minimum_integrity", "7.7"),
+    ],
+)
+def test_named_levels_have_the_rms_value_printed_beside_them(name: str, rms: str) -> None:
+    """The integral over the break points agrees with the RMS value of the standard in all of its digits."""
+    digits = len(rms.partition(".")[2])
+    assert rb.Random(name, 1.0).rms / G == pytest.approx(float(rms), abs=0.5 * 10.0**-digits)
+
+
 @pytest.mark.parametrize("slope", [0.0, -1.0, 2.0, -3.0])
 def test_rms_of_a_density(slope: float) -> None:
     """The closed form of the root mean square is the integral of the density, and the mean square of a long signal."""
@@ -247,17 +262,25 @@ def test_an_amplitude_is_read_once(alone: bool, monkeypatch: pytest.MonkeyPatch)
 
 
 @pytest.mark.parametrize(
-    ("name", "peak"), [("flight vehicle", 20), ("weapon launch", 30), ("ground", 40), ("truck", 20)]
+    ("name", "peak", "duration"),
+    [
+        ("H 516.8 flight vehicle", 20, 0.011),
+        ("H 516.8 weapon launch", 30, 0.011),
+        ("H 516.8 ground", 40, 0.011),
+        ("H 516.8 truck", 20, 0.011),
+        ("F 516.5 crash, flight vehicle", 40, 0.011),
+        ("F 516.5 crash, ground", 75, 0.006),
+    ],
 )
-def test_named_shocks_of_a_standard(name: str, peak: float) -> None:
-    """Each name is a terminal-peak sawtooth of 11 ms, with the change of velocity of its area."""
-    pulse = rb.Sawtooth.profile(f"MIL-STD-810H 516.8 {name}")
-    assert (pulse.duration, pulse.peak, pulse.unit) == (0.011, "terminal", "m/s^2")
+def test_named_shocks_of_a_standard(name: str, peak: float, duration: float) -> None:
+    """Each name is a terminal-peak sawtooth, with the change of velocity of its area."""
+    pulse = rb.Sawtooth.profile(f"MIL-STD-810{name}")
+    assert (pulse.duration, pulse.peak, pulse.unit) == (duration, "terminal", "m/s^2")
     assert pulse.amplitude == pytest.approx(peak * 9.80665)
     free = rb.Case(structure=rb.SDOF(mass="1 kg", stiffness=0), base=pulse, duration="20 ms")
     run = rb.simulate(free)
-    assert run.arrays.velocity[-1, 0] == pytest.approx(-0.5 * peak * 9.80665 * 0.011, rel=1e-9)
-    other = rb.Sawtooth.profile(f"MIL-STD-810H 516.8 {name}", amplitude=f"-{peak} g", start="5 ms", direction="x")
+    assert run.arrays.velocity[-1, 0] == pytest.approx(-0.5 * peak * 9.80665 * duration, rel=1e-9)
+    other = rb.Sawtooth.profile(f"MIL-STD-810{name}", amplitude=f"-{peak} g", start="5 ms", direction="x")
     assert other.amplitude == -pulse.amplitude and other.start == 0.005
 
 
