@@ -358,3 +358,34 @@ def test_loads_that_begin_and_stop(method: Any) -> None:
     assert method.kind != "newton" or end.raw.counts.sticks > 0
     terms = np.abs(end.by_parameter) @ np.abs(weights)
     assert np.all(np.abs(end.by_parameter @ weights - differences) < 1e-9 * terms + 3 * rough)
+
+
+@pytest.mark.parametrize("second", [9.21, 9.3, 10.0])
+@pytest.mark.parametrize("path", ["tuned_masses[1].frequency", "tuned_masses[0].mass"])
+def test_tuned_masses_of_close_frequencies(second: float, path: str) -> None:
+    """Derivatives exist where modes change within a small part of a parameter: random tuned masses were never as close."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=1.4, frequency=13.0, damping_ratio=0.02, displacement=2e-3),
+        tuned_masses=[
+            rb.TunedMass(mass=0.13, frequency=9.2, damping_ratio=0.02, name="a"),
+            rb.TunedMass(mass=0.12, frequency=second, damping_ratio=0.1, name="b"),
+        ],
+        damper=rb.ImpactDamper(ball=rb.Sphere(**STEEL), gap="1 mm", contact=rb.Tsuji(restitution=0.6), velocity=0.2),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+
+    def displacement(flow: Flow, state: Any) -> Any:
+        return flow.shape("b")[0] @ state[: 2 * 3 : 2]
+
+    def moved(h: float) -> Any:
+        other = case.replaced({path: flow.values[0] * (1 + 1e-2 * h)})
+        return np.array([displacement(Flow.of(other), Flow.of(other).over(None, 0.0, 0.1, derivatives=False).state)])
+
+    flow = Flow.of(case, [path])
+    end = flow.over(None, 0.0, 0.1)
+    assert end.status == "finished"
+    slope = displacement(flow, end.by_parameter[:, 0]) + flow.shape("b")[1][:, 0] @ end.state[: 2 * 3 : 2]
+    differences, rough = difference(moved, step=0.05)
+    assert 1e-2 * flow.values[0] * slope == pytest.approx(differences[0], rel=1e-9, abs=3 * rough)
+    assert rough < 1e-9 * abs(differences[0])
