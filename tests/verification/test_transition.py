@@ -304,6 +304,14 @@ def test_motions_without_derivatives(name: str) -> None:
     assert Flow.of(make()).over(None, 0.0, 0.1).status == status
 
 
+def test_pulses_of_straight_lines_are_refused() -> None:
+    """A number of a sawtooth is refused with a reason: the message named a table, of which the case has none."""
+    case, _ = random_case(np.random.default_rng(1), "tsuji")
+    case = case.replaced({"load": rb.Sawtooth(amplitude="5 N", duration="10 ms"), "base": None})
+    with pytest.raises(rb.CaseError, match="pulses of straight lines are tables"):
+        Flow.of(case, ("load.amplitude",))
+
+
 def test_start_within_a_contact() -> None:
     """A start at an overlap is refused, because the contact has no history."""
     case, _ = random_case(np.random.default_rng(1), "tsuji")

@@ -173,7 +173,10 @@ class Flow:
         whole = replaced(case, dict(zip(parameters, values, strict=True))) if parameters else case
         for path in parameters:
             if not is_number(whole, path, np.zeros(1)):
-                raise CaseError(f"{path}: a derivative in entries of a table is not available")
+                raise Hint(
+                    f"{path}: tables have no derivatives in their entries, and pulses of straight lines are tables",
+                    "finite differences, or for a pulse HalfSine",
+                )
         modes = case.modes.decay.size
         balls = [
             f"{damper.label(i)}/{k + 1}"
