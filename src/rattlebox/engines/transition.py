@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # Central differences of orders 8 and 6 of the packed numbers, in steps of a part of the size of a parameter. The numbers
 # are smooth functions of it, so that both are exact to rounding; where they are not, the two differ. Mode shapes of two
 # close frequencies change within a small part of a parameter: for them the steps are smaller, with more rounding.
-_STEPS = (0.0025, 0.0025 / 8, 0.0025 / 64)
+_STEPS = (0.0025, 0.0025 / 8, 0.0025 / 64, 0.0025 / 512)
 _FINE = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 _COARSE = (3 / 4, -3 / 20, 1 / 60, 0.0)
 _OFFSETS = (1, -1, 2, -2, 3, -3, 4, -4)

@@ -302,7 +302,8 @@ _REFUSED = {
     ),
     "grazing": ("a hard contact touches without speed", "another gap, or an earlier end"),
     "kink": (
-        "a law or the case has a kink at the value of a parameter or the speed of an impact, such as a restitution of 1",
+        "a law or the case has a kink at the value of a parameter or the speed of an impact, such as a restitution of 1, or"
+        " a parameter changes one of two modes with nearly the same frequency",
         "a value a little smaller or larger",
     ),
     "starts_closed": ("it starts within a contact", "a start at which bodies do not overlap"),
