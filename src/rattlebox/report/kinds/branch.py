@@ -31,10 +31,14 @@ from rattlebox.studies.orbits.find import state_at_zero
 
 if TYPE_CHECKING:
     import xarray as xr
+    from numpy.typing import NDArray
 
 _NAME = "branch"
 _DETERMINANT = 1e-6
 """Error of the determinant above which multipliers are doubtful."""
+_LARGE = 1e3
+"""Size of the largest multiplier above which the determinant, a small product, is lost in rounding; such motions are
+unstable, whatever their other multipliers are."""
 _MOST_ROWS = 40
 """Most rows of a table."""
 
@@ -65,7 +69,7 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
     name, size = str(study.attrs["parameter"]), size_of_motion(study)
     rows = []
     for each in stretches(study)[:_MOST_ROWS]:
-        ends = [noun(kind) or MISSING for kind in each.limits]
+        ends = [noun(kind) or "end" for kind in each.limits]
         more = ", ".join(["symmetric" if each.symmetric else "not symmetric", *(["sticking"] if each.sticks else [])])
         rows.append(
             (
@@ -87,11 +91,12 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
             critical_multiplier(study, int(k)),
             impacts_words(int(study.impacts[k]), cycles),
             _sizes(size.isel(point=[int(k)])),
+            str(study.passage[k].item()) or MISSING,
         )
         for k in special[:_MOST_ROWS]
     ]
     left = f"and {counted(special.size - _MOST_ROWS, 'further point')}" if special.size > _MOST_ROWS else ""
-    yield Table("Special points", ("kind", name, "multiplier", "impacts", name_of(size)), points, left)
+    yield Table("Special points", ("kind", name, "multiplier", "impacts", name_of(size), "branch"), points, left)
 
 
 def _sizes(part: xr.DataArray) -> str:
@@ -106,12 +111,19 @@ def _sizes(part: xr.DataArray) -> str:
 def _warnings(study: xr.Dataset) -> Iterator[str]:
     if ended := str(study.attrs.get("ended", "")):
         yield f"the branch ends before the limits: {ended}"
-    errors = study.determinant_error.values
+    errors = _determinant_errors(study)
     if (bad := int(np.count_nonzero(errors > _DETERMINANT))) > 0:
         yield (
             f"at {bad} of {counted(errors.size, 'point')} the product of the multipliers differs by more than "
             f"{_DETERMINANT:g} from the loss: their stability is doubtful"
         )
+
+
+def _determinant_errors(study: xr.Dataset) -> NDArray[np.float64]:
+    """Return the errors of the determinant where they are known and no multiplier is large."""
+    errors = study.determinant_error.values
+    largest = np.hypot(study.multiplier_real.values, study.multiplier_imaginary.values).max(axis=1)
+    return np.asarray(errors[np.isfinite(errors) & (largest < _LARGE)])
 
 
 def _limits(study: xr.Dataset) -> Iterator[Limit]:
@@ -123,9 +135,8 @@ def _limits(study: xr.Dataset) -> Iterator[Limit]:
     yield limit(
         _NAME, "steps", counted(study.sizes["point"], "point") + (f", steps up to {step:g}" if step > 0 else "")
     )
-    known = study.determinant_error.values[np.isfinite(study.determinant_error.values)]
-    if known.size:
-        yield limit(_NAME, "determinant", f"{known.max():.1e}, largest", f"{_DETERMINANT:g}")
+    if (errors := _determinant_errors(study)).size:
+        yield limit(_NAME, "determinant", f"{errors.max():.1e}, largest", f"{_DETERMINANT:g}")
 
 
 def _call(study: xr.Dataset) -> Call | None:
