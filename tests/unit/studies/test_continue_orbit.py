@@ -220,3 +220,22 @@ def test_resume_of_a_closed_branch(orbit, tmp_path, stop):
     rb.continue_orbit(start, "load.frequency", limits, store=file, progress=lambda done, _: done < stop)
     again = rb.continue_orbit(start, "load.frequency", limits, store=file, progress=False)
     assert again.is_closed and same(again, whole)
+
+
+def test_files_keep_the_way_behind_a_grazing(tmp_path):
+    """The way on at a grazing is in the file of a branch, in its special points and in its words."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio=0.05),
+        stop=rb.Stop(gap=2.0, contact=rb.Linear(stiffness=1.0, restitution=0.5)),
+        load=rb.Harmonic(amplitude=1.0, frequency="1.3 rad/s"),
+        duration=200.0,
+        method=rb.Newton(restitution=0.5),
+    )
+    orbit = rb.find_orbit(case, near=[0.1, 0.0], period=1)
+    branch = rb.continue_orbit(orbit, "stop.gap", (1.2, 2.2), points=40, progress=False)
+    again = rb.Branch.load(branch.save(tmp_path / "branch.nc"))
+    passages = [point.passage for point in again.specials if point.kind == "grazing"]
+    assert len(passages) == 1
+    assert passages[0].endswith("with 1 impact")
+    assert passages[0] in str(again)
+    assert passages[0] in str(again.specials[0])

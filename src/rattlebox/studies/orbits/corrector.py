@@ -134,6 +134,8 @@ class Corrector:
         n = state.size
         border = normal * self.weights(n)
         for count in range(1, _CORRECTIONS + 1):
+            if not self.limits[0] - self.width < value < self.limits[1] + self.width or value <= 0 < self.limits[0]:
+                return None
             shot = returns.shoot(state[None], [value])
             if not shot.is_complete:
                 return None

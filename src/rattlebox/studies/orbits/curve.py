@@ -142,6 +142,9 @@ class Curve:
         """Return state, values, derivatives and number of corrections of the point in the plane through a guess."""
         n = state.size
         for count in range(1, _CORRECTIONS + 1):
+            away = np.abs(values - self.limits.mean(axis=1)) > 1.5 * self.width
+            if away.any() or (values <= 0)[self.limits[:, 0] > 0].any():
+                return None
             linear = self.linear(returns, state, values, scale)
             if linear is None:
                 return None

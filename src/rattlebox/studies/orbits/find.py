@@ -117,6 +117,13 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
     found = _search(returns, state)
     if found is None and not isinstance(near, Orbit):
         found = next(filter(None, (_search(returns, each) for each in _close_returns(returns, state))), None)
+    if found is None and returns.coincides(state):
+        raise Hint(
+            "impacts of several contacts coincide in this motion, and each changes the approach speed of the others; the "
+            "motion after them depends on their order, so that it has no derivatives and multipliers",
+            "in place of equal dampers one with a ball of the mass of all, which moves in the same way; gaps that differ; "
+            "or method = rb.EventDriven(), whose contacts last",
+        )
     if found is None:
         raise Hint(
             f"no periodic motion of {several(cycles, 'cycle')} was found near this state; Newton's method did not converge",

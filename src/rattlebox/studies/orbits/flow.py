@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox.core import _core
 from rattlebox.engines import transition
 from rattlebox.model.paths import get
-from rattlebox.studies.orbits.differences import Differences
+from rattlebox.prepare.pack import pack
 from rattlebox.studies.orbits.flow_end import End, failed
 from rattlebox.studies.orbits.motion import MOST_EVENTS, GapLines
 
@@ -20,8 +21,10 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
-_BY_DIFFERENCES = ("simultaneous", "kink")
-"""Statuses of motions whose derivatives are not defined in all directions; differences are their means."""
+_BESIDE = 1e-6
+"""Distance of the motions beside one whose impacts coincide, over the sizes of the components of the state."""
+_CONTINUOUS = 1e-2
+"""Largest part of the difference of both that their derivatives may leave if the motion is continuous in its start."""
 
 
 class Flow:
@@ -31,10 +34,6 @@ class Flow:
         most = min(get(case, "method.max_events"), MOST_EVENTS)
         self._case, self._parameters = case, tuple(parameters)
         self._exact = transition.Flow.of(case.replaced({"method.max_events": most}), self._parameters)
-
-    @cached_property
-    def _differences(self) -> Differences:
-        return Differences(self._case, self._parameters)
 
     def over(
         self,
@@ -47,18 +46,44 @@ class Flow:
     ) -> End:
         """Return the end of the motion after some time [s]; the state is NaN if it cannot be computed.
 
-        Differences, in place of exact derivatives, are available from the start of the loads only.
+        Where hard impacts coincide, or the speed of one is at a kink of its law, derivatives are the means of those on both
+        sides. They do not exist, and the motion counts as not computed, if it jumps there: if one impact changes the
+        approach speed of the other, another order of both leads to another motion.
         """
         chosen = values if self._parameters else None
         end = self._exact.over(state, start, duration, chosen, derivatives)
-        if derivatives and end.status in _BY_DIFFERENCES and start == 0:
-            return self._differences.over(state, duration, chosen)
+        if derivatives and end.status in ("simultaneous", "kink"):
+            return self._mean(state, duration, chosen, start)
         if end.status != "finished":
             return failed(state.size)
         empty = np.zeros((state.size, 0))
         if not derivatives:
             return End(end.state, True, empty, empty, empty, end)
         return End(end.state, True, end.matrix, end.by_parameter, end.by_time, end)
+
+    def _mean(self, state: Vector, duration: float, values: Sequence[float] | None, start: float) -> End:
+        """Return the end with the means of the derivatives of motions on both sides."""
+        # Another direction for each component, so that no impacts coincide.
+        step = _BESIDE * self._sizes * np.cos(1.0 + np.arange(state.size))
+        sides = [self._exact.over(state + side * step, start, duration, values, True) for side in (1.0, -1.0)]
+        here = self._exact.over(state, start, duration, values, False)
+        if any(end.status != "finished" for end in (*sides, here)):
+            return failed(state.size)
+        one, other = sides
+        matrix = 0.5 * (one.matrix + other.matrix)
+        change, rest = 2 * matrix @ step / self._sizes, (one.state - other.state) / self._sizes
+        if np.abs(rest - change).max() > _CONTINUOUS * np.abs(change).max():
+            return failed(state.size)
+        by_parameter = 0.5 * (one.by_parameter + other.by_parameter)
+        return End(here.state, True, matrix, by_parameter, 0.5 * (one.by_time + other.by_time))
+
+    def coincides(self, state: Vector, duration: float) -> bool:
+        """Return whether hard impacts of a motion coincide."""
+        return self._exact.over(state, 0.0, duration).status == "simultaneous"
+
+    @cached_property
+    def _sizes(self) -> Vector:
+        return _sizes(pack(self._case))
 
     def gap_lines(self, values: Sequence[float]) -> tuple[GapLines, list[GapLines]]:
         """Return the gaps as functions of the state at values of the parameters, and their derivatives in each of these."""
@@ -85,3 +110,16 @@ class Flow:
         for each in slopes:
             each.by_state[:, 2 * modes :] = 0
         return lines(shapes, widths, 0), slopes
+
+
+def _sizes(problem: _core.Problem) -> Vector:
+    """Return lengths and speeds that suit the components of a state, (n,)."""
+    rates = [float(load.signal.frequency) for load in problem.loads if isinstance(load.signal, _core.Harmonic)]
+    omega = max(rates, default=1.0)
+    half = np.array([0.5 * float(damper.clearance) for damper in problem.dampers for _ in range(np.size(damper.mass))])
+    lengths = [0.5 * float(damper.clearance) for damper in problem.dampers if damper.clearance > 0]
+    reach = np.zeros(problem.mode_decay.size)
+    for damper in problem.dampers:
+        reach = np.maximum(reach, np.abs(damper.shape))
+    modal = min(lengths, default=1.0) / np.where(reach > 0, reach, 1.0)
+    return np.concatenate([np.stack([modal, modal * omega], axis=1).ravel(), half, half * omega])

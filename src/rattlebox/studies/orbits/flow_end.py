@@ -20,7 +20,7 @@ class End:
 
     `ok` is whether it was computed. `matrix` (n, n) is the derivative with respect to the state at the start, `by_parameter`
     (n, p), `by_time` (n,) the rate of change at the end; all empty if they are not requested. `transition` is the
-    stretch itself; None if its derivatives are differences.
+    stretch itself; None if its derivatives are means of two others.
     """
 
     state: Vector

@@ -16,6 +16,8 @@ import numpy as np
 from rattlebox.model.errors import several
 from rattlebox.studies.orbits.corrector import TESTS, Corrector, Point
 from rattlebox.studies.orbits.grazing import NAMES, NOT_FOUND, approach, beyond, is_pressed, located_by
+from rattlebox.studies.orbits.shooting import ReturnMap, solve
+from rattlebox.studies.orbits.symmetry import is_mirrored
 
 _FEW, _MANY = 3, 5
 """Numbers of corrections at which a step becomes longer or shorter."""
@@ -25,6 +27,21 @@ _TINY = 1e-3
 """Length of a step over the longest one, that counts as tiny."""
 _MOST_TINY = 40
 """Largest number of tiny steps one after the other, after which the branch ends."""
+_SECANT, _SECANTS = 1e-4, 12
+"""First step, over the range of the parameter, and largest number of steps to the end of a branch in its image."""
+_NEAR_FOLD = 0.05
+"""Largest change of the state on the way, over the size of the motion."""
+_REPEATED = 1e-7
+"""Largest change of the state after half of the period of a motion that repeats then."""
+_ON_CIRCLE = 1e-6
+"""Largest distance of a multiplier from -1 there."""
+_ACCURATE = 1e-12
+"""Accuracy of its place."""
+_IMAGES = {
+    "pitchfork": "the mirror images of these motions follow",
+    "flip": "the same motions follow, half of their period later",
+}
+"""Reasons why a branch ends where it turns back into its image, by the special point there."""
 _LOOP = 10
 """Number of points after which a branch may be closed."""
 
@@ -46,6 +63,8 @@ class Follower:
     def __init__(self, corrector: Corrector) -> None:
         self.corrector = corrector
         self.is_closed = False
+        self._is_mirrored = is_mirrored(corrector.returns.forcing)
+        self._image = ""  # reason why the branch ends between the last two points
         self.reasons: list[str] = []
         """Reason why the branch ends on each side that was followed; empty at a limit."""
         self.loop: tuple[float, int, int, bool] = 0.0, 0, 0, False
@@ -95,9 +114,14 @@ class Follower:
                     yield last
                 return
             found = list(self._special(point, after))
+            if not self._image and self._repeats_sooner(after):
+                # The step has left the branch for that of which its motions are the images.
+                end = self._halved(after)
+                self._image = _IMAGES.get(end.special, "a motion of half of the period follows")
+                found = [end] if end.special in _IMAGES else []
             yield from found
-            if any(each.special == "pitchfork" and not each.returns.mirrored for each in found):
-                self.reasons.append("the mirror images of these motions follow")
+            if self._image:
+                self.reasons.append(self._image)
                 return
             yield after
             count += 1
@@ -133,7 +157,7 @@ class Follower:
 
     def _special(self, point: Point, after: Point) -> Iterator[Point]:
         """Yield the special points between two points in their order."""
-        found = []
+        found, self._image = [], ""
         for name, test in TESTS.items():
             low, high = test(point), test(after)
             if low * high < 0 and (located := self.corrector.locate(point, after, test)) is not None:
@@ -142,11 +166,60 @@ class Follower:
                     found.append(_named(located, kind))
         found += self._changes(point, after)
         names = [each.special for each in found]
-        if "fold" in names and "branch point" in names and not point.returns.mirrored:
-            # Motions without the symmetry turn back where they meet the symmetric ones, their mirror images.
-            found = [each for each in found if each.special != "branch point"]
-            found[names.index("fold")] = replace(found[names.index("fold")], special="pitchfork")
+        if "fold" in names:
+            fold = names.index("fold")
+            found[fold] = self._halved(found[fold])
+            if found[fold].special != "fold":
+                self._image = _IMAGES[found[fold].special]
+                found = [each for each in found if each.special != "branch point"]
         yield from sorted(found, key=lambda each: self.corrector.distance(point, each))
+
+    def _half(self, point: Point) -> ReturnMap | None:
+        """Return the map over half of the period, mirrored if the period is odd; None if the case has no mirror image."""
+        returns = point.returns
+        if returns.cycles % 2 == 0:
+            return returns.with_(cycles=returns.cycles // 2)
+        return None if returns.mirrored or not self._is_mirrored else returns.with_(mirrored=True)
+
+    def _repeats_sooner(self, point: Point) -> bool:
+        """Return whether a motion is one of half of the period, or symmetric, though the branch is not."""
+        half = self._half(point)
+        if half is None:
+            return False
+        shot = half.shoot(point.orbit.state[None], [point.value], derivatives=False)
+        return shot.is_complete and bool(np.abs(shot.residual / point.scale).max() < _REPEATED)
+
+    def _halved(self, point: Point) -> Point:
+        """Return the point at which a branch turns back into its image half a period later: a flip, or a pitchfork.
+
+        There the motion repeats after half of its period, or with the opposite sign if the branch lost the symmetry, and
+        the map over this half has a multiplier -1. The map over the whole is singular in two directions, and its fixed
+        points are inaccurate. The point stays what it is if there is no
+        such motion.
+        """
+        returns, state = self._half(point), point.orbit.state
+        if returns is None:
+            return point
+        values, tests = [point.value, point.value + _SECANT * self.corrector.width], list[float]()
+        while len(tests) < _SECANTS:
+            found = solve(returns, state[None], point.scale, [values[len(tests)]])
+            if found is None or np.abs((found[0][0] - point.orbit.state) / point.scale).max() > _NEAR_FOLD:
+                return point
+            state = found[0][0]
+            multipliers = np.linalg.eigvals(found[1].monodromy())
+            tests.append(float(np.prod(multipliers + 1).real))
+            if len(tests) < 2:
+                continue
+            step = tests[-1] * (values[-1] - values[-2]) / (tests[-1] - tests[-2]) if tests[-1] != tests[-2] else 0.0
+            if abs(step) < _ACCURATE * self.corrector.width:
+                break
+            values.append(values[-1] - step)
+        if np.abs(multipliers + 1).min() > _ON_CIRCLE:
+            return point
+        value = values[len(tests) - 1]
+        shot = point.returns.shoot(state[None], [value])
+        there = self.corrector.finish(point.returns, state, value, shot, point.scale, point.tangent)
+        return _named(there or point, "pitchfork" if returns.mirrored else "flip")
 
     def _changes(self, point: Point, after: Point) -> list[Point]:
         """Return the point between two points at which sticking begins or ends, or else the sequence of impacts changes."""
@@ -174,8 +247,9 @@ def _kind(name: str, point: Point) -> str:
         angles = np.abs(np.angle(values[np.abs(np.abs(values) - 1) < 1e-4]))
         # Two real multipliers with the product 1 change no stability.
         return "torus" if angles.size >= 2 and (np.sin(angles) > 1e-3).any() else ""
-    if name == "branch point":
-        return "branch point" if np.abs(values - 1).min() < 1e-3 else ""
+    if name in ("fold", "branch point"):
+        # The tangent may turn in chatter, too, where the branch has corners.
+        return name if np.abs(values - 1).min() < 1e-3 else ""
     return name
 
 

@@ -81,7 +81,13 @@ def approach(corrector: Corrector, before: Point, point: Point, length: float) -
         share = _SHARE
         while share > 1e-3:
             taken = corrector.step(row[-1], share * distance)
-            if taken is not None and taken[0].contacts == point.contacts and chosen in indicators(taken[0]):
+            smallest = indicators(row[-1])[chosen]
+            # A larger gap is that of another near miss of the contact.
+            if (
+                taken is not None
+                and taken[0].contacts == point.contacts
+                and indicators(taken[0]).get(chosen, np.inf) < smallest
+            ):
                 row.append(taken[0])
                 break
             share /= 2
@@ -162,6 +168,8 @@ def beyond(corrector: Corrector, point: Point, indicator: Indicator) -> Passage 
         normal = np.append(dx / point.scale, dp / corrector.width)
         normal /= float(np.sqrt(np.sum(corrector.weights(n) * normal**2)))
         guess, at = state + dx, value + dp
+        if not corrector.limits[0] < at < corrector.limits[1]:
+            continue
         if not is_lost:
             speed = unit * share * corrector.longest / size
             guess = aimed(point.returns, near, touch, guess, [at], point.scale, speed)

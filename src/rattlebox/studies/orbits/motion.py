@@ -167,5 +167,7 @@ def _turning_points(time: Vector, x: Vector, v: Vector, *, rising: bool = False)
     # The root between both samples, without cancellation if d is small.
     root = np.sqrt(np.maximum(c * c - 3 * a * d, 0.0))
     sign = np.where(b > a, 1.0, -1.0)
-    s = np.clip(-a / (c + sign * root), 0.0, 1.0)
+    steep = c + sign * root
+    # Velocities that are constant to rounding have no root of their own.
+    s = np.clip(-a / np.where(steep == 0, 1.0, steep), 0.0, 1.0)
     return time[k] + s * h, x[k] + h * (a * s + c * s**2 + d * s**3)

@@ -146,6 +146,10 @@ class ReturnMap:
         """Return the gaps as functions of the state at values of the parameters, and their derivatives in each of these."""
         return self._flows[0].gap_lines(tuple(map(float, values)))
 
+    def coincides(self, state: Vector) -> bool:
+        """Return whether hard impacts coincide in the motion from a state."""
+        return self._flows[0].coincides(state, self.length(self.forcing.period) * self.segments)
+
     def part(self, duration: float, state: Vector, value: float, share: float) -> tuple[Vector, Vector, Vector] | None:
         """Return the state after a share of the period of the loads, and its derivatives by state and parameter."""
         end = self._flows[0].over(state, duration, (value,))
