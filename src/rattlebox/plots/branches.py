@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rattlebox.studies.orbits.branch import Branch
 from rattlebox.studies.orbits.branch_words import size_of_motion, special_kinds
 
 from .labels import capitalised, name_of, unit_of
@@ -18,8 +16,11 @@ from .style import INK, SERIES_MARKERS, StyledFigure, figure_style, label, legen
 from .types import Size
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+
+    from rattlebox.studies.orbits.branch import Branch
 
 _WORDS = {
     "load.frequency": "Frequency of the load",
@@ -68,7 +69,11 @@ def plot_branches(
     ValueError
         If the branches have different parameters, or the size is unknown.
     """
-    given = {"": branches} if isinstance(branches, Branch | xarray.Dataset) else dict(branches)
+    # xarray, whose datasets are mappings, and what computes branches are not imported for the figures of runs.
+    from rattlebox.studies.orbits.branch import Branch
+
+    several = isinstance(branches, Mapping) and not hasattr(branches, "data_vars")
+    given: Mapping[str, Any] = cast("Mapping[str, Any]", branches) if several else {"": branches}
     named = {name: each if isinstance(each, Branch) else Branch(each) for name, each in given.items()}
     first = next(iter(named.values()))
     if any(branch.parameter != first.parameter for branch in named.values()):
