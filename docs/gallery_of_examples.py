@@ -21,6 +21,7 @@ LONG = {
     "boring_bar_checks": "2 minutes",
     "boring_bar_design": "6 minutes",
     "calibration": "1 minute",
+    "cavity_shapes": "2 minutes",
     "map_against_simulation": "3 minutes",
     "panel_variants": "1 minute",
     "stiffer_and_finer": "3 minutes",
