@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from rattlebox.studies.work.measures import INTERVAL
 
-from .labels import LabelledValues, capitalised
+from .labels import LabelledValues, capitalised, interval_ends
 from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, label, pen
 from .types import Size, Style, Vector
 
@@ -90,10 +90,13 @@ def _separate(study: xr.Dataset, paths: list[str]) -> list[str]:
     return list({about[path].get("together", path): path for path in reversed(paths)}.values())[::-1]
 
 
-def _half_width(study: xr.Dataset, name: str, values: LabelledValues) -> Vector | None:
-    """Return half of the widths of the intervals of an objective in the unit of the figure; None if it has none."""
+def _lengths(study: xr.Dataset, name: str, values: LabelledValues) -> Vector | None:
+    """Return the lengths of the intervals below and above an objective in the unit of the figure; None if it has none."""
     half = study.get(name + INTERVAL)
-    return None if half is None else np.nan_to_num(half.values / values.divisor)
+    if half is None:
+        return None
+    low, high = interval_ends(name, study[name], half)
+    return np.nan_to_num(np.stack([study[name] - low, high - study[name]]) / values.divisor)
 
 
 def _draw_trials(
@@ -112,7 +115,7 @@ def _draw_progress(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
     """Draw the objective of each trial, and the best value so far."""
     goal = LabelledValues.of(study[goals[0]])
     best = (np.fmax if study[goals[0]].attrs["goal"] == "max" else np.fmin).accumulate(goal.numbers)
-    _draw_trials(axes, study, study.trial.values, goal.numbers, y_bar=_half_width(study, goals[0], goal))
+    _draw_trials(axes, study, study.trial.values, goal.numbers, y_bar=_lengths(study, goals[0], goal))
     axes.step(study.trial, best, where="post", color=SERIES_COLOURS[1], label="best so far")
     limit = json.loads(study.attrs["max_added_mass"])
     # Trials without a value are marked on the axis, by reason, so that gaps of the search are visible.
@@ -131,7 +134,7 @@ def _draw_progress(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
 def _draw_front(axes: Axes, study: xr.Dataset, goals: list[str]) -> None:
     """Draw the second objective over the first, and the Pareto front."""
     x, y = LabelledValues.of(study[goals[0]]), LabelledValues.of(study[goals[1]])
-    bars = (_half_width(study, name, values) for name, values in zip(goals[:2], (x, y), strict=True))
+    bars = (_lengths(study, name, values) for name, values in zip(goals[:2], (x, y), strict=True))
     _draw_trials(axes, study, x.numbers, y.numbers, *bars)
     best = study.front.values
     axes.plot(x.numbers[best], y.numbers[best], label="Pareto front", **_BEST)
@@ -144,7 +147,7 @@ def _draw_objective(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None
     """Draw the objective over a parameter."""
     x, y = _parameter(study, path), LabelledValues.of(study[goal])
     best = study.front.values
-    _draw_trials(axes, study, x.numbers, y.numbers, y_bar=_half_width(study, goal, y))
+    _draw_trials(axes, study, x.numbers, y.numbers, y_bar=_lengths(study, goal, y))
     axes.plot(x.numbers[best], y.numbers[best], **_BEST)
     axes.margins(0.04)
     x.label(axes, "x", log=_is_log(study, path))

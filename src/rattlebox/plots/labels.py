@@ -24,6 +24,8 @@ _TICK_LETTERS = 16  # of names at ticks
 _LARGEST_EXACT = 2**53  # whole numbers below it are written with all their digits
 _IN_PERCENT = ("damping_ratio", "equivalent_damping")  # engineers write them in per cent
 _UNBOUNDED = ("loss_factor",)  # it is infinite where the effective mass passes through zero
+_SIGNED = ("work", "effective_mass", "phase")
+"""Quantities that may be negative; others are sizes, counts or losses, whose intervals end at zero."""
 _PERCENTILE = 95.0  # of an unbounded measure, at which its scale ends
 
 
@@ -117,6 +119,13 @@ def upper_limit(name: str, values: Vector) -> float | None:
         return None
     limit = float(np.percentile(finite, _PERCENTILE))
     return limit if finite.max() > limit > 0 else None
+
+
+def interval_ends(name: str, values: xr.DataArray, half: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return the ends of an interval, with a lower end that the quantity can have."""
+    low = values - half
+    # An interval of t statistics is symmetrical, and wider than the value itself if that scatters much.
+    return (low if name in _SIGNED or (values < 0).any() else low.clip(min=0.0)), values + half
 
 
 def log_ticks(axis: Axis) -> None:

@@ -9,7 +9,7 @@ from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 from matplotlib.lines import Line2D
 
 from .gaps import gaps_of
-from .labels import REPLICA, LabelledValues, StudyAxis, log_ticks, name_of, upper_limit, value_of
+from .labels import REPLICA, LabelledValues, StudyAxis, interval_ends, log_ticks, name_of, upper_limit, value_of
 from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, colour_bar, map_colours, pen
 from .types import Style, Vector
 
@@ -40,10 +40,11 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
             style |= {"markersize": pen(2.4)}
         else:
             del style["marker"]
-        half = None
+        member, ends = member / measure.divisor, None
         if half_widths is not None:
             half = half_widths.transpose(*values.dims)[number if others else ...] / measure.divisor
-        _draw_line(axes, x_axis.values.numbers, member / measure.divisor, half, style)
+            ends = interval_ends(name, member, half)
+        _draw_line(axes, x_axis.values.numbers, member, ends, style)
     marks = _clip_peaks(axes, name, values, along, x_axis) + _mark_gaps(axes, study, name, along, x_axis)
     x_axis.label(axes, "x")
     measure.label(axes, "y")
@@ -67,15 +68,17 @@ def _clip_peaks(axes: Axes, name: str, values: xr.DataArray, along: str, x_axis:
     return [Line2D([], [], label="beyond the scale", **style)]
 
 
-def _draw_line(axes: Axes, x: Vector, member: xr.DataArray, half: xr.DataArray | None, style: Style) -> None:
-    """Draw a line with its interval of a given half-width, or the median of replicas within their band."""
+def _draw_line(
+    axes: Axes, x: Vector, member: xr.DataArray, ends: tuple[xr.DataArray, xr.DataArray] | None, style: Style
+) -> None:
+    """Draw a line with its interval, or the median of replicas within their band."""
     middle = member
     if REPLICA in member.dims:
         computed = member.notnull().any(REPLICA)
         low, middle, high = member.where(computed, 0.0).quantile([0.1, 0.5, 0.9], REPLICA).where(computed)
         axes.fill_between(x, low.values, high.values, color=style["color"], alpha=0.25, linewidth=0)
-    elif half is not None:
-        low, high = member - half, member + half
+    elif ends is not None:
+        low, high = ends
         axes.fill_between(x, low.values, high.values, color=style["color"], alpha=0.25, linewidth=0)
     axes.plot(x, middle.values, clip_on="marker" not in style, **style)
     if "marker" in style:

@@ -14,7 +14,7 @@ from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import nearest
 from ..studies.work.reductions import Motion
-from .labels import capitalised, log_ticks, name_of
+from .labels import capitalised, interval_ends, log_ticks, name_of
 from .style import ABOVE, FAINT, INK, StyledFigure, figure_style, label, pen, scaled, series_colour
 from .types import Size, Style
 
@@ -103,7 +103,7 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
             if f"{name}_interval" in response:
                 half = response[f"{name}_interval"].sel(level=level, direction=direction) / divisor
                 half = half / level if per_level else half
-                axes.fill_between(frequency, line - half, line + half, color=colour, alpha=0.4, lw=0)
+                axes.fill_between(frequency, *interval_ends(name, line, half), color=colour, alpha=0.4, lw=0)
             if _has_impacts(response):
                 one = response.sel(level=level, direction=direction)
                 transient = _is_transient(one)
