@@ -116,7 +116,8 @@ class SampledResponse:
             found = float(self.response(np.array([omega])).real[0])
             return found if math.isfinite(found) else math.inf
 
-        found = minimize_scalar(value, bounds=(low, high), method="bounded", options={"xatol": 1e-10 * high})
+        with np.errstate(invalid="ignore"):  # parabolas through infinite values, which the search then ignores
+            found = minimize_scalar(value, bounds=(low, high), method="bounded", options={"xatol": 1e-10 * high})
         best = [(float(real[k]), float(self.omega[k])), (float(found.fun), float(found.x))]
         return min(best)
 

@@ -81,13 +81,6 @@ class TunedMass(Part):
         return self.name or ("tuned mass" if count == 1 else f"tuned mass {index + 1}")
 
     @classmethod
-    def all_of(cls, value: object) -> tuple[TunedMass, ...]:
-        """Return one tuned mass or several in a list as a tuple; empty for anything else."""
-        several = value if isinstance(value, (list, tuple)) else [value]
-        tuned = tuple(each for each in several if isinstance(each, cls))
-        return tuned if len(tuned) == len(several) else ()
-
-    @classmethod
     def den_hartog(cls, structure: StructurePart, mass: Quantity, *, mode: int = 1, **options: Any) -> TunedMass:
         """Return the tuned mass that minimises the largest response to a harmonic force on the structure.
 

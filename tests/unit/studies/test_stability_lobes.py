@@ -225,3 +225,58 @@ def test_measures_of_a_frequency_response() -> None:
     stiffness = 2.5 * (2 * np.pi * 130) ** 2
     assert found.minimum_real_part.item() == pytest.approx(-1 / (4 * stiffness * 0.02 * 1.02), rel=1e-3)
     assert found.dynamic_stiffness.item() == pytest.approx(2 * stiffness * 0.02, rel=2e-3)
+
+
+def hard_ball(**fields: Any) -> rb.ImpactDamper:
+    """Return a ball of tungsten carbide in a narrow gap."""
+    parts: dict[str, Any] = {
+        "ball": rb.Sphere(diameter="22 mm", material="tungsten_carbide"),
+        "gap": "20 um",
+        "velocity": "15 mm/s",
+        "contact": rb.Tsuji(restitution=0.6),
+    }
+    return rb.ImpactDamper(**(parts | fields))
+
+
+def test_a_damper_in_a_tuned_mass_is_given_in_three_ways() -> None:
+    """A list of both, a case with both, and a case with the tuned mass and the damper are the same tool.
+
+    Tests had one kind of damper at a time, and a list of a tuned mass and a damper was called no loss map.
+    """
+    tuned = rb.TunedMass.den_hartog(TOOL, mass="0.2 kg")
+    inside = hard_ball(point="tuned mass")
+    case = rb.Case(structure=TOOL, tuned_mass=tuned, duration="1 s")
+    options: dict[str, Any] = {"cutting_coefficient": KS, "amplitudes": ["20 um", "50 um"], "progress": False}
+    both = rb.stability_lobes(TOOL, [tuned, inside], **options)
+    in_case = rb.stability_lobes(case.replaced({"damper": inside}), **options)
+    beside = rb.stability_lobes(case, inside, **options)
+    np.testing.assert_allclose(both.limit, in_case.limit, rtol=1e-9)
+    np.testing.assert_allclose(both.limit, beside.limit, rtol=1e-9)
+    assert abs(float(both.limit[0]) / float(rb.stability_lobes(TOOL, tuned, KS).limit) - 1) > 0.01
+    mapped = made_map(lambda _: 0.03 - 0.01j)
+    np.testing.assert_allclose(
+        rb.stability_lobes(TOOL, [tuned, mapped], KS, at="tuned mass", amplitudes=["20 um", "50 um"]).limit,
+        rb.stability_lobes(case, mapped, KS, at="tuned mass", amplitudes=["20 um", "50 um"]).limit,
+        rtol=1e-9,
+    )
+
+
+def test_advice_for_dampers_is_followed() -> None:
+    """A damper at a point that the tool lacks, and a damper beside that of the case, are refused with advice that works."""
+    options: dict[str, Any] = {"cutting_coefficient": KS, "amplitudes": ["20 um", "50 um"], "progress": False}
+    inside = hard_ball(point="tuned mass")
+    with pytest.raises(rb.CaseError, match="the damper is at 'tuned mass', and the tool has no point") as caught:
+        rb.stability_lobes(TOOL, inside, **options)
+    assert (
+        caught.value.suggestion == 'at = "mass", or damper = [rb.TunedMass(...), damper] for a damper in a tuned mass'
+    )
+    assert rb.stability_lobes(TOOL, inside, at="mass", **options).limit.notnull().all()
+    case = rb.Case(structure=TOOL, damper=hard_ball(), duration="1 s")
+    with pytest.raises(rb.CaseError, match="another one is given") as caught:
+        rb.stability_lobes(case, hard_ball(), **options)
+    assert caught.value.suggestion == "case.without_dampers(), or no damper beside the case"
+    for damper in ((case.without_dampers(), hard_ball()), (case,)):
+        assert rb.stability_lobes(*damper, **options).limit.notnull().all()
+    with pytest.raises(rb.CaseError, match="damper lists several dampers"):
+        rb.stability_lobes(TOOL, [hard_ball(), hard_ball()], **options)
+    assert rb.stability_lobes(TOOL, hard_ball(), number=2, **options).limit.notnull().all()

@@ -83,7 +83,8 @@ class StabilityLobes(Study):
         Structure of the tool, or a case with a structure, tuned masses, and possibly a damper. Loads are ignored.
     damper
         Loss map of a damper: dataset from `rb.loss_map`, or its file or store. Or a damper, whose map is computed, with the
-        method of the case. Or a `TunedMass`, or a list of these. Default: that of the case.
+        method of the case. Or a `TunedMass`, or a list of these, also with one of the former, which may be in a tuned mass
+        (`point="tuned mass"`). Default: that of the case.
     cutting_coefficient
         Ks, the cutting force over the area of the chip, text with a unit: "2000 N/mm^2".
     directional_factor
@@ -244,20 +245,32 @@ class StabilityLobes(Study):
             raise Hint("speeds must be greater than zero and rising", advice, ["speeds"])
         return speeds
 
+    @property
+    def _given(self) -> list[Any]:
+        """What `damper` lists."""
+        several = self.damper if isinstance(self.damper, (list, tuple)) else [self.damper]
+        return [each for each in several if each is not None]
+
     @cached_property
     def _damper(self) -> Any:
         """Loss map, damper or None; tuned masses are part of the model."""
-        if self.damper is None or self._tuned:
-            if len(self.case.dampers) > 1:
-                raise Hint("the case has several dampers, but one map holds one kind of damper", "one, with number = 2")
-            return self.case.dampers[0] if self.case.dampers else None
-        if self.case.dampers:
-            raise Hint("the case has a damper, and another one is given", "one of them", ["damper"])
-        return self.damper
+        others = [each for each in self._given if not isinstance(each, TunedMass)]
+        if len(others) > 1 or len(self.case.dampers) > 1:
+            owner = "damper lists" if len(others) > 1 else "the case has"
+            raise Hint(
+                f"{owner} several dampers, but one map holds one kind of damper", "one, with number = 2", ["damper"]
+            )
+        if others and self.case.dampers:
+            raise Hint(
+                "the case has a damper, and another one is given",
+                "case.without_dampers(), or no damper beside the case",
+                ["damper"],
+            )
+        return next(iter((*others, *self.case.dampers)), None)
 
     @cached_property
     def _tuned(self) -> tuple[TunedMass, ...]:
-        return TunedMass.all_of(self.damper)
+        return tuple(each for each in self._given if isinstance(each, TunedMass))
 
     @cached_property
     def _bare_model(self) -> ModalModel:
@@ -332,6 +345,12 @@ class StabilityLobes(Study):
     @cached_property
     def _points_of_dampers(self) -> tuple[str, ...]:
         own = self._damper.point if self._runs_map else None  # datasets have attributes of any name
+        if own is not None and self.at is None and own not in self._model.shapes:
+            raise Hint(
+                f"the damper is at {own!r}, and the tool has no point of this name",
+                f'at = "{self._tool.point}", or damper = [rb.TunedMass(...), damper] for a damper in a tuned mass',
+                ["damper", "point"],
+            )
         (names,) = points_of_dampers(self.at or own or self._tool.point, self._model)
         return names
 
@@ -374,7 +393,7 @@ class StabilityLobes(Study):
         )
         return {name: str(getattr(self, name)) for name in names} | {
             "case": self.case.to_toml(),
-            "damper": self.damper if isinstance(self.damper, str) else type(self.damper).__name__,
+            "damper": joined([each if isinstance(each, str) else type(each).__name__ for each in self._given]),
             "speeds": self._speeds.tolist(),
             "amplitudes": [] if self._own_amplitudes is None else self._own_amplitudes.tolist(),
         }
