@@ -21,7 +21,7 @@ from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
 from rattlebox.model.structures import Modal
 from rattlebox.model.units import whole_number
-from rattlebox.studies.damping_curve import merged_warnings, on_shaker, random_starts, read_amplitudes, warnings_of
+from rattlebox.studies.damping_curve import different_starts, merged_warnings, on_shaker, read_amplitudes, warnings_of
 from rattlebox.studies.grid.sampling import Spaced
 from rattlebox.studies.run.runner import evaluate_cases
 
@@ -177,7 +177,7 @@ def backbone(
     count = whole_number(starts, "starts", 1)
     window = whole_number(cycles[0], "cycles[0]", 1), whole_number(cycles[1], "cycles[1]", _PARTS)
     evaluate = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
-    plain = [each.model_copy(update={"loads": case.loads}) for each in random_starts(case, count)]
+    plain = [each.model_copy(update={"loads": case.loads}) for each in different_starts(case, count)]
     searches = [_Search(each, number, level) for number, each in enumerate(plain) for level in levels]
     messages: list[str] = []
     _guess(searches, target, window, evaluate)
@@ -197,7 +197,7 @@ def backbone(
                 )
             messages += row.warnings
             search.learn(row, target)
-    return _dataset(searches, levels, count, target, case, messages)
+    return _dataset(searches * (count // len(plain)), levels, count, target, case, messages)
 
 
 @dataclass(frozen=True)

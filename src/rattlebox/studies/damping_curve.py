@@ -195,8 +195,10 @@ def curve_from(
     steady = None
     if way == "shaking":
         ratios, steady, drift = _from_shaking(cases, about, levels, cycles, run, remarks)
+        steady, drift = of_all_starts(steady, packings), of_all_starts(drift, packings)
     else:
         ratios = ratios_of_decays(cases, about, levels, way, run, remarks)
+    ratios = of_all_starts(ratios, packings)
     result = _dataset(ratios, levels, about, way)
     if steady is not None:  # the scatter of motions that still change says nothing about their mean
         result = result.assign({name: result[name].where(steady.all(axis=0)) for name in ("lower", "upper")})
@@ -252,7 +254,7 @@ def _prepared(
             "way = 'decay'",
         )
     count, about = whole_number(packings, "packings", 1), mode_of(case, mode, point)
-    return read_amplitudes(amplitudes, about.omega), about, random_starts(case, count)
+    return read_amplitudes(amplitudes, about.omega), about, different_starts(case, count)
 
 
 @dataclass
@@ -345,6 +347,16 @@ def random_starts(case: Case, count: int) -> list[Case]:
         dampers = tuple(damper.restarted(number, rng) for damper in moving)
         cases.append(case.model_copy(update={"dampers": dampers, "loads": (), "base": ()}))
     return cases
+
+
+def different_starts(case: Case, count: int) -> list[Case]:
+    """Return the random starts of a case that differ: without dampers all are the same."""
+    return random_starts(case, count if case.dampers else 1)
+
+
+def of_all_starts(values: NDArray[Any], count: int) -> NDArray[Any]:
+    """Return the values of all starts, (starts, ...), from those of the different ones."""
+    return np.repeat(values, count // len(values), axis=0)
 
 
 # ---- free decays

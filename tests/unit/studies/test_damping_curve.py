@@ -347,3 +347,27 @@ def test_the_drift_is_the_change_between_the_halves_of_the_cycles() -> None:
     assert float(abs(change).max()) > 1e-3
     np.testing.assert_allclose(whole.drift, change, atol=1e-6)
     assert "drift" not in rb.damping_curve(ball_case(), LEVELS, packings=1, progress=False)
+
+
+@pytest.mark.parametrize("study", ["backbone", "decay", "energy"])
+def test_equal_starts_are_run_once(study: Any) -> None:
+    """Without dampers all starts are equal: one of them is run, and its values are those of all.
+
+    Results were right, so that no test noticed that the same runs were made four times.
+    """
+    structure = rb.SDOF(mass=3, frequency=50, damping_ratio=0.01)
+    counts: list[int] = []
+    seen: dict[str, Any] = {"progress": lambda done, total: counts.append(total) or True}
+    levels = ["0.4 mm", "0.7 mm"]
+    if study == "backbone":
+        stop = rb.Stop(gap="0.5 mm", contact=rb.Linear(stiffness="0.3 MN/m", restitution=0.6))
+        load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")
+        case = rb.Case(structure=structure, stop=stop, load=load, duration="1 s")
+        found, one = (rb.backbone(case, levels, starts=number, **seen) for number in (4, 1))
+        assert found.frequencies.shape == (4, 2) and bool(found.found.all())
+        assert np.array_equal(found.frequencies, np.repeat(one.frequencies, 4, axis=0))
+    else:
+        case = rb.Case(structure=structure, duration="1 s")
+        found, one = (rb.damping_curve(case, levels, way=study, packings=number, **seen) for number in (4, 1))
+        assert np.array_equal(found.damping_ratios, np.repeat(one.damping_ratios, 4, axis=0))
+    assert max(counts) == (2 if study == "backbone" else 1)

@@ -56,6 +56,8 @@ _MAP_SIZE = (24, 8)
 """Numbers of amplitudes and frequencies of a map that is computed for a damper."""
 _MAP_RANGE = (0.8, 1.8)
 """Range of the frequencies of such a map over the chatter frequency of the structure alone."""
+_RATIOS = 41
+"""Number of frequencies at which the motion of dampers away from the tip is compared with that of the tip."""
 _WIDER = 1.25
 """Margin of its amplitudes around those of the tip."""
 _FALL = 0.98
@@ -318,13 +320,15 @@ class StabilityLobes(Study):
         points = self._points_of_dampers
         _, chatter = self._bare_samples.smallest_real_part()
         hertz = chatter / (2 * math.pi)
-        # The amplitude of a damper that is not at the tip differs from that of the tip by the ratio of the motions.
-        shapes = np.array([_space_shape(self._model, name) for name in points])
-        ratio = np.abs(self._tool.motion_ratio(np.array([chatter]), shapes)).max()
-        ends = amplitudes[0] * ratio / _WIDER, amplitudes[-1] * ratio * _WIDER
         frequencies = self.frequencies
         if frequencies is None:
             frequencies = np.geomspace(hertz * _MAP_RANGE[0], hertz * _MAP_RANGE[1], _MAP_SIZE[1]).tolist()
+        # The amplitude of a damper that is not at the tip differs from that of the tip by the ratio of the motions, which for
+        # one in a tuned mass changes much with the frequency.
+        shapes = np.array([_space_shape(self._model, name) for name in points])
+        among = np.geomspace(hertz * _MAP_RANGE[0], hertz * _MAP_RANGE[1], _RATIOS)
+        ratio = np.abs(self._tool.motion_ratio(2 * math.pi * among, shapes))
+        ends = amplitudes[0] * ratio.min() / _WIDER, amplitudes[-1] * ratio.max() * _WIDER
         motion: dict[str, Any] = {"amplitude": ends[1], "frequency": hertz, "unit": "m"}
         if damper.base_direction is not None:
             motion["direction"] = self.direction or damper.base_direction
