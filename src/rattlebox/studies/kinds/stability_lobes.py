@@ -323,7 +323,7 @@ class StabilityLobes(Study):
         frequencies = self.frequencies
         if frequencies is None:
             frequencies = np.geomspace(hertz * _MAP_RANGE[0], hertz * _MAP_RANGE[1], _MAP_SIZE[1]).tolist()
-        # The amplitude of a damper that is not at the tip differs from that of the tip by the ratio of the motions, which for
+        # The amplitude of a damper away from the tip differs from that of the tip by the ratio of the motions, which for
         # one in a tuned mass changes much with the frequency.
         shapes = np.array([_space_shape(self._model, name) for name in points])
         among = np.geomspace(hertz * _MAP_RANGE[0], hertz * _MAP_RANGE[1], _RATIOS)
