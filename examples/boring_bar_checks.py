@@ -15,7 +15,6 @@ import math
 import runpy
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 import rattlebox as rb
@@ -61,7 +60,8 @@ def percent(result):
 @rb.plots.figure_style("page")
 def main():
     """Compute the numbers, check them and draw the figure."""
-    figure, panels = plt.subplots(1, 2, figsize=(7, 3.4), sharey=True, layout="constrained")
+    figure = rb.plots.StyledFigure("page", 0.5)
+    panels = figure.subplots(1, 2, sharey=True)
     colours = dict(zip((0.1, 0.2, 0.4), rb.plots.SERIES_COLOURS, strict=False))
     marks = dict(zip(colours, "o^s", strict=True))
     for (way, fill), known in WAYS.items():
@@ -86,15 +86,16 @@ def main():
             f"softening {softening}:",
             *(f"{ratio:.2f} ± {half:.2f}" for ratio, half in zip(ratios, halves, strict=True)),
         )
-        panels[1].plot([10, 20, 40, 80], ratios, f"{mark}-", ms=4, label=f"softening {softening}")
+        panels[1].plot([10, 20, 40, 80], ratios, f"{mark}-", label=f"softening {softening}")
         assert (abs(ratios - known) < halves + 0.1 * np.array(known)).all()
     panels[0].plot([], [], "kx", label="harmonic force")
-    panels[0].set_ylabel("Damping ratio (%)")
+    rb.plots.label(panels[0], "y", "Damping ratio", "%")
     for panel in panels:
-        panel.set(xlabel="Amplitude (µm)", ylim=0)
+        panel.set_ylim(bottom=0)
         panel.margins(x=0.03)
-        panel.legend()
-    figure.savefig("boring_bar_checks.png", dpi=200)
+        rb.plots.label(panel, "x", "Amplitude", "µm")
+        rb.plots.legend_above(panel)
+    figure.savefig("boring_bar_checks.png")
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rattlebox.model.errors import Hint, at
+from rattlebox.model.modes import main_axis
 from rattlebox.model.signals import Signal
 from rattlebox.model.space import unit_vector
 from rattlebox.model.stops import refuse_stops
@@ -89,7 +90,8 @@ def apparent_mass(case: Case, frequencies: ArrayLike, direction: Any = None) -> 
     along, residual = modes.participation, modes.residual_mass
     if along.ndim == 2:
         if direction is None:
-            raise Hint("the structure moves in 3-D and its base needs a direction", 'direction = "z"', ["direction"])
+            advice = f'direction = "{main_axis(along)}"'
+            raise Hint("the structure moves in 3-D and its base needs a direction", advice, ["direction"])
         axis = unit_vector(direction)
         along, residual = along @ axis, None if residual is None else axis @ residual @ axis
     hertz = finite("frequencies", frequencies)
@@ -349,7 +351,7 @@ def _sampled_mass(
     if "frequency" not in getattr(transfer, "coords", ()):
         raise Hint(
             f"{structure!r:.60} is neither a case nor a transfer function over frequency",
-            "analysis.transfer_function(...)",
+            "a Case, or analysis.transfer_function(...)",
         )
     own, values = transfer["frequency"].values, np.asarray(transfer.values, dtype=complex)
     if own[0] > low * (1 + 1e-9) or own[-1] < high * (1 - 1e-9):

@@ -13,6 +13,11 @@ from .errors import Hint, nearest
 from .space import AXES, Triple, unit_vector
 
 
+def main_axis(vectors: Vector) -> str:
+    """Return the axis along which mode shapes or participations, (m, 3), are largest: "x", "y" or "z"."""
+    return AXES[int(np.argmax(np.sum(np.square(vectors), axis=0).reshape(3, -1)[:, 0]))]
+
+
 @dataclass(frozen=True, eq=False)
 class ModalModel:
     """Modes of a linear structure, with unit modal mass.
@@ -67,7 +72,8 @@ class ModalModel:
                 raise Hint(f"the point {point!r} moves along one line only", advice, ["direction"])
             return self.shapes[point]
         if direction is None:
-            raise Hint(f"the point {point!r} moves in 3-D and needs a direction", 'direction = "z"', ["direction"])
+            advice = f'direction = "{main_axis(self.shapes[point])}"'
+            raise Hint(f"the point {point!r} moves in 3-D and needs a direction", advice, ["direction"])
         return np.asarray(self.shapes[point] @ unit_vector(direction))
 
     def space_shape(self, name: str | None, direction: str | Triple) -> Vector:

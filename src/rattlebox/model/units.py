@@ -82,6 +82,7 @@ _SINGLE_CASE = {
 }
 """Units that are known in any case, since no two of them differ by it alone."""
 
+_EXAMPLES_OF_DENSITIES = {"m/s^2": ("g^2/Hz", "(m/s^2)^2/Hz"), "N": ("N^2/Hz",), "m": ("mm^2/Hz",)}
 _DENSITIES = {"m/s^2": ("m^2/s^3", "m^2/s^4/Hz", "(m/s^2)^2/Hz"), "N": ("N^2/Hz",), "m": ("m^2/Hz",)}
 
 _LONGEST_UNIT, _LONGEST_QUANTITY = 60, 400  # characters
@@ -220,7 +221,7 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
     if not known:
         raise Hint(
             f"{match[2]!r} is not the unit of a power spectral density, the square of a unit per Hz",
-            " or ".join(f'"1 {unit}"' for unit in ("g^2/Hz", "(m/s^2)^2/Hz", "N^2/Hz")),
+            " or ".join(f'"1 {name}"' for unit in units for name in _EXAMPLES_OF_DENSITIES[unit]),
         )
     factor, unit = known
     return _finite(number * factor**2), unit

@@ -116,7 +116,7 @@ def backbone(
     Raises
     ------
     CaseError
-        If the case has not exactly one load, a harmonic force; if it has a base motion, stops or a damper in a tuned mass;
+        If the case has not exactly one load, a harmonic force; if it has a base motion or a damper in a tuned mass;
         if it has no such mode, the load does not excite it, the initial state has no random part, the amplitudes do not
         rise, or a run fails.
 
@@ -177,7 +177,7 @@ def backbone(
     count = whole_number(starts, "starts", 1)
     window = whole_number(cycles[0], "cycles[0]", 1), whole_number(cycles[1], "cycles[1]", _PARTS)
     evaluate = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
-    plain = [each.model_copy(update={"loads": case.loads}) for each in different_starts(case, count)]
+    plain = [each.model_copy(update={"loads": case.loads}) for each in different_starts(case, count, "starts")]
     searches = [_Search(each, number, level) for number, each in enumerate(plain) for level in levels]
     messages: list[str] = []
     _guess(searches, target, window, evaluate)
@@ -220,7 +220,7 @@ class _Target:
             kinds = ", ".join(each.kind for each in (*case.loads, *case.base)) or "none"
             raise Hint(
                 f"the case has loads and base motions: {kinds}; a backbone needs one harmonic force and no base motion",
-                'load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")',
+                'load = rb.Harmonic(amplitude="1 N", frequency="50 Hz"), and base = ()',
             )
         for damper in case.dampers:
             if damper.point in case.modes.attached:

@@ -44,6 +44,8 @@ CYCLES = (20, 40)
 """Default numbers of cycles to skip and to evaluate on a shaker."""
 _SAMPLES = 40
 """Number of samples per cycle."""
+_ENOUGH = 20
+"""Cycles of a decay that messages advise."""
 OTHER_MOTION = "other_motion"
 """Name of the limit that a decay exceeds if its frequency is not that of the mode."""
 _OTHER_FREQUENCY = 0.1
@@ -269,7 +271,7 @@ class Remarks:
         self.warnings += row.warnings
         self.exceeded += row.exceeded
         if row.failure:
-            raise Hint(f"the run of start {number + 1} failed: {row.failure}", "rb.simulate(case), to see where")
+            raise Hint(f"the run of start {number + 1} failed: {row.failure}", row.advice)
 
 
 def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = None) -> FloatArray:
@@ -336,12 +338,12 @@ def mode_of(case: Case, number: int, point: str | None) -> CurveMode:
     )
 
 
-def random_starts(case: Case, count: int) -> list[Case]:
+def random_starts(case: Case, count: int, argument: str = "packings") -> list[Case]:
     """Return copies of the case without loads, with different random initial states."""
     rng = np.random.default_rng(case.seed)
     moving = case.particle_dampers or case.impact_dampers
     if count > 1 and case.dampers and not any(damper.has_random_start for damper in moving):
-        raise no_random_packing()
+        raise no_random_packing(argument)
     cases = []
     for number in range(count):
         dampers = tuple(damper.restarted(number, rng) for damper in moving)
@@ -349,9 +351,9 @@ def random_starts(case: Case, count: int) -> list[Case]:
     return cases
 
 
-def different_starts(case: Case, count: int) -> list[Case]:
+def different_starts(case: Case, count: int, argument: str = "packings") -> list[Case]:
     """Return the random starts of a case that differ: without dampers all are the same."""
-    return random_starts(case, count if case.dampers else 1)
+    return random_starts(case, count if case.dampers else 1, argument)
 
 
 def of_all_starts(values: NDArray[Any], count: int) -> NDArray[Any]:
@@ -401,6 +403,7 @@ class _Row(NamedTuple):
     exceeded: tuple[str, ...]
     values: FloatArray  # Damping ratios, or the work in a cycle and its rise [J]
     largest: float = math.inf  # Largest amplitude of a decay [m]
+    advice: str = "rb.simulate(case), to see where"  # for a run that failed
 
 
 def _decay(run: Run, mode: CurveMode, levels: FloatArray, way: Way) -> _Row:
@@ -411,8 +414,9 @@ def _decay(run: Run, mode: CurveMode, levels: FloatArray, way: Way) -> _Row:
     time, motion = run.motion.time.values, _modal_part(run, mode)
     try:
         bands = damping_over_amplitude(time, motion, levels)
-    except ValueError as error:  # too few cycles
-        return row._replace(failure=str(error))
+    except ValueError as error:  # too few cycles, or samples in a cycle
+        enough = f'duration = "{_ENOUGH / mode.frequency:.2g} s" or more, and the default output'
+        return row._replace(failure=str(error), advice=enough)
     other = _other_motion(bands.frequency.values, mode)
     return row._replace(
         values=bands.damping_ratio.values if way == "decay" else _energy_ratios(run, time, motion, bands, mode),

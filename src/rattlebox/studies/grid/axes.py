@@ -423,10 +423,10 @@ def packing_axis(case: Case, count: int, first: int = 0) -> dict[str, Any]:
     return {"packing": seeds}
 
 
-def no_random_packing() -> Hint:
-    """Return the error for repeated runs of a case whose initial state has no random part."""
+def no_random_packing(argument: str = "packings") -> Hint:
+    """Return the error for repeated runs of a case whose initial state has no random part; names their argument."""
     return Hint(
         "the packing has no random seed, so that all repeated runs would be equal",
-        "packing = rb.Settled(seed=1), rb.Lattice with noise, or packings = 1",
+        f"packing = rb.Settled(seed=1), rb.Lattice with noise, or {argument} = 1",
         ["packing"],
     )

@@ -169,7 +169,7 @@ class StabilityLobes(Study):
 
     case: CaseOrStructure
     damper: Any = None
-    cutting_coefficient: str | tuple[float, str] | None = None
+    cutting_coefficient: float | str | tuple[float, str] | None = None
     directional_factor: Number = 1.0
     speeds: Values | None = None
     _: KW_ONLY
@@ -196,7 +196,8 @@ class StabilityLobes(Study):
             raise Hint("directional_factor = 0: the tool does not feel the force", "a factor, such as 0.7")
         if self.teeth_in_cut is not None and self.teeth_in_cut > self.teeth:
             raise Hint(
-                f"teeth_in_cut = {self.teeth_in_cut:g} is more than the number of teeth, {self.teeth}", "both numbers"
+                f"teeth_in_cut = {self.teeth_in_cut:g} is more than the number of teeth, {self.teeth}",
+                f"teeth = {math.ceil(self.teeth_in_cut)}, or teeth_in_cut = {self.teeth}",
             )
         elastic = (self._tool.tip != 0) & (np.asarray(self._model.stiffness) > 0)
         for model, shape in ((self._bare_model, self._bare.tip), (self._model, self._tool.tip)):

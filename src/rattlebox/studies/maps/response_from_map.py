@@ -15,7 +15,7 @@ from rattlebox.analysis.chatter import minimum_real_part
 from rattlebox.analysis.describing_function import MassTable
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, at
-from rattlebox.model.modes import ModalModel
+from rattlebox.model.modes import ModalModel, main_axis
 from rattlebox.model.space import Triple, unit_vector
 from rattlebox.model.structures import StructurePart
 from rattlebox.model.units import parse, whole_number
@@ -253,7 +253,8 @@ class DamperPoints:
         self.direction = axis
         spatial = [name for name in points if name in model.spatial]
         if spatial and axis is None:
-            raise Hint(f"the point {spatial[0]!r} moves in 3-D and needs a direction", 'direction = "z"', ["direction"])
+            advice = f'direction = "{main_axis(model.shapes[spatial[0]])}"'
+            raise Hint(f"the point {spatial[0]!r} moves in 3-D and needs a direction", advice, ["direction"])
         self.shapes = np.array(
             [
                 model.shapes[name] if axis is None or name not in model.spatial else model.shapes[name] @ axis
@@ -302,7 +303,8 @@ class _Load(NamedTuple):
             return cls(-model.participation, still + 1, "acceleration of the base")
         axis = dampers.direction if direction is None else unit_vector(direction)
         if axis is None:
-            raise Hint("the base of this structure moves in 3-D", 'load_direction = "z"', ["load_direction"])
+            advice = f'load_direction = "{main_axis(model.participation)}"'
+            raise Hint("the base of this structure moves in 3-D", advice, ["load_direction"])
         base = [1.0 if own is None else float(own @ axis) for own in dampers.axes]
         return cls(-(model.participation @ axis), np.array(base), "acceleration of the base", np.asarray(axis))
 
