@@ -81,6 +81,13 @@ class TunedMass(Part):
         return self.name or ("tuned mass" if count == 1 else f"tuned mass {index + 1}")
 
     @classmethod
+    def among(cls, value: object) -> tuple[tuple[TunedMass, ...], list[Any]]:
+        """Return the tuned masses in a list or alone, and what else is there; None is nothing."""
+        several = [each for each in (value if isinstance(value, (list, tuple)) else [value]) if each is not None]
+        tuned = tuple(each for each in several if isinstance(each, cls))
+        return tuned, [each for each in several if not isinstance(each, cls)]
+
+    @classmethod
     def den_hartog(cls, structure: StructurePart, mass: Quantity, *, mode: int = 1, **options: Any) -> TunedMass:
         """Return the tuned mass that minimises the largest response to a harmonic force on the structure.
 

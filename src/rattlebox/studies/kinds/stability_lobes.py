@@ -248,16 +248,10 @@ class StabilityLobes(Study):
             raise Hint("speeds must be greater than zero and rising", advice, ["speeds"])
         return speeds
 
-    @property
-    def _given(self) -> list[Any]:
-        """What `damper` lists."""
-        several = self.damper if isinstance(self.damper, (list, tuple)) else [self.damper]
-        return [each for each in several if each is not None]
-
     @cached_property
     def _damper(self) -> Any:
         """Loss map, damper or None; tuned masses are part of the model."""
-        others = [each for each in self._given if not isinstance(each, TunedMass)]
+        _, others = TunedMass.among(self.damper)
         if len(others) > 1 or len(self.case.dampers) > 1:
             owner = "damper lists" if len(others) > 1 else "the case has"
             raise Hint(
@@ -273,7 +267,7 @@ class StabilityLobes(Study):
 
     @cached_property
     def _tuned(self) -> tuple[TunedMass, ...]:
-        return tuple(each for each in self._given if isinstance(each, TunedMass))
+        return TunedMass.among(self.damper)[0]
 
     @cached_property
     def _bare_model(self) -> ModalModel:
@@ -398,7 +392,7 @@ class StabilityLobes(Study):
         )
         return {name: str(getattr(self, name)) for name in names} | {
             "case": self.case.to_toml(),
-            "damper": joined([each if isinstance(each, str) else type(each).__name__ for each in self._given]),
+            "damper": self.damper if isinstance(self.damper, str) else type(self.damper).__name__,
             "speeds": self._speeds.tolist(),
             "amplitudes": [] if self._own_amplitudes is None else self._own_amplitudes.tolist(),
         }
