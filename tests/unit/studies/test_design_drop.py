@@ -201,7 +201,7 @@ class Killed(BaseException):
     """Stop of a process, after which nothing is stored."""
 
 
-@pytest.mark.parametrize("gaps", [GAPS[3:], ("0.2 mm", "4 mm")], ids=["all combinations", "between bounds"])
+@pytest.mark.parametrize("gaps", [GAPS[3:], ("0.2 mm", "1.4 mm")], ids=["all combinations", "between bounds"])
 def test_a_kill_at_any_stage_changes_nothing(gaps: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """After a kill in any evaluation, whatever was finished before, the same trials are dropped at the same stages."""
     options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "cycles": (4, 20), "packings": 8, "drop": True}
@@ -218,7 +218,7 @@ def test_a_kill_at_any_stage_changes_nothing(gaps: Any, tmp_path: Path, monkeypa
     monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
     one = shaken(with_ball(), {GAP: gaps}, workers=1, **options)
     evaluations = 10**9 - left[0]
-    assert set(one.cycles_run.values.tolist()) == ({8, 24} if isinstance(gaps, list) else {24}) and one.dropped.any()
+    assert set(one.cycles_run.values.tolist()) == {8, 24} and one.dropped.any()
     for step in range(3, evaluations + 1, 7):
         store = tmp_path / str(step)
         for count in (step, max(2, evaluations - step)):
@@ -243,11 +243,18 @@ def transients(generator: np.random.Generator, designs: int) -> Any:
     return factor
 
 
-@pytest.mark.parametrize("scatter", [0.02, 0.1], ids=["little scatter", "much scatter"])
-def test_transients_do_not_decide(scatter: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In 100 planted searches whose values relax or creep by up to 80 % after few cycles, the best design is found.
+@pytest.mark.parametrize(
+    ("scatter", "count"),
+    [
+        (0.02, 15),
+        pytest.param(0.02, 100, marks=pytest.mark.slow),
+        pytest.param(0.1, 100, marks=pytest.mark.slow),
+    ],
+)
+def test_transients_do_not_decide(scatter: float, count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In planted searches whose values relax or creep by up to 80 % after few cycles, the best design is found.
 
-    Without the terms for the transient, five of those with little scatter had another answer.
+    Without the terms for the transient, five of the 100 with little scatter had another answer.
     """
     generator = np.random.default_rng(11)
 
@@ -268,7 +275,7 @@ def test_transients_do_not_decide(scatter: float, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
     monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
     few, wrong = [], 0
-    for _ in range(100):
+    for _ in range(count):
         planted, noise, factor = (
             generator.uniform(1, 4, 9),
             scatter * generator.normal(size=(9, 12)),
