@@ -132,9 +132,8 @@ def _limits(study: xr.Dataset) -> Iterator[Limit]:
         yield from mode_limits(case)
     yield limit(_NAME, "other motions", "one branch")
     step = float(study.attrs.get("step", np.nan))
-    yield limit(
-        _NAME, "steps", counted(study.sizes["point"], "point") + (f", steps up to {step:g}" if step > 0 else "")
-    )
+    longest = f", steps up to {step:g}" if step > 0 else ""
+    yield limit(_NAME, "steps", counted(study.sizes["point"], "point") + longest)
     if (errors := _determinant_errors(study)).size:
         yield limit(_NAME, "determinant", f"{errors.max():.1e}, largest", f"{_DETERMINANT:g}")
 
