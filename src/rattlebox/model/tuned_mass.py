@@ -363,6 +363,9 @@ def _eigenmodes(stiffness: Vector, damping: Vector) -> tuple[Vector, Vector, Vec
     # The eigenvectors of a symmetric matrix are orthonormal: the new modes are mass-normalised as well. A rigid-body mode
     # has an eigenvalue of rounding, whose root would be a frequency.
     values, vectors = np.linalg.eigh(_last(stiffness))
+    # The sign of an eigenvector is arbitrary. Over a grid it is that of the first variant, so that shapes are smooth there.
+    first = vectors[(0,) * (vectors.ndim - 2)]
+    vectors = np.where(np.sum(vectors * first, axis=-2, keepdims=True) < 0, -vectors, vectors)
     largest = np.abs(values).max(axis=-1, keepdims=True)
     values = np.moveaxis(np.where(np.abs(values) < 1e-12 * largest, 0.0, values), -1, 0)
     in_modes = np.moveaxis(np.swapaxes(vectors, -1, -2) @ _last(damping) @ vectors, (-2, -1), (0, 1))
