@@ -35,6 +35,8 @@ Vector = NDArray[np.float64]
 
 _MOST_LINES = 8
 """Number of impacts that are printed."""
+_SMALL = 1e-6
+"""Largest rounding error of a determinant, over its value, with which it is compared with its rule."""
 
 
 class OrbitImpact(NamedTuple):
@@ -112,7 +114,8 @@ class Orbit:
         Half the peak-to-peak displacement of each point [m].
     determinant_error : float
         Difference of the product of the multipliers from that of the loss of the impacts and the damping, over its value;
-        NaN if a contact is not a hard impact with a constant restitution.
+        NaN if a contact is not a hard impact with a constant restitution, or next to grazing, where the rounding error of
+        the product exceeds 1e-6.
     sticks : bool
         Whether bodies stick together for a part of the period.
 
@@ -355,4 +358,8 @@ def _determinant_error(case: Case, motion: Motion, matrix: Vector, period: float
     if not all(isinstance(contact.restitution, _core.ConstantRestitution) for contact in problem.contacts):
         return math.nan
     rule = math.exp(-2 * period * float(np.sum(problem.mode_decay))) * float(np.prod(motion.impacts.restitution**2))
-    return abs(float(np.linalg.det(matrix)) / rule - 1) if rule > ON_CIRCLE**2 else math.nan
+    # The smallest multiplier has the rounding error of the largest one, which grows without bound next to grazing.
+    sizes = np.abs(np.linalg.eigvals(matrix))
+    rounding = float(np.finfo(float).eps * sizes.max() / max(sizes.min(), np.finfo(float).tiny))
+    is_known = rule > ON_CIRCLE**2 and rounding < _SMALL
+    return abs(float(np.linalg.det(matrix)) / rule - 1) if is_known else math.nan
