@@ -192,7 +192,7 @@ def state_of(near: object) -> Vector:
     if state.ndim != 1 or not np.isfinite(state).all():
         raise Hint(
             f"near = {near!r:.60} is not a run, a periodic motion or a state",
-            'a run, its file "out/run.nc", or a list of numbers in SI units',
+            'a run such as rb.simulate(case), its file "out/run.nc", or a list of numbers in SI units',
         )
     return state
 

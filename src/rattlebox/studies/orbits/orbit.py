@@ -35,7 +35,7 @@ Vector = NDArray[np.float64]
 
 _MOST_LINES = 8
 """Number of impacts that are printed."""
-_SMALL = 1e-6
+_SMALL = 1e-8
 """Largest rounding error of a determinant, over its value, with which it is compared with its rule."""
 
 
@@ -115,7 +115,7 @@ class Orbit:
     determinant_error : float
         Difference of the product of the multipliers from that of the loss of the impacts and the damping, over its value;
         NaN if a contact is not a hard impact with a constant restitution, or next to grazing, where the rounding error of
-        the product exceeds 1e-6.
+        the product exceeds 1e-8.
     sticks : bool
         Whether bodies stick together for a part of the period.
 
