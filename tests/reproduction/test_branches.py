@@ -21,8 +21,9 @@ def data():
 
 def test_branch_of_two_impacts_is_the_closed_form(data):
     """Speeds, and the range in which the motion is stable, are those of the exact motion with two impacts a cycle."""
-    symmetric = data.isel(point=(data.branch == 0).values)
-    assert set(symmetric.contacts.values) == {2.0}
+    # Behind a grazing the branch goes on with more impacts.
+    symmetric = data.isel(point=((data.branch == 0) & (data.contacts == 2)).values)
+    assert symmetric.point.size > 100
     for point in range(10, symmetric.point.size - 10, 20):
         one = symmetric.isel(point=point)
         exact = min(
@@ -36,8 +37,9 @@ def test_branch_of_two_impacts_is_the_closed_form(data):
 
 def test_symmetry_is_lost_at_13_6_hertz(data):
     """The pitchfork and the two torus bifurcations are where the exact multiplier crosses one."""
-    special = data.isel(point=data.special.values != "")
+    special = data.isel(point=((data.branch == 0) & (data.contacts == 2)).values & (data.special.values != ""))
     for kind in ("pitchfork", "torus"):
+        assert kind in special.special.values
         for frequency in special.located.values[special.special.values == kind]:
             below, above = (
                 paper_two_impacts(branches.AMPLITUDE, frequency + step)[0].multiplier for step in (-1e-4, 1e-4)
