@@ -14,7 +14,15 @@ from rattlebox.studies.orbits.curve import Curve, Row
 from rattlebox.studies.orbits.find import size_of
 from rattlebox.studies.orbits.motion import GapLines
 from rattlebox.studies.orbits.shooting import ReturnMap, Shot
-from rattlebox.studies.orbits.unfolding import Touch, Unfolding, gap_slopes, stretch_misses, touch_at, unfolding_at
+from rattlebox.studies.orbits.unfolding import (
+    Touch,
+    Unfolding,
+    gap_slopes,
+    stretch_misses,
+    touch_at,
+    touches,
+    unfolding_at,
+)
 
 if TYPE_CHECKING:
     from rattlebox.studies.orbits.branch import SpecialPoint
@@ -95,7 +103,7 @@ class GrazingCurve(Curve):
         shot = returns.shoot(state[None], numbers)
         if not shot.is_complete:
             return None
-        miss = self._miss(returns, shot)
+        miss = self._miss(returns, shot, state, numbers)
         if miss is None:
             return None
         before = returns.stretch(state, numbers, 0.0, miss.share)
@@ -106,14 +114,18 @@ class GrazingCurve(Curve):
         right = np.append(shot.residual[0] / scale, gap / self._size - self._level)
         return right, np.vstack([self.scaled_slopes(shot, scale), row])
 
-    def _miss(self, returns: ReturnMap, shot: Shot) -> Touch | None:
+    def _miss(self, returns: ReturnMap, shot: Shot, state: Vector, values: Sequence[float]) -> Touch | None:
         """Return the near miss that grazes on the curve; None if there is an impact in its place."""
         stretch = shot.ends[0].transition
         if stretch is None or len(stretch.contacts) != self._impacts:
             return None
-        misses = stretch_misses(stretch)
-        away = [abs((self._absolute(returns, miss) - self._share + 0.5) % 1.0 - 0.5) for miss in misses]
-        return misses[int(np.argmin(away))] if misses and min(away) < _SAME_TIME else None
+        # A stretch may pass over a near miss between two impacts, which samples of the motion show.
+        for sampled in (False, True):
+            misses = touches(returns, state, values, impact=False) if sampled else stretch_misses(stretch)
+            away = [abs((self._absolute(returns, miss) - self._share + 0.5) % 1.0 - 0.5) for miss in misses]
+            if misses and min(away) < _SAME_TIME:
+                return misses[int(np.argmin(away))]
+        return None
 
     def row(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector, normal: Vector) -> Row | None:
         """Return the motion that grazes, reached from one with a small gap, and the values of the parameters there."""
@@ -137,6 +149,7 @@ class GrazingCurve(Curve):
         matrix, right = np.vstack([slopes, normal]), np.zeros(n + 2)
         right[n] = -_LEVELS[0][-1]
         change = np.linalg.solve(matrix, right)
-        if row is not None and (miss := self._miss(returns, returns.shoot(state[None], values.tolist()))) is not None:
+        shot = returns.shoot(state[None], values.tolist())
+        if row is not None and (miss := self._miss(returns, shot, state, values.tolist())) is not None:
             self._share = self._absolute(returns, miss)
         return None if row is None else (row[0], values + change[n:] * self.width)
