@@ -86,7 +86,7 @@ Linearised linearise(const ProblemNumbers& packed, const std::optional<Doubles<1
     if (derivatives) run.listener = &linearisation;
     if (!smooth) linearisation.refuse(NotLinear::kink, -1);
     linearisation.check_start();
-    const std::size_t n = problem.motion_size(), count = linearisation.columns();
+    const std::size_t n = problem.motion_size(), count = linearisation.tangents().count;
     std::vector<real> reached, states, rates, slopes_out, misses;
     run_jobs(
         1, 1, 1,
@@ -100,13 +100,12 @@ Linearised linearise(const ProblemNumbers& packed, const std::optional<Doubles<1
                               run.state.y.begin() + static_cast<std::ptrdiff_t>(n));
                 const std::vector<real>& rate = linearisation.rates();
                 rates.insert(rates.end(), rate.begin(), rate.end());
-                if (derivatives)
-                    slopes_out.insert(slopes_out.end(), linearisation.tangent().begin(),
-                                      linearisation.tangent().end());
+                const std::vector<real>& slope = linearisation.tangents().matrix;
+                if (derivatives) slopes_out.insert(slopes_out.end(), slope.begin(), slope.end());
             }
         },
         [](std::size_t) { return true; });
-    for (const NearMiss& miss : linearisation.misses())
+    for (const NearMiss& miss : linearisation.tangents().misses)
         misses.insert(misses.end(), {miss.time, miss.gap, miss.curvature});
     Linearised result;
     const std::size_t rows = reached.size();
@@ -124,9 +123,9 @@ Linearised linearise(const ProblemNumbers& packed, const std::optional<Doubles<1
     result.stopped_at = run.result.stopped_at;
     result.stopped_contact = run.result.stopped_contact;
     result.stopped_value = run.result.stopped_value;
-    result.refused = linearisation.refused();
-    result.refused_at = linearisation.refused_at();
-    result.refused_contact = linearisation.refused_contact();
+    result.refused = linearisation.tangents().refused;
+    result.refused_at = linearisation.tangents().refused_at;
+    result.refused_contact = linearisation.tangents().refused_contact;
     return result;
 }
 
