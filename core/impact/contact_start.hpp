@@ -82,7 +82,7 @@ public:
             return;
         }
         if (run_.hard()) return hard_.impact(c);
-        if (problem_.settings.collocation && !run_.listener && isolated_.solve(c, speed, r.e)) return;
+        if (problem_.settings.collocation && isolated_.solve(c, speed, r.e)) return;
         start(c, speed, r.e, 0);
     }
 

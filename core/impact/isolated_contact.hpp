@@ -488,6 +488,14 @@ public:
         return best;
     }
 
+    // The solution at the nodes: time since the start, dt/dx, fourth root of the overlap, its rate, modes.
+    const Row& time() const { return integral_[clock]; }
+    const Row& time_slope() const { return slope_[clock]; }
+    const Row& root() const { return x_; }
+    const Row& rate() const { return w_; }
+    const Row& displacement(std::size_t mode) const { return q_[mode]; }
+    const Row& velocity(std::size_t mode) const { return p_[mode]; }
+
 private:
     // Advances the balls. The positions of the pair in contact follow from momentum and overlap.
     void advance_balls(const Instant& now, real drift, State& out) const {

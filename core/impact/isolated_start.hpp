@@ -143,6 +143,7 @@ public:
                               ledger_.viscous - ledger_.load_work - ledger_.base_work;
         const real size = run_.contact(c).mass * speed * speed + energy(run_.state) * energy_beside_contact;
         if (!(std::fabs(residual) < run_.resolution() * size)) return false;
+        if (run_.listener && !run_.listener->isolated(c, speed, e, contact_, end_)) return false;
         run_.result.permitted_error += run_.resolution() * size;
 
         Impact impact;

@@ -64,32 +64,6 @@ private:
         return y;
     }
 
-    // Solves a dense system with partial pivoting; columns of `right` are replaced by the solutions.
-    static void solve(std::vector<real>& a, std::vector<real>& right, std::size_t size, std::size_t columns) {
-        for (std::size_t i = 0; i < size; ++i) {
-            std::size_t pivot = i;
-            for (std::size_t r = i + 1; r < size; ++r)
-                if (std::fabs(a[r * size + i]) > std::fabs(a[pivot * size + i])) pivot = r;
-            if (pivot != i) {
-                std::swap_ranges(&a[i * size], &a[i * size] + size, &a[pivot * size]);
-                std::swap_ranges(&right[i * columns], &right[i * columns] + columns, &right[pivot * columns]);
-            }
-            for (std::size_t r = i + 1; r < size; ++r) {
-                const real factor = a[r * size + i] / a[i * size + i];
-                if (factor == 0) continue;
-                for (std::size_t j = i + 1; j < size; ++j) a[r * size + j] -= factor * a[i * size + j];
-                for (std::size_t j = 0; j < columns; ++j)
-                    right[r * columns + j] -= factor * right[i * columns + j];
-            }
-        }
-        for (std::size_t i = size; i-- > 0;)
-            for (std::size_t c = 0; c < columns; ++c) {
-                real sum = right[i * columns + c];
-                for (std::size_t j = i + 1; j < size; ++j) sum -= a[i * size + j] * right[j * columns + c];
-                right[i * columns + c] = sum / a[i * size + i];
-            }
-    }
-
     // Computes the parts B of all bodies in the approach rates.
     void find_shares(const System& system) {
         share_.assign(system.active.size() * bodies(), 0.0);
@@ -398,6 +372,7 @@ private:
         }
     }
 
+public:
     // Displacement and velocity of a body at the end of the step, and of the overlap in the same way.
     std::pair<real, real> end_of(const Row& a, real x0, real v0) const {
         real first = 0, second = 0;
@@ -408,7 +383,46 @@ private:
         return {x0 + h * (v0 + h * second), v0 + h * first};
     }
 
-public:
+    // Solves a dense system with partial pivoting; columns of `right` are replaced by the solutions.
+    static void solve(std::vector<real>& a, std::vector<real>& right, std::size_t size, std::size_t columns) {
+        for (std::size_t i = 0; i < size; ++i) {
+            std::size_t pivot = i;
+            for (std::size_t r = i + 1; r < size; ++r)
+                if (std::fabs(a[r * size + i]) > std::fabs(a[pivot * size + i])) pivot = r;
+            if (pivot != i) {
+                std::swap_ranges(&a[i * size], &a[i * size] + size, &a[pivot * size]);
+                std::swap_ranges(&right[i * columns], &right[i * columns] + columns, &right[pivot * columns]);
+            }
+            for (std::size_t r = i + 1; r < size; ++r) {
+                const real factor = a[r * size + i] / a[i * size + i];
+                if (factor == 0) continue;
+                for (std::size_t j = i + 1; j < size; ++j) a[r * size + j] -= factor * a[i * size + j];
+                for (std::size_t j = 0; j < columns; ++j)
+                    right[r * columns + j] -= factor * right[i * columns + j];
+            }
+        }
+        for (std::size_t i = size; i-- > 0;)
+            for (std::size_t c = 0; c < columns; ++c) {
+                real sum = right[i * columns + c];
+                for (std::size_t j = i + 1; j < size; ++j) sum -= a[i * size + j] * right[j * columns + c];
+                right[i * columns + c] = sum / a[i * size + i];
+            }
+    }
+
+    // The linear equations of the last step: part of a body in the rate of an overlap, response of a mode to
+    // a force, and changes of rate and overlap of contact j at node i by the force of contact l at node m.
+    real share(std::size_t j, std::size_t body) const { return share_[j * bodies() + body]; }
+    real inverse_mass(std::size_t body) const { return inverse_mass_[body]; }
+    Row respond(std::size_t mode, const Row& f) const { return multiply(response_[mode], f); }
+    Row integrate_once(const Row& f) const { return multiply(once_, f); }
+    Row integrate_twice(const Row& f) const { return multiply(twice_, f); }
+    real rate_by_force(std::size_t j, std::size_t l, std::size_t i, std::size_t m) const {
+        return by_rate_[j * force.size() + l].at[i][m];
+    }
+    real overlap_by_force(std::size_t j, std::size_t l, std::size_t i, std::size_t m) const {
+        return by_overlap_[j * force.size() + l].at[i][m];
+    }
+
     // Computes the integrated state at the end of the step (part = 1), or by interpolation within it.
     void state_at(const System& system, const real* y, real part, std::vector<real>& out) const {
         const std::size_t m = modes(), clock = system.time_index();

@@ -186,9 +186,7 @@ public:
     // Whether all closed contacts have lasted so long that long steps may pay. The explicit steps before keep
     // ordinary impacts as they are.
     bool may_last() const {
-        if (run_.listener || run_.system.active.empty() || !run_.released.empty() ||
-            !problem_.coupling.empty())
-            return false;
+        if (run_.system.active.empty() || !run_.released.empty() || !problem_.coupling.empty()) return false;
         for (const Active& a : run_.system.active)
             if (a.steps < a.wait || a.state.phase == ContactState::yielding) return false;
         for (RunState::Phase p : run_.phases)
@@ -210,13 +208,14 @@ public:
         bool advanced = false;
         for (real h = 1.5 * shortest;;) {
             if (run_.is_stopped()) return advanced;
+            const real now = run_.state.t + motion_.y[clock], left = remaining - motion_.y[clock];
             if (is_at_rest(frequency)) {
                 run_.meet_stop();
                 while (output_.is_due(run_.state.t + remaining)) sample_at_rest(output_.next_time());
+                if (run_.listener) run_.listener->rest(motion_.y.data(), now, left);
                 rest_until(remaining);
                 return true;
             }
-            const real now = run_.state.t + motion_.y[clock], left = remaining - motion_.y[clock];
             if (h < shortest || shortest > longest) return advanced;
             const bool last = h >= left, is_short = !advanced && left < shortest;
             if (last || is_short) run_.meet_stop();
@@ -234,6 +233,7 @@ public:
             ++run_.result.counts.contact_steps;
             run_.result.permitted_error += motion_.permitted_error;
             step_.state_at(run_.system, motion_.y.data(), 1, motion_.trial);
+            if (run_.listener) run_.listener->long_step(motion_.y.data(), motion_.trial.data(), step_, now);
             sample(now, last ? run_.state.t + remaining : now + step);
             if (problem_.settings.peaks) record_peaks();
             std::swap(motion_.y, motion_.trial);

@@ -17,9 +17,11 @@
 #pragma once
 
 #include "impact/run_listener.hpp"
+#include "impact/tangent_collocation.hpp"
 #include "impact/tangent_contacts.hpp"
 #include "impact/tangent_flights.hpp"
 #include "impact/tangent_impacts.hpp"
+#include "impact/tangent_lasting.hpp"
 
 namespace rattlebox {
 
@@ -29,11 +31,13 @@ class Linearisation final : public RunListener {
     TangentLaws laws_;
     TangentImpacts impacts_;
     TangentContacts contacts_;
+    TangentCollocation collocation_;
+    TangentLasting lasting_;
 
 public:
     Linearisation(RunState& run, std::vector<Problem> slopes, bool from_case)
         : t_(run, std::move(slopes), from_case), flights_(t_), laws_(t_), impacts_(t_, laws_),
-          contacts_(t_, laws_) {}
+          contacts_(t_, laws_), collocation_(t_, laws_), lasting_(t_, laws_) {}
     Linearisation(const Linearisation&) = delete; // its parts refer to each other
     Linearisation& operator=(const Linearisation&) = delete;
 
@@ -62,6 +66,19 @@ public:
     void graze(int c) override { refuse(NotLinear::grazing, c); }
     void touch(int c, real speed, real e) override { contacts_.touch(c, speed, e); }
     void step(const real* y, real length) override { contacts_.step(y, length); }
+    bool isolated(int c, real speed, real e, const IsolatedContact& solution, const State& end) override {
+        contacts_.touch(c, speed, e);
+        const HertzTsuji& law = *t_.contact(c).normal.get_if<HertzTsuji>();
+        if (!collocation_.advance(c, law, initial_state(law, e, speed), solution, end)) return false;
+        const State& start = t_.run.state;
+        contacts_.note_misses(start.y.data(), end.y.data(), start.t, end.t - start.t, c);
+        return true;
+    }
+    void long_step(const real* y, const real* end, const LastingContact& step, real time) override {
+        lasting_.advance(y, step, time);
+        contacts_.note_misses(y, end, time, step.h);
+    }
+    void rest(const real* y, real time, real length) override { lasting_.rest(y, time, length); }
     void end_phase(std::size_t j) override { contacts_.end_phase(j); }
 };
 

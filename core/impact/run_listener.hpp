@@ -9,6 +9,8 @@
 namespace rattlebox {
 
 class Flight;
+class IsolatedContact;
+class LastingContact;
 
 // The impulses of one instant: contacts that stay closed come first.
 struct Impulses {
@@ -38,6 +40,13 @@ struct RunListener {
     virtual void touch(int contact, real speed, real e) = 0;
     // The closed contacts are integrated from y over a length of the transformed time.
     virtual void step(const real* y, real length) = 0;
+    // An isolated soft contact was solved as a whole up to a state; returns whether that will do.
+    virtual bool isolated(int contact, real speed, real e, const IsolatedContact& solution,
+                          const State& end) = 0;
+    // The closed contacts make a long step from y to `end` at a time.
+    virtual void long_step(const real* y, const real* end, const LastingContact& step, real time) = 0;
+    // Nothing moves in y from a time for a length.
+    virtual void rest(const real* y, real time, real length) = 0;
     // A phase of a closed contact ends now.
     virtual void end_phase(std::size_t active) = 0;
 };

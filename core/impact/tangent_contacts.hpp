@@ -10,7 +10,7 @@ class TangentContacts {
     Tangents& t_;
     TangentLaws& laws_;
     std::vector<real> force_, ball_force_, cavity_force_;
-    std::vector<real> extended_, extended_end_, scale_, sizes_;
+    std::vector<real> extended_, extended_end_, scale_, sizes_, rounding_;
     Dop853 integrator_;
 
     // dt/dtau / x_j^3, which is finite where x_j is zero.
@@ -125,10 +125,37 @@ class TangentContacts {
         }
     }
 
+    // Computes the rounding errors of the derivatives of the speeds after a step, which follow from those of
+    // overlaps: where bodies move together, the derivatives of the speeds may be much smaller than these.
+    void find_rounding() {
+        System& system = t_.run.system;
+        const real length = extended_end_[system.time_index()] - extended_[system.time_index()];
+        rounding_.assign(t_.count, 0.0);
+        for (std::size_t j = 0; j < system.active.size(); ++j) {
+            real steep = 0;
+            for (const std::vector<real>* y : {&extended_, &extended_end_})
+                if (const real overlap = square(square((*y)[system.x_index(j)])); overlap > 0)
+                    steep = std::fmax(steep, std::fabs(system.force(y->data(), j)) / overlap);
+            const Contact& c = t_.contact(system.active[j].contact);
+            const real part = 8 * epsilon * steep / c.mass * length;
+            const auto add = [&](real weight, std::size_t position) {
+                const real* x = extended_.data() + system.size() + position * t_.count;
+                for (std::size_t d = 0; d < t_.count; ++d) rounding_[d] += std::fabs(part * weight * x[d]);
+            };
+            t_.each_side(c, [&](real, int body) {
+                if (body != wall) return add(1, t_.position_row(body));
+                for (std::size_t k = 0; k < t_.modes; ++k) add(t_.damper_of(t_.problem, c).shape[k], 2 * k);
+            });
+            for (std::size_t p = 0; p < t_.parameters(); ++p)
+                rounding_[t_.size + p] += std::fabs(part * t_.damper_of(t_.slopes[p], c).clearance);
+        }
+    }
+
     // Sets the permitted errors of a step: those of the derivatives of velocities, as parts of the largest
     // one in the same direction.
     void set_scales(std::size_t n) {
         constexpr real tolerance = 1e-11;
+        find_rounding();
         scale_.assign(extended_.size(), infinity);
         for (std::size_t d = 0; d < t_.count; ++d) {
             real& size = sizes_[d]; // of the largest step so far: a singular derivative begins small
@@ -140,21 +167,8 @@ class TangentContacts {
             each_velocity([&](std::size_t i) {
                 size = std::fmax(size, std::fmax(std::fabs(extended_[i]), std::fabs(extended_end_[i])));
             });
-            each_velocity([&](std::size_t i) { scale_[i] = size > 0 ? tolerance * size : infinity; });
-        }
-    }
-
-    // The closest approach within a step beside closed contacts, on the parabola through both ends.
-    void note_misses_of_step(const real* y, const real* end) {
-        const real length = end[t_.run.system.time_index()] - y[t_.run.system.time_index()];
-        if (!(length > 0)) return;
-        for (int c = 0; c < t_.problem.contact_count(); ++c) {
-            if (t_.run.phase(c) != RunState::Phase::open) continue;
-            const Gap before = gap(t_.problem, t_.contact(c), y), after = gap(t_.problem, t_.contact(c), end);
-            if (!(before.rate < 0 && after.rate >= 0)) continue;
-            const real curvature = (after.rate - before.rate) / length;
-            t_.note_miss(c, {t_.run.state.t + y[t_.run.system.time_index()] - before.rate / curvature,
-                             before.value - 0.5 * square(before.rate) / curvature, curvature});
+            const real permitted = std::fmax(tolerance * size, rounding_[d]);
+            each_velocity([&](std::size_t i) { scale_[i] = permitted > 0 ? permitted : infinity; });
         }
     }
 
@@ -221,7 +235,21 @@ public:
                            : largest_growth;
         }
         std::copy(extended_.begin() + static_cast<std::ptrdiff_t>(n), extended_.end(), t_.matrix.begin());
-        note_misses_of_step(y, extended_.data());
+        const std::size_t clock = t_.run.system.time_index();
+        note_misses(y, extended_.data(), t_.run.state.t + y[clock], extended_[clock] - y[clock]);
+    }
+
+    // The closest approach within a step beside closed contacts, on the parabola through both ends.
+    void note_misses(const real* y, const real* end, real time, real length, int except = -1) {
+        if (!(length > 0)) return;
+        for (int c = 0; c < t_.problem.contact_count(); ++c) {
+            if (c == except || t_.run.phase(c) != RunState::Phase::open) continue;
+            const Gap before = gap(t_.problem, t_.contact(c), y), after = gap(t_.problem, t_.contact(c), end);
+            if (!(before.rate < 0 && after.rate >= 0)) continue;
+            const real curvature = (after.rate - before.rate) / length;
+            t_.note_miss(c, {time - before.rate / curvature,
+                             before.value - 0.5 * square(before.rate) / curvature, curvature});
+        }
     }
 
     void end_phase(std::size_t j) {

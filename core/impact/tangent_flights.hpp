@@ -217,10 +217,16 @@ class TangentFlights {
                 const real now = gap(t_.problem, t_.contact(c), state_.y.data()).rate;
                 const real last = std::exchange(before[at], now);
                 if (i == 0 || !(last < 0 && now >= 0) || t_.run.phase(c) != RunState::Phase::open) continue;
-                real low = length * (i - 1) / pieces, high = length * i / pieces;
-                for (int half = 0; half < 50; ++half) {
-                    const real middle = 0.5 * (low + high);
-                    (rate_at(c, middle) < 0 ? low : high) = middle;
+                // By the Illinois algorithm, as in impact/closed_motion.hpp; the gap is flat there.
+                real low = length * (i - 1) / pieces, high = length * i / pieces, below = last, above = now;
+                int side = 0;
+                for (int pass = 0; pass < 40 && above > 0 && high - low > 1e-9 * length; ++pass) {
+                    const real between = low - (high - low) * below / (above - below);
+                    const real rate = rate_at(c, between);
+                    (rate < 0 ? low : high) = between;
+                    (rate < 0 ? below : above) = rate;
+                    if (const int moved = rate < 0 ? 1 : -1; std::exchange(side, moved) == moved)
+                        (rate < 0 ? above : below) *= 0.5;
                 }
                 const real width = 1e-3 * length / pieces;
                 const real from = std::fmax(high - width, 0.0), to = std::fmin(high + width, length);

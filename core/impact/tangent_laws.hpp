@@ -110,9 +110,10 @@ public:
             bool smooth = true;
             const bool moves =
                 std::any_of(argument_slope.begin(), argument_slope.end(), [](real v) { return v != 0; });
-            if (moves && argument > 0)
-                smooth = differentiate<5>([&](real h) { return numbers_of(state(law, h, nullptr, 0.0)); },
-                                          1 / argument, slope);
+            const auto at = [&](real h) { return numbers_of(state(law, h, nullptr, 0.0)); };
+            const bool is_constant =
+                moves && argument > 0 && at(0) == at(0.01 * argument) && at(0) == at(-0.01 * argument);
+            if (moves && argument > 0 && !is_constant) smooth = differentiate<5>(at, 1 / argument, slope);
             for (std::size_t i = 0; i < 5; ++i)
                 for (std::size_t d = 0; d < t_.count; ++d) (*columns[i])[d] = slope[i] * argument_slope[d];
             for (std::size_t p = 0; p < t_.parameters(); ++p) {

@@ -193,6 +193,8 @@ struct Tangents {
     // The derivatives of the signal of a load between knots: constant, slope and waves.
     struct SignalSlope {
         real constant = 0, sine = 0, cosine = 0, cosine_slope = 0; // (cosine + cosine_slope s) cos + sine sin
+
+        bool is_any() const { return constant != 0 || sine != 0 || cosine != 0 || cosine_slope != 0; }
     };
     SignalSlope signal_slope(const Piece& piece, const Signal& signal, const Signal& slope) const {
         SignalSlope s;
@@ -215,6 +217,12 @@ struct Tangents {
         if (s.cosine != 0 || s.cosine_slope != 0)
             sum += (s.cosine + s.cosine_slope * since) * std::cos(angle);
         return sum;
+    }
+
+    static real signal_rate(const Piece& piece, real t) {
+        if (piece.amplitude == 0) return piece.slope;
+        const real angle = piece.frequency * (t - piece.origin) + piece.phase;
+        return piece.slope + piece.amplitude * piece.frequency * std::cos(angle);
     }
 };
 
