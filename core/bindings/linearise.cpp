@@ -70,6 +70,13 @@ Linearised linearise(const ProblemNumbers& packed, const std::optional<Doubles<1
         slopes = derivatives_of(problem, batch, weights, coarse, smooth);
     else
         batch.apply(0);
+    // A load whose amplitude is a parameter acts also where it is zero.
+    constexpr real barely = 1e-300;
+    for (const Problem& slope : slopes)
+        for (std::size_t l = 0; l < problem.loads.size(); ++l)
+            if (real& amplitude = problem.loads[l].signal.amplitude;
+                amplitude == 0 && slope.loads[l].signal.amplitude != 0)
+                amplitude = barely;
     problem.settings.peaks = false;
     problem.settings.duration = times(times.shape(0) - 1);
     Trajectory trajectory(problem);

@@ -493,6 +493,9 @@ public:
     const Row& time_slope() const { return slope_[clock]; }
     const Row& root() const { return x_; }
     const Row& rate() const { return w_; }
+    const Row& acceleration() const { return a_; } // closing
+    const PhaseGrid& grid() const { return grid_; }
+    const Row& force(std::size_t mode) const { return force_[mode]; }
     const Row& displacement(std::size_t mode) const { return q_[mode]; }
     const Row& velocity(std::size_t mode) const { return p_[mode]; }
 

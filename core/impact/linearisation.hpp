@@ -69,7 +69,9 @@ public:
     bool isolated(int c, real speed, real e, const IsolatedContact& solution, const State& end) override {
         contacts_.touch(c, speed, e);
         const HertzTsuji& law = *t_.contact(c).normal.get_if<HertzTsuji>();
-        if (!collocation_.advance(c, law, initial_state(law, e, speed), solution, end)) return false;
+        if (!collocation_.advance(c, law, initial_state(law, e, speed), speed, contacts_.slower(), solution,
+                                  end))
+            return false;
         const State& start = t_.run.state;
         contacts_.note_misses(start.y.data(), end.y.data(), start.t, end.t - start.t, c);
         return true;

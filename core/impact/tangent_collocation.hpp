@@ -1,405 +1,413 @@
 // Derivatives through an isolated contact that was solved as a whole (impact/isolated_contact.hpp).
 //
-// The derivatives of a converged solution solve the equations linearised about it, at the same nodes. With
-// A the matrix of the integrals up to the nodes, s = dt/dx, f' the derivative of the contact force at a fixed
-// time, g' that of the gap, and K and C those of the force in overlap and rate:
+// The derivatives of the converged solution solve its equations, linearised about it, at the same nodes x in
+// the phase angle. There they are as smooth as the solution itself; at fixed times the derivative of the
+// force is singular where the overlap vanishes. With R = ln r, the closing acceleration a, dt/dx = s(R, a)
+// and dR/dx = n(R, a), the derivatives at fixed x are
 //
-//     p = s f'      g' = g'(free) + A s A p / m      p = s (e - K g' - C dg'/dt)
+//     dR' = n_R dR + n_a da + ...      dt' = s_R dR + s_a da + ...      du_k' = (df_k + B_k da) s + (f_k +
+//     B_k a) ds
 //
-// e are the derivatives in the coefficients of the law. K is as singular as 1/s where the overlap vanishes,
-// so that s K is smooth, and p is resolved by the nodes of the solution. The forces of modes on themselves
-// are small within a contact and follow from fixed-point iterations, as in the solution.
-//
-// One more direction than asked for checks the result, a shift of the time: its derivative at the start is
-// the rate of the state at the start, and at the end it must be that at the end.
+// with derivatives of n and s from dual numbers, forces f_k of the modes, and p_k = u_k - B_k w. The sweeps
+// are those of the solution, and converge as fast. The contact begins and ends at events, and its force
+// vanishes at both: the derivatives at fixed times follow from those of the times of both events.
 #pragma once
 
 #include "impact/isolated_contact.hpp"
 #include "impact/tangent_laws.hpp"
-#include "math/factorised.hpp"
 
 namespace rattlebox {
 
 class TangentCollocation {
     static constexpr int n = PhaseGrid::n;
     using Row = PhaseGrid::Rule::Row;
-    static constexpr int max_passes = 24;
-    static constexpr real converged = 1e-13; // change of the forces of modes on themselves, as part of speeds
-    static constexpr real resolved = 1e-12;  // error of the check, as part of the largest derivative
+    static constexpr int max_sweeps = 24;
+    // Change of a sweep, as part of the largest terms: what is permitted, and what may be rounding if it no
+    // longer falls.
+    static constexpr real converged = 1e-14, rounding = 1e-11;
+    enum Variable { by_r, by_a, by_zeta, by_b, variables };
+    using Number = Dual<variables>;
 
     Tangents& t_;
     TangentLaws& laws_;
-    const std::size_t columns_;     // directions, with that of the time
-    std::vector<real> start_, end_; // derivatives at the start and the end, row by row
-    Factorised<n, Row> system_;
-    Row clock_, force_, stiffness_, damping_;            // s, F, s K and s C at the nodes
-    std::vector<Row> constant_, gap_, rate_;             // by direction: s e; the gap without modes, its rate
-    std::vector<Row> impulse_, once_, twice_;            // by direction: p, A p, A s A p
-    std::vector<Row> own_, outer_, velocity_, position_; // by mode and direction: forces and motion
-    std::vector<Row> scratch_, base_, base_once_,
-        base_twice_; // by parameter and for the time: base acceleration
-    std::vector<real> share_;
-    real length_ = 0;
+    const Contact* contact_ = nullptr;
+    const IsolatedContact* solution_ = nullptr;
+    real side_ = 0, zeta_ = 0, s_ = 1, speed_ = 0, length_ = 0;
+    std::vector<real> share_,
+        weight_; // by mode: changes by an approach rate, part in the closing acceleration
+    std::vector<real> share_slope_, weight_slope_; // by mode and direction
+    // By direction: changes of coefficients, of the speed and time of the touch, and of ln r there.
+    std::vector<real> zeta_slope_, b_slope_, mass_slope_, speed_slope_, touch_, r_slope_;
+    Row rate_[variables], growth_[variables], root_[variables]; // derivatives of dt/dx, dR/dx and d
+    std::vector<Row> own_;                                      // by load: rate of its signal
+    std::vector<Row> r_, time_, clock_, closing_;               // by direction: dR, dt, ds, da
+    std::vector<Row> outer_, outside_;  // of closing acceleration and modes by the parameters alone
+    std::vector<Row> force_, u_, path_; // by mode and direction
+    std::vector<Row> slope_, scratch_, base_, base_once_, base_twice_;
 
     static const PhaseGrid::Rule& rule() { return PhaseGrid::rule(); }
-    // The matrix of the integrals up to each node, by columns.
-    static const std::array<Row, n>& integrals() {
-        static const std::array<Row, n> matrix = [] {
-            std::array<Row, n> columns;
-            for (int k = 0; k < n; ++k) {
-                Row unit{};
-                unit[k] = 1;
-                rule().integrate<1>(&unit, &columns[static_cast<std::size_t>(k)]);
-            }
-            return columns;
-        }();
-        return matrix;
-    }
-    const real* row(std::size_t i) const { return start_.data() + i * columns_; }
-    std::size_t at(std::size_t mode, std::size_t direction) const { return mode * columns_ + direction; }
-
-    // Integrates s times rows over time, from given values at the start.
-    template <class Start>
-    void integrate_times_clock(const std::vector<Row>& from, std::vector<Row>& to, Start&& start) {
-        scratch_.resize(from.size()), to.resize(from.size());
-        for (std::size_t r = 0; r < from.size(); ++r)
-            for (int i = 0; i < n; ++i) scratch_[r][i] = from[r][i] * clock_[i];
-        rule().integrate(scratch_.data(), to.data(), from.size());
-        for (std::size_t r = 0; r < from.size(); ++r) {
-            const real first = start(r);
-            if (first != 0)
-                for (int i = 0; i < n; ++i) to[r][i] += first;
-        }
+    std::size_t at(std::size_t mode, std::size_t direction) const { return mode * t_.count + direction; }
+    real start(std::size_t i, std::size_t d) const { // at the touch
+        return t_.matrix[i * t_.count + d] + t_.rates[i] * touch_[d];
     }
 
-    real integral(const Row& f) const {
+    real integral(const Row& f) const { // over time
         Row part;
-        for (int i = 0; i < n; ++i) part[i] = f[i] * clock_[i];
+        for (int i = 0; i < n; ++i) part[i] = f[i] * solution_->time_slope()[i];
         return rule().integral(part);
     }
 
-    // Computes the force and its derivatives at the nodes.
-    void differentiate_force(int c, const HertzTsuji& law, const ContactState& state,
-                             const IsolatedContact& solution) {
+    void integrate_over_time(const std::vector<Row>& from, std::vector<Row>& to) {
+        scratch_.resize(from.size()), to.resize(from.size());
+        for (std::size_t r = 0; r < from.size(); ++r)
+            for (int i = 0; i < n; ++i) scratch_[r][i] = from[r][i] * solution_->time_slope()[i];
+        rule().integrate(scratch_.data(), to.data(), from.size());
+    }
+
+    // Computes the changes of the numbers of the contact and of its touch.
+    void differentiate_contact(int c, const HertzTsuji& law, const ContactState& state,
+                               const std::vector<real>& slower) {
         const TangentLaws::Slopes& slopes = laws_.slopes[static_cast<std::size_t>(c)];
-        clock_ = solution.time_slope();
-        Row by_stiffness, by_second;
-        for (int i = 0; i < n; ++i) {
-            const real x = solution.root()[i];
-            const TangentLaws::Force f = TangentLaws::force_of(law, state, x, solution.rate()[i]);
-            force_[i] = f.total;
-            stiffness_[i] = clock_[i] * 0.25 * f.x / cube(x);
-            damping_[i] = clock_[i] * f.rate;
-            by_stiffness[i] = clock_[i] * f.stiffness;
-            by_second[i] = clock_[i] * f.second;
-        }
-        constant_.assign(columns_, Row{});
-        for (std::size_t d = 0; d < t_.count; ++d)
-            for (int i = 0; i < n; ++i)
-                constant_[d][i] = by_stiffness[i] * slopes.stiffness[d] + by_second[i] * slopes.second[d];
-    }
-
-    // Computes and factorises the matrix 1 + (s C A + s K A s A) / m.
-    void factorise(real mass) {
-        const Row* once = integrals().data();
-        scratch_.resize(n);
-        std::vector<Row>& twice = position_; // not in use yet
-        twice.resize(std::max<std::size_t>(twice.size(), n));
-        for (int k = 0; k < n; ++k)
-            for (int i = 0; i < n; ++i) scratch_[static_cast<std::size_t>(k)][i] = clock_[i] * once[k][i];
-        rule().integrate(scratch_.data(), twice.data(), n);
-        for (int k = 0; k < n; ++k) {
-            Row& column = system_.column[k];
-            const Row& second = twice[static_cast<std::size_t>(k)];
-            for (int i = 0; i < n; ++i)
-                column[i] = (damping_[i] * once[k][i] + stiffness_[i] * second[i]) / mass;
-            column[k] += 1;
-        }
-        system_.factorise();
-    }
-
-    // Computes what the parameters add to the accelerations: of all balls by the base, and of the modes.
-    void force_outside(const Contact& c, const IsolatedContact& solution) {
-        const real start = t_.run.state.t;
-        const Row& time = solution.time();
-        outer_.assign(t_.modes * columns_, Row{});
-        base_.assign(t_.parameters() + 1, Row{});
+        const real root = std::sqrt(5 * contact_->mass * law.stiffness);
+        zeta_ = state.coefficients.second / root;
+        s_ = std::sqrt((1 - zeta_) * (1 + zeta_));
+        for (auto* column : {&zeta_slope_, &b_slope_, &mass_slope_, &r_slope_}) column->assign(t_.count, 0.0);
+        touch_ = t_.times, speed_slope_ = slower;
+        share_slope_.assign(t_.modes * t_.count, 0.0), weight_slope_.assign(t_.modes * t_.count, 0.0);
+        share_.resize(t_.modes), weight_.resize(t_.modes);
+        const std::vector<real>& shape = t_.damper_of(t_.problem, *contact_).shape;
+        for (std::size_t k = 0; k < t_.modes; ++k)
+            weight_[k] = -side_ * shape[k], share_[k] = side_ * shape[k] * contact_->mass;
         for (std::size_t p = 0; p < t_.parameters(); ++p) {
-            const Problem& slope = t_.slopes[p];
-            for (std::size_t l = 0; l < t_.run.loads.size(); ++l) {
+            const std::size_t d = t_.size + p;
+            mass_slope_[d] = t_.contact_of(t_.slopes[p], c).mass / contact_->mass;
+            for (std::size_t k = 0; k < t_.modes; ++k) {
+                const real change = side_ * t_.damper_of(t_.slopes[p], *contact_).shape[k];
+                weight_slope_[at(k, d)] = -change;
+                share_slope_[at(k, d)] = change * contact_->mass + share_[k] * mass_slope_[d];
+            }
+        }
+        for (std::size_t d = 0; d < t_.count; ++d) {
+            const real stiffer = slopes.stiffness[d] / law.stiffness;
+            zeta_slope_[d] = slopes.second[d] / root - 0.5 * zeta_ * (stiffer + mass_slope_[d]);
+            b_slope_[d] = 0.5 * (stiffer - mass_slope_[d]); // of ln b
+            r_slope_[d] = slower[d] / speed_ + zeta_ * zeta_slope_[d] / square(s_);
+        }
+    }
+
+    // Derivative of the phase at the end in zeta.
+    real end_slope(const HertzTsuji& law) const { return law.zero_overlap != 0 || zeta_ == 0 ? 0 : -2 / s_; }
+
+    // Computes the derivatives of dt/dx, dR/dx and the overlap at the nodes, at fixed x.
+    void differentiate_rates(const HertzTsuji& law) {
+        const PhaseGrid& grid = solution_->grid();
+        const real b = std::sqrt(law.stiffness / contact_->mass), half_root = 0.5 * std::sqrt(5.0);
+        const Number zeta(zeta_, by_zeta), s = root(Number(1) - zeta * zeta);
+        Number wave(half_root * b);
+        wave.slope[by_b] = wave.value; // of ln b
+        const real stretch = end_slope(law) / grid.end;
+        for (int i = 0; i < n; ++i) {
+            Number psi(grid.psi[i]), slope(grid.slope[i]);
+            psi.slope[by_zeta] = psi.value * stretch, slope.slope[by_zeta] = slope.value * stretch;
+            const Number sine = psi.through(grid.sine[i], grid.cosine[i]),
+                         cosine = psi.through(grid.cosine[i], -grid.sine[i]);
+            const real x = solution_->root()[i], size = b * x * square(x * x) / (half_root * sine.value);
+            Number r(size);
+            r.slope[by_r] = size;    // of ln r
+            Number fifth = r * sine; // b x^5, apart from a factor
+            fifth.slope[by_b] -= fifth.value;
+            const Number depth = fifth.through(x, 0.2 * x / fifth.value);
+            const Number w = wave * depth, a = Number(solution_->acceleration()[i], by_a) / (s * r);
+            const Number clock = slope / (s * w - a * sine), growth = (a * cosine - zeta * w) * clock;
+            // ds is that over r: dt/dx = s r clock / (s r), kept as it is.
+            for (int v = 0; v < variables; ++v) {
+                const auto at_v = static_cast<std::size_t>(v);
+                rate_[v][i] = clock.slope[at_v];
+                growth_[v][i] = growth.slope[at_v];
+                root_[v][i] = 4 * cube(x) * depth.slope[at_v];
+            }
+            const Number speed = r * (s * cosine - zeta * sine);
+            speed_by_zeta_[i] = speed.slope[by_zeta];
+        }
+    }
+    Row speed_by_zeta_;
+
+    // Computes what the parameters add to the closing acceleration and to the forces of the modes at fixed
+    // times, and the accelerations of the base.
+    void force_outside() {
+        const std::size_t loads = t_.run.loads.size();
+        const real from = t_.run.state.t;
+        const Row& time = solution_->time();
+        outer_.assign(t_.modes * t_.count, Row{}), outside_.assign(t_.count, Row{});
+        base_.assign(t_.parameters(), Row{}), own_.assign(loads, Row{});
+        for (std::size_t l = 0; l < loads; ++l)
+            for (int i = 0; i < n && t_.run.loads.active(); ++i)
+                own_[l][i] = Tangents::signal_rate(t_.run.loads.piece(l), from + time[i]);
+        for (std::size_t p = 0; p < t_.parameters(); ++p) {
+            const Problem& change = t_.slopes[p];
+            const std::size_t d = t_.size + p;
+            for (std::size_t l = 0; l < loads; ++l) {
                 const Piece& piece = t_.run.loads.piece(l);
                 const Load& load = t_.run.loads.load(l);
                 const Tangents::SignalSlope signal =
-                    t_.signal_slope(piece, load.signal, slope.loads[l].signal);
-                const bool moves = signal.is_any();
-                for (int i = 0; i < n && moves; ++i) {
-                    const real change = t_.signal_slope_at(piece, signal, start + time[i]);
-                    for (std::size_t k = 0; k < t_.modes; ++k)
-                        outer_[at(k, t_.size + p)][i] += load.shape[k] * change;
-                    if (load.base) base_[p][i] -= change;
+                    t_.signal_slope(piece, load.signal, change.loads[l].signal);
+                for (int i = 0; i < n && signal.is_any(); ++i) {
+                    const real value = t_.signal_slope_at(piece, signal, from + time[i]);
+                    for (std::size_t k = 0; k < t_.modes; ++k) outer_[at(k, d)][i] += load.shape[k] * value;
+                    if (load.base) base_[p][i] -= value;
                 }
                 for (std::size_t k = 0; k < t_.modes; ++k)
-                    if (const real shape = slope.loads[l].shape[k]; shape != 0 && !piece.is_zero())
+                    if (const real shape = change.loads[l].shape[k]; shape != 0 && !piece.is_zero())
                         for (int i = 0; i < n; ++i)
-                            outer_[at(k, t_.size + p)][i] += shape * piece.value(start + time[i]);
+                            outer_[at(k, d)][i] += shape * piece.value(from + time[i]);
             }
             for (std::size_t k = 0; k < t_.modes; ++k) {
-                const Mode& mode = slope.modes[k];
-                real shape = 0; // of the force on the cavity
-                t_.each_side(c, [&](real sign, int body) {
-                    if (body == wall) shape += sign * t_.damper_of(slope, c).shape[k];
-                });
-                if (mode.decay == 0 && mode.stiffness == 0 && shape == 0) continue;
+                const Mode& mode = change.modes[k];
+                if (mode.decay == 0 && mode.stiffness == 0) continue;
                 for (int i = 0; i < n; ++i)
-                    outer_[at(k, t_.size + p)][i] += shape * force_[i] -
-                                                     2 * mode.decay * solution.velocity(k)[i] -
-                                                     mode.stiffness * solution.displacement(k)[i];
+                    outer_[at(k, d)][i] -= 2 * mode.decay * solution_->velocity(k)[i] +
+                                           mode.stiffness * solution_->displacement(k)[i];
             }
-        }
-        for (std::size_t l = 0; l < t_.run.loads.size(); ++l) {
-            const Piece& piece = t_.run.loads.piece(l);
-            const Load& load = t_.run.loads.load(l);
-            for (int i = 0; i < n && !piece.is_zero(); ++i) {
-                const real change = Tangents::signal_rate(piece, start + time[i]);
-                for (std::size_t k = 0; k < t_.modes; ++k)
-                    outer_[at(k, t_.count)][i] += load.shape[k] * change;
-                if (load.base) base_.back()[i] -= change;
-            }
-        }
-        const auto none = [](std::size_t) { return 0.0; };
-        integrate_times_clock(base_, base_once_, none);
-        integrate_times_clock(base_once_, base_twice_, none);
-    }
-
-    // Computes gap and rate without the modes and without the derivative of the contact force.
-    void place_balls(const Contact& c, const IsolatedContact& solution) {
-        const Row& time = solution.time();
-        gap_.assign(columns_, Row{}), rate_.assign(columns_, Row{});
-        std::vector<Row> own(2), sums(2);
-        own[0] = force_;
-        for (int i = 0; i < n; ++i) own[0][i] *= clock_[i];
-        rule().integrate<1>(&own[0], &sums[0]);
-        for (int i = 0; i < n; ++i) own[1][i] = sums[0][i] * clock_[i];
-        rule().integrate<1>(&own[1], &sums[1]);
-        t_.each_side(c, [&](real sign, int body) {
-            if (body == wall) {
-                for (std::size_t p = 0; p < t_.parameters(); ++p)
-                    for (std::size_t k = 0; k < t_.modes; ++k)
-                        if (const real shape = sign * t_.damper_of(t_.slopes[p], c).shape[k]; shape != 0)
-                            for (int i = 0; i < n; ++i) {
-                                gap_[t_.size + p][i] += shape * solution.displacement(k)[i];
-                                rate_[t_.size + p][i] += shape * solution.velocity(k)[i];
-                            }
-                return;
-            }
-            const real *x = row(t_.position_row(body)), *v = row(t_.velocity_row(body));
-            for (std::size_t d = 0; d < columns_; ++d)
-                for (int i = 0; i < n; ++i) {
-                    gap_[d][i] += sign * (x[d] + v[d] * time[i]);
-                    rate_[d][i] += sign * v[d];
-                }
             for (int i = 0; i < n; ++i) {
-                gap_.back()[i] += sign * base_twice_.back()[i];
-                rate_.back()[i] += sign * base_once_.back()[i];
+                outside_[d][i] = side_ * t_.damper_of(change, *contact_).gravity;
+                if (contact_->above != ground) outside_[d][i] += side_ * base_[p][i];
+                for (std::size_t k = 0; k < t_.modes; ++k)
+                    outside_[d][i] += weight_slope_[at(k, d)] * solution_->force(k)[i];
             }
-            const auto b = static_cast<std::size_t>(body);
-            for (std::size_t p = 0; p < t_.parameters(); ++p) {
-                const real g = t_.slopes[p].dampers[static_cast<std::size_t>(c.damper)].gravity;
-                const real lighter = -sign * t_.slopes[p].ball_mass[b] / square(t_.problem.ball_mass[b]);
-                for (int i = 0; i < n; ++i) {
-                    gap_[t_.size + p][i] +=
-                        sign * (0.5 * g * square(time[i]) + base_twice_[p][i] + lighter * sums[1][i]);
-                    rate_[t_.size + p][i] += sign * (g * time[i] + base_once_[p][i] + lighter * sums[0][i]);
-                }
-            }
-        });
-        if (c.below != wall && c.above != wall) return;
-        for (std::size_t p = 0; p < t_.parameters(); ++p)
-            for (int i = 0; i < n; ++i) gap_[t_.size + p][i] += 0.5 * t_.damper_of(t_.slopes[p], c).clearance;
+        }
+        integrate_over_time(base_, base_once_);
+        integrate_over_time(base_once_, base_twice_);
     }
 
-    // Computes the part of the contact force that acts on each mode.
-    void find_shares(const Contact& c) {
-        share_.assign(t_.modes, 0.0);
-        t_.each_side(c, [&](real sign, int body) {
-            for (std::size_t k = 0; k < t_.modes && body == wall; ++k)
-                share_[k] += sign * t_.damper_of(t_.problem, c).shape[k];
-        });
+    // Computes the change of the closing acceleration in a direction.
+    void close(std::size_t d) {
+        Row& a = closing_[d];
+        a = outside_[d];
+        for (std::size_t k = 0; k < t_.modes; ++k)
+            if (weight_[k] != 0)
+                for (int i = 0; i < n; ++i) a[i] += weight_[k] * force_[at(k, d)][i];
+        if (contact_->above == ground) return;
+        for (std::size_t l = 0; l < own_.size(); ++l)
+            if (t_.run.loads.load(l).base)
+                for (int i = 0; i < n; ++i) a[i] -= side_ * own_[l][i] * (touch_[d] + time_[d][i]);
     }
 
-    // Computes the motion of the modes with their last forces on themselves, without the contact force.
-    void move_modes() {
-        for (std::size_t r = 0; r < own_.size(); ++r)
-            for (int i = 0; i < n; ++i) own_[r][i] += outer_[r][i];
-        const auto first = [&](std::size_t r, std::size_t odd) {
-            return row(2 * (r / columns_) + odd)[r % columns_];
-        };
-        integrate_times_clock(own_, velocity_, [&](std::size_t r) { return first(r, 1); });
-        integrate_times_clock(velocity_, position_, [&](std::size_t r) { return first(r, 0); });
+    static real largest_of(const Row& f) {
+        Lanes most = {};
+        for (int i = 0; i < n; i += lane_count) most = larger(most, absolute(f.read(i)));
+        return largest(most);
     }
 
-    // Solves for the derivatives of the contact force, and adds them to the motion of the modes.
-    void solve() {
-        impulse_.resize(columns_), once_.resize(columns_);
-        for (std::size_t d = 0; d < columns_; ++d) {
-            Row gap = gap_[d], rate = rate_[d];
-            for (std::size_t k = 0; k < t_.modes; ++k)
-                if (const real part = share_[k]; part != 0)
-                    for (int i = 0; i < n; ++i) {
-                        gap[i] += part * position_[at(k, d)][i];
-                        rate[i] += part * velocity_[at(k, d)][i];
-                    }
+    // One sweep; returns its largest change.
+    real sweep() {
+        real worst = 0;
+        slope_.resize(std::max(t_.count, 2 * t_.modes * t_.count));
+        for (std::size_t d = 0; d < t_.count; ++d) {
+            close(d);
+            const real zeta = zeta_slope_[d], b = b_slope_[d];
             for (int i = 0; i < n; ++i)
-                impulse_[d][i] = constant_[d][i] - stiffness_[i] * gap[i] - damping_[i] * rate[i];
+                slope_[d][i] = growth_[by_r][i] * r_[d][i] + growth_[by_a][i] * closing_[d][i] +
+                               growth_[by_zeta][i] * zeta + growth_[by_b][i] * b;
         }
-        system_.solve(impulse_.data(), columns_);
-        rule().integrate(impulse_.data(), once_.data(), columns_);
-        integrate_times_clock(once_, twice_, [](std::size_t) { return 0.0; });
-        for (std::size_t k = 0; k < t_.modes; ++k)
-            if (const real part = share_[k]; part != 0)
-                for (std::size_t d = 0; d < columns_; ++d)
-                    for (int i = 0; i < n; ++i) {
-                        velocity_[at(k, d)][i] += part * once_[d][i];
-                        position_[at(k, d)][i] += part * twice_[d][i];
-                    }
+        std::vector<Row>& before = clock_; // not in use
+        before.swap(r_);
+        r_.resize(t_.count);
+        growth_rows_.assign(slope_.begin(), slope_.begin() + static_cast<std::ptrdiff_t>(t_.count));
+        rule().integrate(slope_.data(), r_.data(), t_.count);
+        for (std::size_t d = 0; d < t_.count; ++d) {
+            real change = 0, size = 0;
+            for (int i = 0; i < n; ++i) {
+                r_[d][i] += r_slope_[d];
+                change = std::max(change, std::fabs(r_[d][i] - before[d][i]));
+                size = std::max(size, std::fabs(r_[d][i]));
+            }
+            if (change > 0) worst = std::max(worst, change / size);
+        }
+        for (std::size_t d = 0; d < t_.count; ++d) {
+            const real zeta = zeta_slope_[d], b = b_slope_[d];
+            for (int i = 0; i < n; ++i)
+                clock_[d][i] = rate_[by_r][i] * r_[d][i] + rate_[by_a][i] * closing_[d][i] +
+                               rate_[by_zeta][i] * zeta + rate_[by_b][i] * b;
+        }
+        rule().integrate(clock_.data(), time_.data(), t_.count);
+        return std::max(worst, move_modes());
+    }
+    std::vector<Row> growth_rows_;
+
+    real moved(std::size_t d, int i) const { // change of the overlap at a node
+        return root_[by_r][i] * r_[d][i] + root_[by_zeta][i] * zeta_slope_[d] + root_[by_b][i] * b_slope_[d];
     }
 
-    // Computes the forces of the modes on themselves; returns whether they have converged.
-    bool update_forces() {
-        bool done = true;
-        for (std::size_t d = 0; d < columns_; ++d) {
-            Lanes change = {}, size = {};
-            for (std::size_t k = 0; k < t_.modes; ++k) {
-                const real two_decay = 2 * t_.problem.modes[k].decay,
-                           stiffness = t_.problem.modes[k].stiffness;
-                Row& own = own_[at(k, d)];
-                const Row &q = position_[at(k, d)], &p = velocity_[at(k, d)], &outer = outer_[at(k, d)];
-                for (int i = 0; i < n; i += lane_count) {
-                    const Lanes speed = p.read(i), force = -two_decay * speed - stiffness * q.read(i);
-                    change = larger(change, absolute(force - (own.read(i) - outer.read(i))));
-                    size = larger(size, larger(absolute(speed), length_ * absolute(force)));
-                    own.lanes_at(i) = force;
+    real move_modes() {
+        real worst = 0;
+        const Row &clock = solution_->time_slope(), &a = solution_->acceleration(), &w = solution_->rate();
+        for (std::size_t k = 0; k < t_.modes; ++k)
+            for (std::size_t d = 0; d < t_.count; ++d) {
+                const Row& f = solution_->force(k);
+                const real by_share = share_slope_[at(k, d)];
+                for (int i = 0; i < n; ++i)
+                    slope_[at(k, d)][i] =
+                        (force_[at(k, d)][i] + share_[k] * closing_[d][i] + by_share * a[i]) * clock[i] +
+                        (f[i] + share_[k] * a[i]) * clock_[d][i];
+            }
+        rule().integrate(slope_.data(), u_.data(), u_.size());
+        for (std::size_t k = 0; k < t_.modes; ++k)
+            for (std::size_t d = 0; d < t_.count; ++d) {
+                Row& u = u_[at(k, d)];
+                const real first =
+                    start(2 * k + 1, d) + share_[k] * speed_slope_[d] + share_slope_[at(k, d)] * speed_;
+                for (int i = 0; i < n; ++i) {
+                    u[i] += first;
+                    slope_[u_.size() + at(k, d)][i] =
+                        u[i] * clock[i] + (solution_->velocity(k)[i] + share_[k] * w[i]) * clock_[d][i];
                 }
             }
-            done = done && length_ * largest(change) <= converged * largest(size);
+        rule().integrate(slope_.data() + u_.size(), path_.data(), path_.size());
+        for (std::size_t d = 0; d < t_.count; ++d) {
+            real change = 0, size = 0;
+            for (std::size_t k = 0; k < t_.modes; ++k) {
+                const Mode& mode = t_.problem.modes[k];
+                const real q0 = start(2 * k, d), by_share = share_slope_[at(k, d)];
+                Row& force = force_[at(k, d)];
+                Row next = outer_[at(k, d)];
+                for (std::size_t l = 0; l < own_.size(); ++l)
+                    if (const real shape = t_.run.loads.load(l).shape[k]; shape != 0)
+                        for (int i = 0; i < n; ++i) next[i] += shape * own_[l][i] * (touch_[d] + time_[d][i]);
+                for (int i = 0; i < n; ++i) {
+                    const real faster = w[i] * r_[d][i] + speed_by_zeta_[i] * zeta_slope_[d];
+                    const real p = u_[at(k, d)][i] - share_[k] * faster - by_share * w[i];
+                    const real q = q0 + path_[at(k, d)][i] - share_[k] * moved(d, i) -
+                                   by_share * square(square(solution_->root()[i]));
+                    next[i] -= 2 * mode.decay * p + mode.stiffness * q;
+                    change = std::max(change, std::fabs(next[i] - force[i]) * length_);
+                    size = std::max(size, std::fabs(u_[at(k, d)][i]) + std::fabs(share_[k] * faster));
+                    size = std::max(size, (std::fabs(outer_[at(k, d)][i]) + mode.stiffness * std::fabs(q)) *
+                                              length_);
+                }
+                force = next;
+            }
+            if (change > 0) worst = std::max(worst, change / size);
         }
-        return done;
+        return worst;
     }
 
-    // Computes the derivatives at the end of the contact.
-    void finish(const Contact& c) {
-        end_ = start_;
-        const auto to = [&](std::size_t i) { return end_.data() + i * columns_; };
-        for (std::size_t k = 0; k < t_.modes; ++k)
-            for (std::size_t d = 0; d < columns_; ++d) {
-                to(2 * k)[d] += integral(velocity_[at(k, d)]);
-                Row& force = own_[at(k, d)];
-                for (int i = 0; i < n; ++i) force[i] += outer_[at(k, d)][i];
-                to(2 * k + 1)[d] += integral(force);
+    // Moves the derivatives to the end of the contact, at fixed times.
+    void finish(const HertzTsuji& law, const State& end) {
+        const Row &clock = solution_->time_slope(), &a = solution_->acceleration();
+        const real m = contact_->mass, b = std::sqrt(law.stiffness / m);
+        const real w =
+            t_.run.system.approach(end.y.data(), static_cast<int>(contact_ - t_.problem.contacts.data()));
+        const real r = -w / s_; // at both kinds of end
+        const bool overlaps = end_slope(law) != 0;
+        const real sine = 2 * zeta_ * s_;
+        const real depth = overlaps ? std::pow(0.5 * std::sqrt(5.0) * r * sine / b, 0.8) : 0;
+        // The closing acceleration, its changes, and the integrals of both over time.
+        std::vector<Row> rows(1), once(1);
+        rows[0] = a;
+        integrate_over_time(rows, once);
+        const Row speed = once[0];
+        const real gained = integral(a), way = integral(speed);
+        const real impulse = m * (gained - w + speed_), moment = m * (speed_ * length_ + way - depth);
+        closing_rows_.resize(t_.count);
+        for (std::size_t d = 0; d < t_.count; ++d)
+            for (int i = 0; i < n; ++i) closing_rows_[d][i] = closing_[d][i] * clock[i] + a[i] * clock_[d][i];
+        std::vector<Row>& speeds = growth_sums_;
+        speeds.resize(t_.count);
+        rule().integrate(closing_rows_.data(), speeds.data(), t_.count);
+        std::vector<real> pushed(t_.count), shifted(t_.count);
+        for (std::size_t d = 0; d < t_.count; ++d) {
+            const real zeta = zeta_slope_[d];
+            const real r_end = r_slope_[d] + rule().integral(growth_rows_[d]); // of ln r
+            const real late = rule().integral(clock_[d]), when = touch_[d] + late;
+            const real faster = w * (r_end - zeta_ * zeta / square(s_));
+            const real deeper =
+                overlaps ? 0.8 * depth * (r_end + zeta * 2 * (s_ - square(zeta_) / s_) / sine - b_slope_[d])
+                         : 0;
+            Row inner;
+            for (int i = 0; i < n; ++i) inner[i] = speeds[d][i] * clock[i] + speed[i] * clock_[d][i];
+            const real more = rule().integral(closing_rows_[d]), further = rule().integral(inner);
+            pushed[d] = impulse * mass_slope_[d] + m * (more - faster + speed_slope_[d]);
+            shifted[d] = moment * mass_slope_[d] +
+                         m * (speed_slope_[d] * length_ + speed_ * late + further - deeper) - impulse * when;
+            for (std::size_t k = 0; k < t_.modes; ++k) {
+                const Mode& mode = t_.problem.modes[k];
+                const real by_share = share_slope_[at(k, d)], p = end.y[2 * k + 1];
+                real force = -2 * mode.decay * p - mode.stiffness * end.y[2 * k];
+                for (std::size_t l = 0; l < own_.size(); ++l)
+                    force += t_.run.loads.load(l).shape[k] * t_.run.loads.piece(l).value(end.t);
+                const real q0 = start(2 * k, d), p0 = start(2 * k + 1, d);
+                end_[at(2 * k, d)] = q0 + rule().integral(slope_[u_.size() + at(k, d)]) - share_[k] * deeper -
+                                     by_share * depth - p * when;
+                end_[at(2 * k + 1, d)] = p0 + share_[k] * speed_slope_[d] + by_share * speed_ +
+                                         rule().integral(slope_[at(k, d)]) - share_[k] * faster -
+                                         by_share * w - force * when;
             }
+        }
+        std::copy_n(end_.begin(), 2 * t_.modes * t_.count, t_.matrix.begin());
+        move_balls(impulse, moment, pushed, shifted);
+    }
+    std::vector<Row> closing_rows_, growth_sums_;
+    std::vector<real> end_;
+
+    void move_balls(real impulse, real moment, const std::vector<real>& pushed,
+                    const std::vector<real>& shifted) {
         for (std::size_t b = 0; b < t_.balls; ++b) {
-            real *x = to(2 * t_.modes + b), *v = to(2 * t_.modes + t_.balls + b);
-            for (std::size_t d = 0; d < columns_; ++d) x[d] += length_ * v[d];
-            for (std::size_t p = 0; p < base_.size(); ++p) {
-                x[t_.size + p] += integral(base_once_[p]), v[t_.size + p] += integral(base_[p]);
-                if (p == t_.parameters()) break;
+            real *x = t_.row(2 * t_.modes + b), *v = t_.row(2 * t_.modes + t_.balls + b);
+            for (std::size_t d = 0; d < t_.count; ++d) x[d] += length_ * v[d];
+            for (std::size_t p = 0; p < t_.parameters(); ++p) {
                 const real g =
                     t_.slopes[p].dampers[static_cast<std::size_t>(t_.problem.ball_damper[b])].gravity;
-                x[t_.size + p] += 0.5 * g * square(length_), v[t_.size + p] += g * length_;
+                x[t_.size + p] += 0.5 * g * square(length_) + integral(base_once_[p]);
+                v[t_.size + p] += g * length_ + integral(base_[p]);
             }
         }
-        Row impulse, sum;
-        for (int i = 0; i < n; ++i) impulse[i] = force_[i] * clock_[i];
-        const real whole = rule().integral(impulse);
-        rule().integrate<1>(&impulse, &sum);
-        const real way = integral(sum);
-        std::vector<real> total(columns_), moved(columns_); // integrals of p, and of s A p
-        for (std::size_t d = 0; d < columns_; ++d)
-            total[d] = rule().integral(impulse_[d]), moved[d] = integral(once_[d]);
-        for (std::size_t k = 0; k < t_.modes; ++k)
-            if (const real part = share_[k]; part != 0)
-                for (std::size_t d = 0; d < columns_; ++d) to(2 * k + 1)[d] += part * total[d];
-        t_.each_side(c, [&](real sign, int body) {
+        t_.each_side(*contact_, [&](real sign, int body) {
             if (body == wall) return;
             const auto b = static_cast<std::size_t>(body);
             const real mass = t_.problem.ball_mass[b];
-            real *x = to(t_.position_row(body)), *v = to(t_.velocity_row(body));
-            for (std::size_t d = 0; d < columns_; ++d)
-                x[d] += sign * moved[d] / mass, v[d] += sign * total[d] / mass;
+            real *x = t_.row(t_.position_row(body)), *v = t_.row(t_.velocity_row(body));
+            for (std::size_t d = 0; d < t_.count; ++d)
+                x[d] += sign * shifted[d] / mass, v[d] += sign * pushed[d] / mass;
             for (std::size_t p = 0; p < t_.parameters(); ++p) {
                 const real lighter = -sign * t_.slopes[p].ball_mass[b] / square(mass);
-                x[t_.size + p] += lighter * way, v[t_.size + p] += lighter * whole;
+                x[t_.size + p] += lighter * moment, v[t_.size + p] += lighter * impulse;
             }
         });
     }
 
-    // Whether the derivative in the time is the rate of the state at the end, where there is no contact
-    // force.
-    bool is_right(const Contact& c, const State& end) const {
-        real largest = 0, error = 0;
-        for (int i = 0; i < n; ++i)
-            largest = std::max(largest, std::fabs(rate_.back()[i]) + std::fabs(once_.back()[i]) / c.mass);
-        const auto compare = [&](std::size_t i, real rate, real weight) {
-            error = std::max(error, std::fabs(weight * (end_[i * columns_ + t_.count] - rate)));
-        };
-        std::vector<real> signal;
-        for (std::size_t l = 0; l < t_.run.loads.size(); ++l)
-            signal.push_back(t_.run.loads.piece(l).value(end.t));
-        for (std::size_t k = 0; k < t_.modes; ++k) {
-            const Mode& mode = t_.problem.modes[k];
-            const real part = std::fabs(share_[k]), p = end.y[2 * k + 1];
-            real force = -2 * mode.decay * p - mode.stiffness * end.y[2 * k];
-            for (std::size_t l = 0; l < signal.size(); ++l)
-                force += t_.run.loads.load(l).shape[k] * signal[l];
-            compare(2 * k, p, part / length_), compare(2 * k + 1, force, part);
-        }
-        for (const int body : {c.below, c.above}) {
-            if (body < 0) continue;
-            real acceleration = t_.damper_of(t_.problem, c).gravity;
-            for (std::size_t l = 0; l < signal.size(); ++l)
-                if (t_.run.loads.load(l).base) acceleration -= signal[l];
-            compare(t_.position_row(body), velocities(t_.problem, end.y.data())[body], 1 / length_);
-            compare(t_.velocity_row(body), acceleration, 1);
-        }
-        return error <= resolved * largest;
-    }
-
 public:
-    TangentCollocation(Tangents& tangents, TangentLaws& laws)
-        : t_(tangents), laws_(laws), columns_(tangents.count + 1) {}
+    TangentCollocation(Tangents& tangents, TangentLaws& laws) : t_(tangents), laws_(laws) {}
 
-    // Advances the derivatives through a contact with the rates of the state at its start; returns false, and
-    // leaves them, if the nodes do not resolve them.
-    bool advance(int c, const HertzTsuji& law, const ContactState& state, const IsolatedContact& solution,
-                 const State& end) {
-        const Contact& contact = t_.contact(c);
-        length_ = end.t - t_.run.state.t;
-        start_.resize(t_.size * columns_);
-        for (std::size_t i = 0; i < t_.size; ++i) {
-            std::copy_n(t_.row(i), t_.count, start_.data() + i * columns_);
-            start_[i * columns_ + t_.count] = t_.rates[i];
-        }
-        differentiate_force(c, law, state, solution);
-        find_shares(contact);
-        factorise(contact.mass);
-        force_outside(contact, solution);
-        place_balls(contact, solution);
-        own_.resize(t_.modes * columns_);
-        for (std::size_t k = 0; k < t_.modes; ++k)
-            for (std::size_t d = 0; d < columns_; ++d) {
+    // Advances the derivatives through a contact; returns false, and leaves them, if the sweeps do not
+    // converge. Tangents::rates are those at the touch, Tangents::times the changes of its time, and `slower`
+    // those of its speed.
+    bool advance(int c, const HertzTsuji& law, const ContactState& state, real speed,
+                 const std::vector<real>& slower, const IsolatedContact& solution, const State& end) {
+        contact_ = &t_.contact(c), solution_ = &solution;
+        side_ = contact_->above == wall ? 1 : contact_->below == wall ? -1 : 0;
+        speed_ = speed, length_ = end.t - t_.run.state.t;
+        differentiate_contact(c, law, state, slower);
+        differentiate_rates(law);
+        force_outside();
+        for (auto* rows : {&r_, &time_, &clock_, &closing_}) rows->assign(t_.count, Row{});
+        for (auto* rows : {&force_, &u_, &path_}) rows->resize(t_.modes * t_.count);
+        end_.resize(2 * t_.modes * t_.count);
+        for (std::size_t d = 0; d < t_.count; ++d) {
+            for (int i = 0; i < n; ++i) r_[d][i] = r_slope_[d];
+            for (std::size_t k = 0; k < t_.modes; ++k) {
                 const Mode& mode = t_.problem.modes[k];
-                const real force = -2 * mode.decay * row(2 * k + 1)[d] - mode.stiffness * row(2 * k)[d];
-                for (int i = 0; i < n; ++i) own_[at(k, d)][i] = force;
+                const real force = -2 * mode.decay * start(2 * k + 1, d) - mode.stiffness * start(2 * k, d);
+                for (int i = 0; i < n; ++i) force_[at(k, d)][i] = force + outer_[at(k, d)][i];
             }
-        for (int pass = 0; pass < max_passes; ++pass) {
-            move_modes();
-            solve();
-            if (!update_forces()) continue;
-            finish(contact);
-            if (!is_right(contact, end)) return false;
-            for (std::size_t i = 0; i < t_.size; ++i)
-                std::copy_n(end_.data() + i * columns_, t_.count, t_.row(i));
-            return true;
+        }
+        real before = infinity;
+        for (int pass = 0; pass < max_sweeps; ++pass) {
+            const real change = sweep();
+            if (change <= converged || (change <= rounding && change > 0.1 * before)) {
+                finish(law, end);
+                return true;
+            }
+            before = change;
         }
         return false;
     }

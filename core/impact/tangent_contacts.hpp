@@ -11,6 +11,7 @@ class TangentContacts {
     TangentLaws& laws_;
     std::vector<real> force_, ball_force_, cavity_force_;
     std::vector<real> extended_, extended_end_, scale_, sizes_, rounding_;
+    std::vector<real> slower_; // change of the speed of the last touch
     Dop853 integrator_;
 
     // dt/dtau / x_j^3, which is finite where x_j is zero.
@@ -177,9 +178,11 @@ public:
         : t_(tangents), laws_(laws), force_(t_.count), ball_force_(t_.balls),
           cavity_force_(t_.problem.dampers.size()) {}
 
+    const std::vector<real>& slower() const { return slower_; }
+
     void touch(int c, real speed, real e) {
         std::fill(t_.times.begin(), t_.times.end(), 0.0);
-        std::vector<real> slower(t_.count, 0.0);
+        slower_.assign(t_.count, 0.0);
         const real* y = t_.run.state.y.data();
         if (speed > 0) {
             t_.rates_of_contacts();
@@ -188,11 +191,11 @@ public:
                                  t_.rate_slope.data());
             for (std::size_t d = 0; d < t_.count; ++d) {
                 t_.times[d] = t_.gap_slope[d] / speed;
-                slower[d] = -(t_.rate_slope[d] + turn * t_.times[d]);
+                slower_[d] = -(t_.rate_slope[d] + turn * t_.times[d]);
             }
         }
         laws_.set_law_slopes(
-            c, slower, speed, [&](const auto& law, real faster, const Contact* change, real h) {
+            c, slower_, speed, [&](const auto& law, real faster, const Contact* change, real h) {
                 const real v = speed + faster;
                 return initial_state(
                     law, law.needs_restitution() ? laws_.moved_restitution(c, v, change, h) : e, v);
