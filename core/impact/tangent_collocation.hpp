@@ -5,8 +5,8 @@
 // force is singular where the overlap vanishes. With R = ln r, the closing acceleration a, dt/dx = s(R, a)
 // and dR/dx = n(R, a), the derivatives at fixed x are
 //
-//     dR' = n_R dR + n_a da + ...      dt' = s_R dR + s_a da + ...      du_k' = (df_k + B_k da) s + (f_k +
-//     B_k a) ds
+//     dR' = n_R dR + n_a da + ...      dt' = ds = s_R dR + s_a da + ...
+//     du_k' = (df_k + B_k da) s + (f_k + B_k a) ds
 //
 // with derivatives of n and s from dual numbers, forces f_k of the modes, and p_k = u_k - B_k w. The sweeps
 // are those of the solution, and converge as fast. The contact begins and ends at events, and its force
@@ -33,17 +33,20 @@ class TangentCollocation {
     const Contact* contact_ = nullptr;
     const IsolatedContact* solution_ = nullptr;
     real side_ = 0, zeta_ = 0, s_ = 1, speed_ = 0, length_ = 0;
-    std::vector<real> share_,
-        weight_; // by mode: changes by an approach rate, part in the closing acceleration
-    std::vector<real> share_slope_, weight_slope_; // by mode and direction
+    // By mode, and with direction: change by an approach rate, part in the closing acceleration.
+    std::vector<real> share_, weight_, share_slope_, weight_slope_;
     // By direction: changes of coefficients, of the speed and time of the touch, and of ln r there.
     std::vector<real> zeta_slope_, b_slope_, mass_slope_, speed_slope_, touch_, r_slope_;
-    Row rate_[variables], growth_[variables], root_[variables]; // derivatives of dt/dx, dR/dx and d
-    std::vector<Row> own_;                                      // by load: rate of its signal
-    std::vector<Row> r_, time_, clock_, closing_;               // by direction: dR, dt, ds, da
-    std::vector<Row> outer_, outside_;  // of closing acceleration and modes by the parameters alone
-    std::vector<Row> force_, u_, path_; // by mode and direction
+    // Derivatives at fixed x of dt/dx, dR/dx and the overlap, and of its rate.
+    Row rate_[variables], growth_[variables], root_[variables], speed_by_zeta_;
+    std::vector<Row> own_;                        // by load: rate of its signal
+    std::vector<Row> r_, time_, clock_, closing_; // by direction: dR, dt, ds, da
+    std::vector<Row> outer_, outside_;            // of modes and closing acceleration by the parameters alone
+    std::vector<Row> force_, u_, path_;           // by mode and direction
     std::vector<Row> slope_, scratch_, base_, base_once_, base_twice_;
+    // Of the last sweep: slopes of dR and of the speed that the closing acceleration adds.
+    std::vector<Row> growth_rows_, closing_rows_, speeds_;
+    std::vector<real> end_; // derivatives of the modes
 
     static const PhaseGrid::Rule& rule() { return PhaseGrid::rule(); }
     std::size_t at(std::size_t mode, std::size_t direction) const { return mode * t_.count + direction; }
@@ -119,7 +122,6 @@ class TangentCollocation {
             const Number depth = fifth.through(x, 0.2 * x / fifth.value);
             const Number w = wave * depth, a = Number(solution_->acceleration()[i], by_a) / (s * r);
             const Number clock = slope / (s * w - a * sine), growth = (a * cosine - zeta * w) * clock;
-            // ds is that over r: dt/dx = s r clock / (s r), kept as it is.
             for (int v = 0; v < variables; ++v) {
                 const auto at_v = static_cast<std::size_t>(v);
                 rate_[v][i] = clock.slope[at_v];
@@ -130,7 +132,6 @@ class TangentCollocation {
             speed_by_zeta_[i] = speed.slope[by_zeta];
         }
     }
-    Row speed_by_zeta_;
 
     // Computes what the parameters add to the closing acceleration and to the forces of the modes at fixed
     // times, and the accelerations of the base.
@@ -232,7 +233,6 @@ class TangentCollocation {
         rule().integrate(clock_.data(), time_.data(), t_.count);
         return std::max(worst, move_modes());
     }
-    std::vector<Row> growth_rows_;
 
     real moved(std::size_t d, int i) const { // change of the overlap at a node
         return root_[by_r][i] * r_[d][i] + root_[by_zeta][i] * zeta_slope_[d] + root_[by_b][i] * b_slope_[d];
@@ -311,9 +311,8 @@ class TangentCollocation {
         closing_rows_.resize(t_.count);
         for (std::size_t d = 0; d < t_.count; ++d)
             for (int i = 0; i < n; ++i) closing_rows_[d][i] = closing_[d][i] * clock[i] + a[i] * clock_[d][i];
-        std::vector<Row>& speeds = growth_sums_;
-        speeds.resize(t_.count);
-        rule().integrate(closing_rows_.data(), speeds.data(), t_.count);
+        speeds_.resize(t_.count);
+        rule().integrate(closing_rows_.data(), speeds_.data(), t_.count);
         std::vector<real> pushed(t_.count), shifted(t_.count);
         for (std::size_t d = 0; d < t_.count; ++d) {
             const real zeta = zeta_slope_[d];
@@ -324,7 +323,7 @@ class TangentCollocation {
                 overlaps ? 0.8 * depth * (r_end + zeta * 2 * (s_ - square(zeta_) / s_) / sine - b_slope_[d])
                          : 0;
             Row inner;
-            for (int i = 0; i < n; ++i) inner[i] = speeds[d][i] * clock[i] + speed[i] * clock_[d][i];
+            for (int i = 0; i < n; ++i) inner[i] = speeds_[d][i] * clock[i] + speed[i] * clock_[d][i];
             const real more = rule().integral(closing_rows_[d]), further = rule().integral(inner);
             pushed[d] = impulse * mass_slope_[d] + m * (more - faster + speed_slope_[d]);
             shifted[d] = moment * mass_slope_[d] +
@@ -346,8 +345,6 @@ class TangentCollocation {
         std::copy_n(end_.begin(), 2 * t_.modes * t_.count, t_.matrix.begin());
         move_balls(impulse, moment, pushed, shifted);
     }
-    std::vector<Row> closing_rows_, growth_sums_;
-    std::vector<real> end_;
 
     void move_balls(real impulse, real moment, const std::vector<real>& pushed,
                     const std::vector<real>& shifted) {

@@ -31,6 +31,8 @@ class Deviation(NamedTuple):
         Whether the status is "finished", and contacts are the same, with their speeds and restitutions to 1e-9.
     status
         Status of the package.
+    collocated
+        Number of contacts that were solved as a whole.
     """
 
     state: float
@@ -38,6 +40,7 @@ class Deviation(NamedTuple):
     growth: float
     agrees: bool
     status: str
+    collocated: int
 
 
 def physical(run: Run, flow: Flow) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -66,7 +69,7 @@ def deviation(stored: Stored) -> Deviation:
     end = flow.over(None, 0.0, run["end"])
     agrees = [(each.damper, each.contact) for each in end.contacts] == [touch[:2] for touch in touches]
     if not (end.ok and agrees):
-        return Deviation(np.inf, np.inf, np.inf, False, end.status)
+        return Deviation(np.inf, np.inf, np.inf, False, end.status, 0)
     columns_of_log = 3 if run["hard"] else 2  # soft contacts have no restitution in the log of the program
     log = np.array([(each.time, each.approach_speed, each.restitution) for each in end.contacts])[:, :columns_of_log]
     agrees = np.allclose(log, np.array(touches)[:, 2 : 2 + columns_of_log], rtol=1e-9, atol=1e-12)
@@ -85,4 +88,5 @@ def deviation(stored: Stored) -> Deviation:
         growth,
         agrees,
         end.status,
+        end.raw.counts.collocated,
     )
