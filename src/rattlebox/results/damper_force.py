@@ -13,6 +13,11 @@ if TYPE_CHECKING:
     from .arrays import RunArrays
 
 
+def has_hard_impacts(arrays: RunArrays) -> bool:
+    """Return whether impacts of a run have no duration, so that their forces and accelerations are infinite."""
+    return arrays.engine != "dem" and bool(np.isposinf(arrays.impacts.peak_force).any())
+
+
 def mean_damper_force(arrays: RunArrays, case: Case) -> NDArray[np.float64]:
     """Return the force on each cavity, averaged between output times, from the balance of momentum of its balls.
 

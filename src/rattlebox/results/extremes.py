@@ -12,6 +12,7 @@ from rattlebox._util.exceptions import RattleboxError
 from rattlebox.model.errors import Hint
 
 from .acceleration import accelerations_of_steps, base_at_points
+from .damper_force import has_hard_impacts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -44,6 +45,7 @@ def accelerations(run: Record) -> tuple[FloatArray | None, FloatArray | None]:
     """Return the accelerations of the points in each output step, relative to the base and absolute, (2, T - 1, P).
 
     They are the same array if the base does not move, and None without the case, which knows the shapes of the modes.
+    They are NaN with hard impacts, before and after which the run has samples at the same time.
     """
     arrays = run.arrays
     if not run.source or arrays.time.size < 2:
@@ -52,6 +54,8 @@ def accelerations(run: Record) -> tuple[FloatArray | None, FloatArray | None]:
         case = run.case
         shapes = np.array(list(case.modes.lines().values())).reshape(len(arrays.points), -1)
         relative = accelerations_of_steps(arrays, case, shapes.T)
+        if has_hard_impacts(arrays):
+            relative = np.full_like(relative, np.nan)
         if not arrays.base_acceleration.any():
             return relative, relative
         base = base_at_points(case, arrays.base_acceleration)

@@ -16,7 +16,7 @@ from rattlebox._util.html import bullets, paragraph, table
 from rattlebox._util.quantities import ACCELERATION, MISSING, STANDARD_GRAVITY, digits, quantity
 from rattlebox.core import _core
 
-from .damper_force import mean_damper_force
+from .damper_force import has_hard_impacts, mean_damper_force
 from .extremes import accelerations, largest_acceleration, own_points, peak_drifts
 from .free_decay import free_decay
 from .schema import PARTNERS
@@ -296,6 +296,8 @@ def _forces(run: Record) -> dict[str, Value]:
         mean = mean_damper_force(arrays, run.case) if run.source else np.zeros((0, 0))
         for index, name in enumerate(arrays.dampers if mean.size else ()):
             force = mean[:, index].reshape(time.size - 1, -1)
+            if has_hard_impacts(arrays):
+                force = np.full_like(force, np.nan)
             values |= _peak_and_rms(f"damper_force[{name}]", time, np.linalg.norm(force, axis=1))
     force = np.linalg.norm(arrays.interface_force.reshape(time.size, -1), axis=1)
     if np.isfinite(force).all() and force.any():
@@ -545,8 +547,8 @@ class Summary(_Report):
         `share_normal`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `energy_residual`,
         `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`, `rms_displacement[point]`,
         `peak_acceleration[point]` and `rms_acceleration[point]` (absolute; contacts and pulses act with their mean over each
-        output step), the same for `relative_acceleration[point]` if the base moves, `damper_force[damper]` (mean over each
-        output step),
+        output step; NaN with hard impacts, in which they are infinite), the same for `relative_acceleration[point]` if the
+        base moves, `damper_force[damper]` (mean over each output step; NaN with hard impacts),
         `interface_force`, `base_acceleration`, `load[load]` and, with several modes, `modal_displacement[mode 1]`;
         `peak_drift[storey 2]` of shear buildings and their `largest_drift`; `largest_acceleration` of several points without
         tuned masses; `computing_time`. For runs

@@ -176,6 +176,32 @@ def test_short_pulses_of_loads_count_in_accelerations() -> None:
     assert float(result.rms_acceleration[0]) == pytest.approx(values["rms_acceleration[mass]"], rel=1e-6)
 
 
+def test_hard_impacts_have_no_finite_acceleration() -> None:
+    """Hard impacts have no peak of force or acceleration, whereas the same balls with contacts of a duration have one.
+
+    Only the contact force was left out: means over steps without a duration, across an impact, gave up to 1e15 m/s^2, and
+    the other tests of accelerations have contacts with a duration.
+    """
+    for method, is_hard in ((rb.Newton(), True), (rb.EventDriven(), False)):
+        case = rb.Case(
+            structure=rb.SDOF(mass=2.0, frequency=18.0, damping_ratio=0.01),
+            damper=rb.ImpactDamper(
+                ball=rb.Sphere(radius="18 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.7)
+            ),
+            load=rb.Harmonic(amplitude=6.0, frequency=18.0),
+            method=method,
+            duration="2 s",
+        )
+        run = rb.simulate(case)
+        values = run.summary().values
+        names = ["peak_contact_force", *(f"{kind}_damper_force[damper]" for kind in ("peak", "rms"))]
+        names += [f"{kind}_acceleration[mass]" for kind in ("peak", "rms", "steady_rms")]
+        for name in names:
+            assert math.isnan(float(values[name])) == is_hard, name
+        assert math.isnan(rb.analysis.largest_acceleration(run)) == is_hard
+        assert float(values["peak_displacement[mass]"]) > 0
+
+
 def test_truncated_modes_follow_the_base() -> None:
     """Two of twenty modes with the residual mass give the base force of the full model at low frequencies."""
     motion = rb.HalfSine(amplitude=30.0, duration=0.2)
