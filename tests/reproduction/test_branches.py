@@ -21,7 +21,7 @@ def data():
 
 def test_branch_of_two_impacts_is_the_closed_form(data):
     """Speeds, and the range in which the motion is stable, are those of the exact motion with two impacts a cycle."""
-    # Behind a grazing the branch goes on with more impacts.
+    # Past the grazing point the branch continues with more impacts.
     symmetric = data.isel(point=((data.branch == 0) & (data.contacts == 2)).values)
     assert symmetric.point.size > 100
     for point in range(10, symmetric.point.size - 10, 20):

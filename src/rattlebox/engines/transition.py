@@ -174,7 +174,7 @@ class Flow:
         for path in parameters:
             if not is_number(whole, path, np.zeros(1)):
                 raise Hint(
-                    f"{path}: tables have no derivatives in their entries, and pulses of straight lines are tables",
+                    f"{path}: whole numbers, entries of tables and pulses of straight lines have no derivatives",
                     "finite differences, or for a pulse HalfSine",
                 )
         modes = case.modes.decay.size

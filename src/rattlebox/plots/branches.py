@@ -35,6 +35,8 @@ _MARKS = dict(
         strict=True,
     )
 )
+_NAMES = {"torus": "Neimark-Sacker"}
+"""Names of special points in legends, where they are not the kind itself."""
 
 
 def plot_branches(
@@ -137,4 +139,4 @@ def _draw_branch(
             "clip_on": False,
         }
         axes.plot(x[k : k + 1], y[k : k + 1], zorder=5, **style_of)  # type: ignore[arg-type]
-        marks.setdefault(kind, Line2D([], [], label=kind, **style_of))  # type: ignore[arg-type]
+        marks.setdefault(kind, Line2D([], [], label=_NAMES.get(kind, kind), **style_of))  # type: ignore[arg-type]

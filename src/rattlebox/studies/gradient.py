@@ -132,11 +132,7 @@ def gradient(
         raise Hint("parameters must list at least one path, each only once", 'parameters = ["damper.gap"]')
     kind = _MEASURES.get(measure) if isinstance(measure, str) else None
     if kind is None:
-        known = ", ".join(repr(name) for name in _MEASURES)
-        raise Hint(
-            f"there is no derivative of the measure {measure!r:.60}; those with one are {known}",
-            nearest(str(measure), _MEASURES) or '"rms"',
-        )
+        raise Hint(f"there is no derivative of the measure {measure!r:.60}", nearest(str(measure), _MEASURES))
     motion = _Periodic.of(case, paths) if isinstance(case, Orbit) else _Transient.of(case, paths)
     task = kind(motion, _Observed.of(motion.flow, point), time)
     value, slopes = task.compute()
@@ -273,7 +269,7 @@ class _Motion(ABC):
         if not growth <= MOST_GROWTH:
             raise Hint(
                 f"a small change of the state grows {growth:.1e} times up to t = {quantity(last, 's', 4)}; beyond "
-                f"{MOST_GROWTH:g} the motion is as good as chaotic, and a derivative holds for no change of practical size",
+                f"{MOST_GROWTH:g} the motion is practically chaotic, and a derivative holds for no change of practical size",
                 "a shorter duration; or rb.sensitivity, which takes whole runs over a range",
             )
 

@@ -151,7 +151,7 @@ def test_figure(branch):
     """The figure has lines for stable and unstable motions and marks of the special points."""
     figure = branch.plot()
     names = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert {"stable", "unstable", "pitchfork", "torus"} <= set(names)
+    assert {"stable", "unstable", "pitchfork", "Neimark-Sacker"} <= set(names)
 
 
 def test_figure_of_a_shaken_cavity():

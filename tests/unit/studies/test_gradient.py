@@ -145,7 +145,7 @@ def twins() -> rb.Case:
 
 BALL = {"ball": rb.Sphere(radius="13 mm", material="steel"), "gap": "1.7 mm"}
 REFUSED = {
-    "chaos": (chaotic, {}, "as good as chaotic"),
+    "chaos": (chaotic, {}, "practically chaotic"),
     "chatter": (
         lambda: case(
             damper=rb.ImpactDamper(**BALL, contact=rb.Tsuji(restitution=0.5), gravity=9.81, start=0.9), duration="0.4 s"
@@ -168,6 +168,7 @@ REFUSED = {
     "time of a peak": (case, {"time": 0.01, "measure": "peak"}, "has no time"),
     "no path": (case, {"parameters": []}, "at least one path"),
     "a text": (case, {"parameters": "damper.ball.material"}, "needs a number"),
+    "a number of dampers": (case, {"parameters": "damper.number"}, "whole numbers"),
     "unknown point": (case, {"point": "roof"}, "no point"),
     "fixed steps": (lambda: case(method=rb.TwoStep()), {}, "has no derivatives"),
 }

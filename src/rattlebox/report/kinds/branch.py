@@ -69,7 +69,7 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
     name, size = str(study.attrs["parameter"]), size_of_motion(study)
     rows = []
     for each in stretches(study)[:_MOST_ROWS]:
-        ends = [noun(kind) or "end" for kind in each.limits]
+        ends = [noun(kind) or "end of the branch" for kind in each.limits]
         more = ", ".join(["symmetric" if each.symmetric else "not symmetric", *(["sticking"] if each.sticks else [])])
         rows.append(
             (
@@ -96,7 +96,7 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
         for k in special[:_MOST_ROWS]
     ]
     left = f"and {counted(special.size - _MOST_ROWS, 'further point')}" if special.size > _MOST_ROWS else ""
-    yield Table("Special points", ("kind", name, "multiplier", "impacts", name_of(size), "branch"), points, left)
+    yield Table("Special points", ("kind", name, "multiplier", "impacts", name_of(size), "continuation"), points, left)
 
 
 def _sizes(part: xr.DataArray) -> str:

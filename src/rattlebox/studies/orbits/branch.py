@@ -47,7 +47,7 @@ class SpecialPoint:
     orbit : Orbit
         Periodic motion at the point.
     passage : str
-        How the branch goes on at a grazing, such as "continues with 3 impacts" or "nonsmooth fold, turns back with 3
+        How the branch continues at a grazing point, such as "continues with 3 impacts" or "nonsmooth fold, turns back with 3
         impacts"; "" at other points.
     """
 
@@ -72,8 +72,8 @@ class Branch:
         Points in their order along the branch: `value` of the parameter; `amplitude` of each point of the structure [m];
         `multiplier_real` and `multiplier_imaginary`; `stable`; `impacts` in a period; `slowest_impact` [m/s];
         `nearest_miss` [m]; `symmetric`; `sticks`; `special`, the name of a special point or ""; `located`, the value of
-        the parameter there; `passage`, how the branch goes on at a grazing; `state` and `phase`, from which the motion
-        can be computed again; `determinant_error`.
+        the parameter there; `passage`, how the branch continues at a grazing point; `state` and `phase`, from which the
+        motion can be computed again; `determinant_error`.
 
     Examples
     --------
@@ -183,7 +183,7 @@ class Branch:
             kind = getattr(point, "kind", point)
             raise Hint(
                 f"no branch begins at a point of kind {kind!r:.40}; it must be a flip or a pitchfork",
-                "branch.specials, a list of the special points",
+                'the points of branch.specials whose kind is "flip" or "pitchfork"',
             )
         value = float(self.data.value[point.index])
         limits = tuple(self.data.attrs["limits"]) if limits is None else limits

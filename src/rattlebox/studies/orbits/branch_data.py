@@ -120,7 +120,7 @@ def _dataset(
         "sticks": along([o.sticks for o in orbits], "whether bodies stick together"),
         "special": along([point.special for point in points], "name of a special point"),
         "located": along([point.located for point in points], f"{parameter} at a special point", unit),
-        "passage": along([point.passage for point in points], "how the branch goes on at a grazing"),
+        "passage": along([point.passage for point in points], "how the branch continues at a grazing point"),
         "state": along([o.state for o in orbits], "state at the beginning", "SI", "component"),
         "phase": along([o.phase for o in orbits], "part of the period of the loads at the beginning"),
         "determinant_error": along([o.determinant_error for o in orbits], "error of the determinant"),

@@ -82,11 +82,11 @@ def continue_orbit(
       loses its symmetry;
     - Neimark-Sacker: :math:`\prod_{i < j} (\mu_i \mu_j - 1)` for a complex pair;
     - grazing: the smallest gap of a near miss, or the approach speed of the slowest impact. There :math:`M` is singular
-      as one over that speed, and :math:`p` is extrapolated. The branch goes on with the motion with one impact more or
-      less that begins there, on the other side or back on the same one (`SpecialPoint.passage`);
+      as one over that speed, and :math:`p` is extrapolated. The branch continues with the motion with one impact more
+      or less that begins there, past the grazing point or back on the same side of it (`SpecialPoint.passage`);
     - sticking: bisected where bodies begin or cease to rest on each other.
 
-    A branch ends at the limits, at a grazing behind which no motion is found, where motions without the symmetry meet
+    A branch ends at the limits, at a grazing point past which no motion is found, where motions without the symmetry meet
     their mirror images in a pitchfork, or after the largest number of points.
 
     References

@@ -49,7 +49,7 @@ class Point:
     located: float = field(
         default=np.nan
     )  # value of the parameter at a special point, by extrapolation if it is singular
-    passage: str = ""  # how the branch goes on at a grazing
+    passage: str = ""  # how the branch continues at a grazing point
 
     @property
     def contacts(self) -> Counter[int]:

@@ -119,7 +119,7 @@ class Curve:
                     return
                 new = _null(linear[1])
                 tangent = new if new[n:] @ tangent[n:] > 0 else -new
-        self.reasons.append(f"it was ended after {several(count, 'point')}")
+        self.reasons.append(f"the limit of {several(count, 'point')} is reached")
 
     def row(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector, normal: Vector) -> Row | None:
         """Return the motion at a corrected point and the values of the parameters; None if it cannot be computed."""

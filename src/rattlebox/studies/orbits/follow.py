@@ -135,7 +135,7 @@ class Follower:
             moved = corrector.resection(after)
             # Distances are between points whose maps begin at the same phase.
             before, point = (point if moved is after else None), moved
-        self.reasons.append(f"it was ended after {several(count, 'point')}")
+        self.reasons.append(f"the limit of {several(count, 'point')} is reached")
 
     def _goes_on(self, proceed: Callable[[], bool], loop: tuple[float, int, int, bool]) -> bool:
         """Return whether to proceed, while the state of the loop is known."""

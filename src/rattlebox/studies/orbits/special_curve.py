@@ -60,7 +60,7 @@ def continue_point(
     limits
         Smallest and largest value of each, a pair for each path.
     points
-        Largest number of points in each of both directions.
+        Largest number of points in each of the two directions.
     step
         Longest step, as part of the ranges of the parameters and of the size of the motion.
     progress
@@ -71,7 +71,7 @@ def continue_point(
     xarray.Dataset
         Over `point`: the values of both parameters, under their paths, the `amplitude` of the first point of the structure
         [m], and `angle`, the angle of the critical multiplier [rad], NaN for grazing and sticking. Attributes: `equation`,
-        what holds on the curve, and `ended`, why it ends between the limits.
+        the condition on the curve, and `ended`, why it ends between the limits.
 
     Raises
     ------
@@ -88,7 +88,7 @@ def continue_point(
       derivatives. The motion without the contact is followed, which depends smoothly on all parameters up to the
       grazing. An impact is lost where this gap is zero, too: the same curve;
     - sticking: the force that presses two bodies together is zero at the instant at which they would come to rest. After
-      chatter the motions beside this limit have no smooth derivatives; it is bisected across the curve to 1e-10 of the
+      chatter the motions next to this limit have no smooth derivatives; it is bisected across the curve to 1e-10 of the
       ranges.
 
     Examples

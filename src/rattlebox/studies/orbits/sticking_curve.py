@@ -63,7 +63,7 @@ class StickingCurve(Curve):
             yield row
             count += 1
             length = min(1.4 * length, self.longest)
-        self.reasons.append(f"it was ended after {several(count, 'point')}")
+        self.reasons.append(f"the limit of {several(count, 'point')} is reached")
 
     def _across(self, near: Orbit, place: Vector, across: Vector) -> Row | None:
         """Return the motion at the limit on the line through a guess across the curve; None if there is none near."""
