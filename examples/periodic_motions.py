@@ -5,7 +5,7 @@ For researchers of non-smooth dynamics: all periodic motions with two and four i
 frequency, stable or not.
 
 The symmetric motion with two impacts a cycle is stable below and above the resonance and loses its symmetry in two
-pitchforks; between them it goes on as an unstable one. The symmetric motions with four impacts are on a closed curve, an
+pitchforks; between them it is unstable. The symmetric motions with four impacts are on a closed curve, an
 isola without a connection to the others. Runs end on its two stable parts, below and above the peak.
 
 :doc:`/how-to/periodic_motions` explains it.
