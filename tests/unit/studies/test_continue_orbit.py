@@ -5,6 +5,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.studies.kinds import study_kind
+from rattlebox.studies.orbits.branch_words import stretches
 from rattlebox.studies.run.study import make_study
 
 
@@ -145,6 +146,19 @@ def test_progress_stops(orbit):
     """The continuation ends with the points so far if the function of the progress returns False."""
     branch = rb.continue_orbit(orbit, "load.frequency", ("31 Hz", "38 Hz"), progress=lambda done, _: done < 4)
     assert 1 <= len(branch) < 12
+
+
+def test_a_closed_branch_has_no_first_stretch(branch):
+    """The stretch that contains the first point of a closed branch is one, from special point to special point.
+
+    It was stated as two stretches that overlap; no test looked at the stretches of a closed branch.
+    """
+    ends = [each.limits for each in stretches(branch.data)]
+    assert ends == [("", "pitchfork"), ("pitchfork", "torus"), ("torus", "")]
+    joined, stable = stretches(branch.data.assign_attrs(closed=1))
+    assert (joined.limits, stable.limits) == (("torus", "pitchfork"), ("pitchfork", "torus"))
+    assert sorted([*joined.rows, *stable.rows]) == np.flatnonzero(branch.data.special.values == "").tolist()
+    assert (joined.low, joined.high) == (branch.data.value.values.min(), branch.data.value.values.max())
 
 
 def test_figure(branch):

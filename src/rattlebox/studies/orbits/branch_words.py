@@ -35,7 +35,7 @@ class Stretch(NamedTuple):
 
     low: float
     high: float
-    rows: slice
+    rows: NDArray[np.intp]
     stable: bool
     impacts: int  # in a period of the motion
     symmetric: bool
@@ -80,13 +80,22 @@ def stretches(data: xarray.Dataset) -> list[Stretch]:
             Stretch(
                 min(edges),
                 max(edges),
-                slice(int(start), int(end) + 1),
+                np.arange(start, end + 1),
                 bool(stable),
                 impacts,
                 bool(symmetric),
                 bool(sticks),
                 (borders[0][1], borders[1][1]),
             )
+        )
+    # A closed curve may begin anywhere: its first stretch continues the last one if nothing changes there.
+    if data.attrs.get("closed") and len(found) > 1 and (labels[ordinary[0]] == labels[ordinary[-1]]).all():
+        first, last = found[0], found.pop()
+        found[0] = first._replace(
+            low=min(first.low, last.low),
+            high=max(first.high, last.high),
+            rows=np.concatenate([last.rows, first.rows]),
+            limits=(last.limits[0], first.limits[1]),
         )
     return found
 
