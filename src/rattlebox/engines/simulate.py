@@ -103,7 +103,7 @@ def simulate(
     >>> run.status
     'finished'
     """
-    _require_case(case)
+    require_case(case)
     if start is not None:
         return _continue(case, start, checkpoint, snapshots, progress)
     if case.particle_dampers:
@@ -200,7 +200,7 @@ def simulate_many(
         raise Hint("a list of cases is needed, not one case", "simulate(case)")
     cases = list(cases)
     for case in cases:
-        _require_case(case)
+        require_case(case)
     if threads is not None:
         threads = whole_number(threads, "threads", 1)
     if any(case.particle_dampers for case in cases):
@@ -242,7 +242,8 @@ def _stop(*_: int) -> bool:
     return False
 
 
-def _require_case(case: object) -> None:
+def require_case(case: object) -> None:
+    """Raise if an argument is not a case."""
     if not isinstance(case, Case):
         raise Hint(f"a Case is needed, not {case!r:.60}", 'rb.Case.from_file("case.toml")')
 

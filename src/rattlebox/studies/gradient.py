@@ -17,6 +17,7 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox._util.quantities import quantity
 from rattlebox.engines.status import contact_name
 from rattlebox.engines.transition import Flow, Transition
+from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import unit_of
 from rattlebox.studies.orbits.forcing import Forcing
@@ -24,8 +25,6 @@ from rattlebox.studies.orbits.orbit import Orbit
 
 if TYPE_CHECKING:
     import xarray
-
-    from rattlebox.model.case import Case
 
 Vector = NDArray[np.float64]
 
@@ -133,6 +132,11 @@ def gradient(
     kind = _MEASURES.get(measure) if isinstance(measure, str) else None
     if kind is None:
         raise Hint(f"there is no derivative of the measure {measure!r:.60}", nearest(str(measure), _MEASURES))
+    if not isinstance(case, (Case, Orbit)):
+        raise Hint(
+            f"a case or a periodic motion is needed, not {case!r:.60}",
+            "rb.find_orbit(case), branch.orbit(k), or the orbit of a special point",
+        )
     motion = _Periodic.of(case, paths) if isinstance(case, Orbit) else _Transient.of(case, paths)
     task = kind(motion, _Observed.of(motion.flow, point), time)
     value, slopes = task.compute()

@@ -48,6 +48,13 @@ def test_refused(name):
     assert ";" in raised.value.complaint or "so that" in raised.value.complaint
 
 
+def test_a_file_is_not_a_case():
+    """The name of a case file in place of a case is refused with the function that reads it."""
+    with pytest.raises(rb.CaseError, match="a Case is needed") as raised:
+        rb.find_orbit("case.toml")
+    assert "from_file" in raised.value.suggestion
+
+
 def test_particles_are_refused():
     """Particles in 3-D are refused with a study that suits them."""
     particles = rb.reference_case().replaced({"duration": "0.1 s"})

@@ -168,6 +168,7 @@ REFUSED = {
     "time of a peak": (case, {"time": 0.01, "measure": "peak"}, "has no time"),
     "no path": (case, {"parameters": []}, "at least one path"),
     "a text": (case, {"parameters": "damper.ball.material"}, "needs a number"),
+    "a file": (lambda: "case.toml", {}, "a case or a periodic motion is needed"),
     "a number of dampers": (case, {"parameters": "damper.number"}, "whole numbers"),
     "unknown point": (case, {"point": "roof"}, "no point"),
     "fixed steps": (lambda: case(method=rb.TwoStep()), {}, "has no derivatives"),

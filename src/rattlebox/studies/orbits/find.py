@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines.simulate import simulate
+from rattlebox.engines.simulate import require_case, simulate
 from rattlebox.model.errors import Hint, several
 from rattlebox.model.units import whole_number
 from rattlebox.results.run import Run
@@ -107,6 +107,7 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
     >>> print(orbit.stability)
     stable
     """
+    require_case(case)
     forcing = Forcing.of(case)
     cycles = None if period is None else whole_number(period, "period", 1)
     returns = ReturnMap(forcing, cycles or 1)
