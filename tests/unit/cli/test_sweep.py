@@ -85,7 +85,7 @@ def test_refused_runs_and_warnings_are_counted(study: Path, run_cli: RunCli) -> 
     )
     case.to_file("few.toml")
     study.write_text('case.file = "few.toml"\nmeasure = ["impact_share"]\naxes."damper.softening" = [1e6, 1.0]\n')
-    warning = "warning: 1 with overlaps above 1 % of the radius\n"
+    warning = "warning: 1 of 2 results with overlaps above 1 % of the radius\n"
     code, printed, _ = run_cli("sweep", study)
     assert code == 0 and printed.startswith("2 variants: 1 finished, 1 refused\n")
     assert "damper.softening = 1\n  method.dt\n    dt = 40.0 µs" in printed

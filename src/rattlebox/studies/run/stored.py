@@ -388,7 +388,11 @@ def warning_lines(study: xr.Dataset) -> list[str]:
     flags = np.concatenate([computed(chunk) for chunk in chunks(study.warnings)])
     counts = [np.count_nonzero(flags & mask) for mask in attrs["flag_masks"]]
     names = [WARNINGS.get(name, name) for name in attrs["flag_meanings"].split()]
-    return lines + [f"warning: {count:,} with {name}" for count, name in zip(counts, names, strict=True) if count]
+    return lines + [
+        f"warning: {count:,} of {flags.size:,} results with {name}"
+        for count, name in zip(counts, names, strict=True)
+        if count
+    ]
 
 
 def chunks(values: xr.DataArray) -> Iterator[np.ndarray[Any, Any]]:
