@@ -179,8 +179,8 @@ def test_random_runs(law: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 def test_many_random_runs(law: str) -> None:
-    """The same in 450 runs, which take some minutes."""
-    check_many(range(100, 150), law)
+    """The same in 1000 runs, which take some minutes."""
+    check_many(range(100, 212), law)
 
 
 def two_balls(e: float) -> rb.Case:

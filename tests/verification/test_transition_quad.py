@@ -18,7 +18,7 @@ from tests.support.quad.store import CLOSED, Stored, read
 
 STATE = 2e-13
 """Largest error of a state, in units of the largest gap and the largest approach speed and for each unit of growth."""
-STATE_BESIDE_OTHERS = 2e-12
+STATE_BESIDE_OTHERS = 5e-13
 """The same with contacts solved as a whole, whose energy balance is judged beside a part of the energy of all bodies."""
 DERIVATIVES = 1e-9
 """Largest error of a derivative, as a part of the largest term of its component."""
