@@ -118,5 +118,6 @@ def test_loss_is_what_the_structure_loses(changes: dict[str, Any], drives: bool)
     ends = arrays.time[-1] - np.array([cycles, 0]) / FREQUENCY
     given = float(np.diff(np.interp(ends, arrays.time, left))[0]) / cycles
     assert loss == pytest.approx(given, rel=2e-3)
-    driven = np.interp(ends, arrays.time, arrays.drive_work.sum(axis=1))
-    assert (abs(driven[1] - driven[0]) / cycles > 20e-3 * abs(given)) == drives
+    # What the drive gives and takes back, since the rest over some cycles may be small by chance.
+    exchanged = np.abs(np.diff(arrays.drive_work.sum(axis=1)[arrays.time >= ends[0]])).sum() / cycles
+    assert (exchanged > 20e-3 * abs(given)) == drives
