@@ -225,14 +225,16 @@ def test_nothing_is_missed_in_random_cases(seed: int) -> None:
     rng = np.random.default_rng(seed)
     sizes = WIDE if rng.random() < 0.3 else ALIKE
     most = 110 if sizes is WIDE else 300
+    gravity = float(rng.choice([0.0, 9.81, 200.0]))
+    refused = ["narrowest periodic"] * (sizes is WIDE) + ["periodic along y and z"] * (gravity > 0)
     seen = follow(
         gas(
-            CAVITIES[rng.choice(list(CAVITIES))],
+            CAVITIES[rng.choice([name for name in CAVITIES if name not in refused])],
             sizes,
             int(rng.integers(8, most)),
             float(10 ** rng.uniform(-2, 1)),
             structure=rb.SDOF(mass=rng.uniform(0.02, 1), stiffness=2000.0, velocity=rng.uniform(-2, 2)),
-            gravity=float(rng.choice([0.0, 9.81, 200.0])),
+            gravity=gravity,
             one=10 * rng.standard_normal(3) if rng.random() < 0.5 else None,
         ),
         checks=200,
