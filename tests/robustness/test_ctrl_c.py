@@ -69,7 +69,8 @@ print("computing", flush=True)
 stepper.advance(3600.0, acceleration=(0.0, 0.0, 2.0))
 """,
     "processes": """
-case = rb.Case(structure=beam, damper=ball, duration="600 s")
+load = rb.Harmonic(amplitude="3 N", frequency="25 Hz")
+case = rb.Case(structure=beam, damper=ball, load=load, duration="2000 s")
 if __name__ == "__main__":
     print("computing", flush=True)
     rb.sweep(case, {"damper.gap": rb.linspace("0.1 mm", "1 mm", 400)}, "rms", backend="processes", workers=2)
