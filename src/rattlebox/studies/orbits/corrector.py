@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from rattlebox.studies.orbits.find import away_from_impacts, sizes_in
 from rattlebox.studies.orbits.orbit import Orbit, orbit_and_motion
 from rattlebox.studies.orbits.shooting import TOLERANCE, ReturnMap, Shot
+from rattlebox.studies.orbits.stability import flip_test, fold_test, torus_test
 
 Vector = NDArray[np.float64]
 
@@ -61,33 +61,21 @@ class Point:
         return np.linalg.eigvals(self.shot.monodromy()).astype(complex)
 
 
-def _plus(point: Point) -> float:
+def _turning(point: Point) -> float:
     """Test function of a fold: the share of the parameter in the tangent."""
     return float(point.tangent[-1])
 
 
 def _branching(point: Point) -> float:
     """Test function of a branch point: the determinant of M - 1 over the share of the parameter in the tangent."""
-    product = float(np.prod(point.multipliers() - 1).real)
-    return product / point.tangent[-1] if point.tangent[-1] else 0.0
-
-
-def _minus(point: Point) -> float:
-    """Test function of a flip, or of a pitchfork if the map is mirrored: the determinant of M + 1."""
-    return float(np.prod(point.multipliers() + 1).real)
-
-
-def _torus(point: Point) -> float:
-    """Test function of a Neimark-Sacker bifurcation: zero if the product of two multipliers is 1."""
-    values = point.multipliers()
-    return float(np.prod([one * other - 1 for one, other in combinations(values, 2)]).real) if values.size > 1 else 1.0
+    return fold_test(point.multipliers()) / point.tangent[-1] if point.tangent[-1] else 0.0
 
 
 TESTS: dict[str, Callable[[Point], float]] = {
-    "fold": _plus,
+    "fold": _turning,
     "branch point": _branching,
-    "flip": _minus,
-    "torus": _torus,
+    "flip": lambda point: flip_test(point.multipliers()),  # a pitchfork if the map is mirrored
+    "torus": lambda point: torus_test(point.multipliers()),
 }
 """Test functions by the special point at which they change sign."""
 

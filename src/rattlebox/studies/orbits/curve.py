@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,7 @@ from rattlebox.studies.orbits.find import away_from_impacts, size_of
 from rattlebox.studies.orbits.forcing import Forcing, number_at
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
 from rattlebox.studies.orbits.shooting import TOLERANCE, ReturnMap, Shot
+from rattlebox.studies.orbits.stability import flip_test, fold_test, torus_test
 
 if TYPE_CHECKING:
     from rattlebox.studies.orbits.branch import SpecialPoint
@@ -24,40 +25,25 @@ Vector = NDArray[np.float64]
 _CHANGE = 1e-5
 """Step of the central differences of the test function in scaled coordinates."""
 _CORRECTIONS = 8
-SHORTEST = 1e-5
-LOST = "no further motion was found"
-
-
-def _minus_one(values: NDArray[np.complex128]) -> float:
-    return float(np.prod(values - 1).real)
-
-
-def _plus_one(values: NDArray[np.complex128]) -> float:
-    return float(np.prod(values + 1).real)
-
-
-def _pair(values: NDArray[np.complex128]) -> float:
-    return float(np.prod([one * other - 1 for one, other in combinations(values, 2)]).real)
-
+_FEW, _MANY = 3, 6
+"""Numbers of corrections at which a step becomes longer or shorter."""
+_SHORTEST = 1e-5
+"""Shortest step, where the size of the motion and the ranges of the parameters are 1."""
 
 TESTS: dict[str, Callable[[NDArray[np.complex128]], float]] = {
-    "fold": _minus_one,
-    "flip": _plus_one,
-    "pitchfork": _plus_one,
-    "torus": _pair,
+    "fold": fold_test,
+    "flip": flip_test,
+    "pitchfork": flip_test,
+    "torus": torus_test,
 }
 """Test functions of the multipliers of the map; that of a symmetric motion covers half a period."""
-
 
 Row = tuple[Orbit, Vector]
 """A motion and the values of both parameters."""
 
 
-class Curve:
-    """Curve of a special point in two parameters: motions with one more equation, `linear`."""
-
-    zero = 1e-8
-    """Largest value of the additional equation at a point."""
+class Curve(ABC):
+    """Curve of a special point in two parameters, followed in steps on both sides of its start."""
 
     def __init__(
         self, point: SpecialPoint, axes: tuple[str, ...], limits: Sequence[tuple[float, float]], step: float
@@ -72,7 +58,6 @@ class Curve:
         self.start: Row = orbit, np.array([present(number_at(orbit.case, axis)) for axis in axes])
         self.reasons: list[str] = []
         """Reason why the curve ends on each side that was followed; empty at a limit."""
-        self._begin = orbit.state, self.start[1]
 
     def is_inside(self, values: Vector) -> bool:
         """Return whether values of both parameters are between their limits."""
@@ -80,46 +65,86 @@ class Curve:
 
     def follow(self, side: float, most: int) -> Iterator[Row]:
         """Yield the motions on one side of the start."""
-        returns, (state, values) = self.returns, self._begin
-        scale = present(size_of(returns, self.start[0].state))
+        self.begin(side)
         length, count = self.longest / 4, 0
-        linear = self.linear(returns, state, values, scale)
-        if linear is None:
-            self.reasons.append(LOST)
-            return
-        tangent = side * _null(linear[1])
         while count < most:
-            n = state.size
-            guess = state + length * tangent[:n] * scale, values + length * tangent[n:] * self.width
-            corrected = self.correct(returns, *guess, scale, tangent)
-            row = None if corrected is None else self.row(returns, *corrected[:2], scale, tangent)
-            if corrected is None or row is None:
+            taken = self.step(length)
+            if taken is None:
                 length /= 2
-                if length < SHORTEST:
-                    self.reasons.append(LOST)
+                if length < _SHORTEST:
+                    self.reasons.append("no further motion was found")
                     return
                 continue
+            row, corrections = taken
             if not self.is_inside(row[1]):
                 self.reasons.append("")
                 return
-            state, values, slopes, used = corrected
-            new = _null(slopes)
-            tangent = new if new @ tangent > 0 else -new
             yield row
             count += 1
-            length = min(1.4 * length, self.longest) if used <= 3 else length / 2 if used >= 6 else length
-            # The map begins in the longest flight when an impact comes near its beginning.
-            here = ReturnMap(Forcing.of(row[0].case), returns.cycles, phase=returns.phase)
-            moved, there = away_from_impacts(here, state)
-            if moved.phase != returns.phase:
-                returns, state = returns.with_(phase=moved.phase), there
-                linear = self.linear(returns, state, values, scale)
-                if linear is None:
-                    self.reasons.append(LOST)
-                    return
-                new = _null(linear[1])
-                tangent = new if new[n:] @ tangent[n:] > 0 else -new
+            if corrections <= _FEW:
+                length = min(1.4 * length, self.longest)
+            elif corrections >= _MANY:
+                length /= 2
         self.reasons.append(f"the limit of {several(count, 'point')} is reached")
+
+    @abstractmethod
+    def begin(self, side: float) -> None:
+        """Return to the start, to follow one side of it."""
+
+    @abstractmethod
+    def step(self, length: float) -> tuple[Row, int] | None:
+        """Move to the next motion; return it and the number of corrections, or None if there is none."""
+
+
+class SmoothCurve(Curve):
+    """Curve of motions that depend smoothly on both parameters, with one more equation (`linear`)."""
+
+    zero = 1e-8
+    """Largest value of the additional equation at a point."""
+
+    def __init__(
+        self, point: SpecialPoint, axes: tuple[str, ...], limits: Sequence[tuple[float, float]], step: float
+    ) -> None:
+        super().__init__(point, axes, limits, step)
+        self._begin = point.orbit.state, self.start[1]
+
+    def begin(self, side: float) -> None:
+        """Return to the start, to follow one side of it."""
+        self._at, (self._state, self._values) = self.returns, self._begin
+        self._scale = present(size_of(self._at, self.start[0].state))
+        first = self._null_vector()
+        self._tangent = None if first is None else side * first
+
+    def step(self, length: float) -> tuple[Row, int] | None:
+        """Move along the tangent; return the motion and the number of corrections, or None if there is none."""
+        returns, scale, tangent, n = self._at, self._scale, self._tangent, self._state.size
+        if tangent is None:
+            return None
+        guess = self._state + length * tangent[:n] * scale, self._values + length * tangent[n:] * self.width
+        corrected = self.correct(returns, *guess, scale, tangent)
+        row = None if corrected is None else self.row(returns, *corrected[:2], scale, tangent)
+        if corrected is None or row is None:
+            return None
+        self._state, self._values, slopes, count = corrected
+        new = _null(slopes)
+        self._tangent = new if new @ tangent > 0 else -new
+        self._move_section(row[0])
+        return row, count
+
+    def _move_section(self, orbit: Orbit) -> None:
+        """Let the map begin in the longest flight if an impact has come near its beginning."""
+        here = ReturnMap(Forcing.of(orbit.case), self._at.cycles, phase=self._at.phase)
+        moved, there = away_from_impacts(here, self._state)
+        if moved.phase == self._at.phase:
+            return
+        self._at, self._state, old = self._at.with_(phase=moved.phase), there, present(self._tangent)
+        new, n = self._null_vector(), there.size
+        self._tangent = new if new is None or new[n:] @ old[n:] > 0 else -new
+
+    def _null_vector(self) -> Vector | None:
+        """Return the direction of the curve, on either side; None if the motion cannot be computed."""
+        linear = self.linear(self._at, self._state, self._values, self._scale)
+        return None if linear is None else _null(linear[1])
 
     def row(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector, normal: Vector) -> Row | None:
         """Return the motion at a corrected point and the values of the parameters; None if it cannot be computed."""
@@ -127,9 +152,9 @@ class Curve:
         found = orbit_of(returns, shot, state, scale, values.tolist()) if shot.is_complete else None
         return None if found is None else (found, values)
 
+    @abstractmethod
     def linear(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector) -> tuple[Vector, Vector] | None:
         """Return residual and additional equation, (n + 1,), and their scaled derivatives, (n + 1, n + 2)."""
-        raise NotImplementedError
 
     def scaled_slopes(self, shot: Shot, scale: Vector) -> Vector:
         """Return the scaled derivatives of the residual with respect to state and parameters, (n, n + 2)."""
@@ -158,7 +183,7 @@ class Curve:
         return None
 
 
-class StabilityCurve(Curve):
+class StabilityCurve(SmoothCurve):
     """Curve on which multipliers are at a limit of stability."""
 
     def __init__(

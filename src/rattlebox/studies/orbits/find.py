@@ -292,8 +292,6 @@ def away_from_impacts(returns: ReturnMap, state: Vector) -> tuple[ReturnMap, Vec
     length = returns.cycles * period
     near = np.minimum(begins, length - ends).min() < _MARGIN * period
     gap, _ = motion.gaps()
-    if not near and (gap[0] > 0).all() and returns.phase == 0:
-        return returns, state
     if not near and (gap[0] > 0).all():
         return returns, state
     # The middle of the longest flight of all bodies.

@@ -17,6 +17,7 @@ from rattlebox.model.errors import several
 from rattlebox.studies.orbits.corrector import TESTS, Corrector, Point
 from rattlebox.studies.orbits.grazing import NAMES, NOT_FOUND, approach, beyond, is_pressed, located_by
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
+from rattlebox.studies.orbits.stability import flip_test
 from rattlebox.studies.orbits.symmetry import is_mirrored
 
 _FEW, _MANY = 3, 5
@@ -207,7 +208,7 @@ class Follower:
                 return point
             state = found[0][0]
             multipliers = np.linalg.eigvals(found[1].monodromy())
-            tests.append(float(np.prod(multipliers + 1).real))
+            tests.append(flip_test(multipliers.astype(complex)))
             if len(tests) < 2:
                 continue
             step = tests[-1] * (values[-1] - values[-2]) / (tests[-1] - tests[-2]) if tests[-1] != tests[-2] else 0.0

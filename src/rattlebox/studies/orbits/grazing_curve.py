@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rattlebox._util.narrow import present
 from rattlebox.model.errors import Hint
-from rattlebox.studies.orbits.curve import Curve, Row
+from rattlebox.studies.orbits.curve import Row, SmoothCurve
 from rattlebox.studies.orbits.find import size_of
 from rattlebox.studies.orbits.motion import GapLines
 from rattlebox.studies.orbits.shooting import ReturnMap, Shot
@@ -37,7 +37,7 @@ _SAME_TIME = 0.1
 """Largest change of the time of the near miss between two points, over that of the map."""
 
 
-class GrazingCurve(Curve):
+class GrazingCurve(SmoothCurve):
     """Curve on which the smallest gap of a near miss is zero.
 
     The motion without the contact depends smoothly on all parameters up to the grazing, where the one with the impact has a
@@ -51,7 +51,7 @@ class GrazingCurve(Curve):
     ) -> None:
         super().__init__(point, axes, limits, step)
         orbit, values = self.start
-        self._level, self._size, self._scale = _FOLLOWED, 1.0, present(size_of(self.returns, orbit.state))
+        self._level, self._size, scale = _FOLLOWED, 1.0, present(size_of(self.returns, orbit.state))
         lost = point.kind == "impact lost"
         touch = touch_at(self.returns, orbit.state, values.tolist(), impact=lost)
         near, index = self._unfolding(orbit.state, values, touch)
@@ -62,7 +62,7 @@ class GrazingCurve(Curve):
                 "a point of kind 'grazing' or 'sticking'",
             )
         lines = GapLines.of(self.returns.problem.dampers, self.returns.modes)
-        size = float(np.abs(lines.by_state[touch.contact]) @ self._scale)
+        size = float(np.abs(lines.by_state[touch.contact]) @ scale)
         self._size = max(size, 2 * float(lines.offset[touch.contact]))
         self._share = self._started = self._absolute(self.returns, touch)
         self._impacts = touch.impacts - lost
@@ -72,8 +72,8 @@ class GrazingCurve(Curve):
         values[index] += ahead[1] - here[1]
         fixed = np.zeros(orbit.state.size + 2)
         fixed[orbit.state.size + 1 - index] = 1.0
-        found = self.correct(self.returns, orbit.state + ahead[0] - here[0], values, self._scale, fixed)
-        row = None if found is None else self.row(self.returns, *found[:2], self._scale, fixed)
+        found = self.correct(self.returns, orbit.state + ahead[0] - here[0], values, scale, fixed)
+        row = None if found is None else self.row(self.returns, *found[:2], scale, fixed)
         if found is None or row is None:
             raise Hint("no motion without the impact was found next to this point", "a branch with a shorter step")
         self._begin, self.start = found[:2], row
@@ -92,10 +92,10 @@ class GrazingCurve(Curve):
         """Return the time of a near miss over that of the map, counted from a fixed phase of the loads."""
         return (returns.phase / returns.length(1.0) + touch.share) % 1.0
 
-    def follow(self, side: float, most: int) -> Iterator[Row]:
-        """Yield the motions on one side of the start."""
+    def begin(self, side: float) -> None:
+        """Return to the start, to follow one side of it."""
         self._share = self._started
-        yield from super().follow(side, most)
+        super().begin(side)
 
     def linear(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector) -> tuple[Vector, Vector] | None:
         """Return residual and gap, (n + 1,), and their scaled derivatives, (n + 1, n + 2); None beyond the grazing."""

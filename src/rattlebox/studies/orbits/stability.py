@@ -1,12 +1,29 @@
-"""Kinds of stability of a periodic motion, from its multipliers."""
+"""Kinds of stability of a periodic motion, and test functions of its limits, from its multipliers."""
 
 from __future__ import annotations
+
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 ON_CIRCLE = 1e-7
 """Distance of a multiplier from the unit circle, below which it counts as being on it."""
+
+
+def fold_test(multipliers: NDArray[np.complex128]) -> float:
+    """Return the determinant of M - 1."""
+    return float(np.prod(multipliers - 1).real)
+
+
+def flip_test(multipliers: NDArray[np.complex128]) -> float:
+    """Return the determinant of M + 1."""
+    return float(np.prod(multipliers + 1).real)
+
+
+def torus_test(multipliers: NDArray[np.complex128]) -> float:
+    """Return a number that is zero if the product of two multipliers is 1."""
+    return float(np.prod([one * other - 1 for one, other in combinations(multipliers, 2)]).real)
 
 
 def stability_words(multipliers: NDArray[np.complex128]) -> str:

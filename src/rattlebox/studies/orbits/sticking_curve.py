@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.model.errors import several
-from rattlebox.studies.orbits.curve import LOST, SHORTEST, Curve, Row
+from rattlebox.studies.orbits.curve import Curve, Row
 from rattlebox.studies.orbits.find import away_from_impacts, size_of
 from rattlebox.studies.orbits.forcing import Forcing
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
@@ -19,7 +17,7 @@ Vector = NDArray[np.float64]
 
 _ACCURATE = 1e-10
 """Accuracy of the curve across its direction, over the ranges of the parameters."""
-_BESIDE = (1e-4, 4e-4, 1.6e-3, 6.4e-3, 2.5e-2)
+_DISTANCES = (1e-4, 4e-4, 1.6e-3, 6.4e-3, 2.5e-2)
 """Distances from a guess at which the other side is sought, over the ranges of the parameters."""
 _NEAR = 0.1
 """Largest change of the state between both sides over the size of the motion."""
@@ -37,33 +35,27 @@ class _Side(NamedTuple):
 class StickingCurve(Curve):
     """Curve that separates motions in which bodies rest on each other from those in which they do not.
 
-    The pressing force at the instant at which the rest would begin is zero on the curve. After incomplete chatter the
-    motion beside it has many slow impacts and no smooth derivatives, so that the limit is bisected across the curve.
+    On the curve, the force that presses the bodies together is zero at the instant at which the rest would begin. After
+    incomplete chatter, motions near the curve have many slow impacts and no smooth derivatives, so that the limit is
+    bisected across it.
     """
 
-    def follow(self, side: float, most: int) -> Iterator[Row]:
-        """Yield the motions on one side of the start."""
-        orbit, place = self.start[0], self.start[1] / self.width
+    def begin(self, side: float) -> None:
+        """Return to the start, to follow one side of it."""
+        self._near, self._place = self.start[0], self.start[1] / self.width
         # The first step goes along the second parameter; the limit is sought along the first one.
-        tangent, length, count = np.array([0.0, side]), self.longest / 4, 0
-        while count < most:
-            row = self._across(orbit, place + length * tangent, np.array([tangent[1], -tangent[0]]))
-            if row is None:
-                length /= 2
-                if length < SHORTEST:
-                    self.reasons.append(LOST)
-                    return
-                continue
-            if not self.is_inside(row[1]):
-                self.reasons.append("")
-                return
-            moved, place = row[1] / self.width - place, row[1] / self.width
-            tangent = moved / np.linalg.norm(moved)
-            orbit = row[0]
-            yield row
-            count += 1
-            length = min(1.4 * length, self.longest)
-        self.reasons.append(f"the limit of {several(count, 'point')} is reached")
+        self._tangent = np.array([0.0, side])
+
+    def step(self, length: float) -> tuple[Row, int] | None:
+        """Move along the last chord; return the motion at the limit there and no correction, or None if there is none."""
+        tangent = self._tangent
+        row = self._across(self._near, self._place + length * tangent, np.array([tangent[1], -tangent[0]]))
+        if row is None:
+            return None
+        self._near, place = row[0], row[1] / self.width
+        moved, self._place = place - self._place, place
+        self._tangent = moved / np.linalg.norm(moved)
+        return row, 0
 
     def _across(self, near: Orbit, place: Vector, across: Vector) -> Row | None:
         """Return the motion at the limit on the line through a guess across the curve; None if there is none near."""
@@ -79,7 +71,7 @@ class StickingCurve(Curve):
         first = motion(state, place)
         if first is None:
             return None
-        for distance in _BESIDE:
+        for distance in _DISTANCES:
             for way in (1.0, -1.0):
                 other = motion(first.state, place + way * distance * across)
                 if other is None or other.sticks == first.sticks:
