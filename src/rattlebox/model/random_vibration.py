@@ -92,9 +92,10 @@ class Random(FileSignal):
         Break points (frequency [Hz], one-sided density), numbers or text with units: ("20 Hz", "0.04 g^2/Hz"). The density
         is linear in log-log scales between points, and zero outside. Or a name: "gevs_qualification" (14.1 g RMS, 20 to
         2000 Hz, 0.16 g^2/Hz from 50 to 800 Hz) or "gevs_acceptance" (10.0 g RMS, half of that density), for components of
-        up to 22.7 kg; of MIL-STD-810 "truck_vertical" (1.04 g RMS, 10 to 500 Hz), "truck_transverse" (0.20 g),
+        up to 22.7 kg. After MIL-STD-810: "truck_vertical" (1.04 g RMS, 10 to 500 Hz), "truck_transverse" (0.20 g) and
         "truck_longitudinal" (0.74 g), cargo on highways, and "minimum_integrity" (7.7 g, 20 to 2000 Hz, 0.04 g^2/Hz up to
-        1 kHz). Editions of that standard differ, as in the lowest frequency on trucks: compare the break points with yours.
+        1 kHz). The break points of these four were not compared with the printed standard, only their RMS values with those
+        stated for them, and editions differ: check `corners` with your copy before a test.
     file
         File with the density, instead of `psd`: a table of frequencies and densities (text, spreadsheet, NPY, NPZ, MAT), or
         a power spectral density (type 9) of a universal file. The unit is that above the column or of the label, such
@@ -132,8 +133,8 @@ class Random(FileSignal):
     NASA Goddard Space Flight Center (2013): General Environmental Verification Standard for GSFC Flight Programs and
     Projects, GSFC-STD-7000A, Table 2.4-3, generalized random vibration test levels of components of 22.7 kg or less.
 
-    MIL-STD-810F (2000), Method 514.5, Vibration, Annex C: highway truck vibration exposures and general minimum integrity
-    exposure.
+    MIL-STD-810F (2000), Method 514.5, Vibration, Annex C: where to look up the highway truck exposures and the general
+    minimum integrity exposure.
 
     Examples
     --------

@@ -152,7 +152,8 @@ class Sawtooth(Shock, Polyline):
         name
             "MIL-STD-810H 516.8 flight vehicle" (20 g), "... weapon launch" (30 g, also captive carry), "... ground" (40 g)
             or "... truck" (20 g, mounted only in trucks and semi-trailers); all of 11 ms. Crash hazard:
-            "MIL-STD-810F 516.5 crash, flight vehicle" (40 g, 11 ms) or "... crash, ground" (75 g, 6 ms).
+            "MIL-STD-810F 516.5 crash, flight vehicle" (40 g, 11 ms) or "... crash, ground" (75 g, 6 ms), which were not
+            compared with the printed standard.
         **options
             Other fields: start, direction; `amplitude="-40 g"` for the other direction.
 
@@ -169,12 +170,13 @@ class Sawtooth(Shock, Polyline):
         Notes
         -----
         These are the default parameters of functional shocks, procedure I, and of crash hazard, procedure V, for which the
-        standard prefers measured data. It applies classical pulses in both directions. Editions differ: compare the pulse
-        with the edition of your contract.
+        standard prefers measured data. It applies classical pulses in both directions. Editions differ: check peak and
+        duration with your copy before a test.
 
         References
         ----------
-        MIL-STD-810H (2019), Method 516.8, Shock, Table 516.8-IV with note 3; MIL-STD-810F (2000), Method 516.5, procedure V.
+        MIL-STD-810H (2019), Method 516.8, Shock, Table 516.8-IV with note 3. MIL-STD-810F (2000), Method 516.5, Shock: where
+        to look up procedure V.
 
         Examples
         --------
