@@ -41,6 +41,7 @@ _LONGEST_RECORD = 100.0  # in durations of the run
 _PEAKS = {"m/s^2": (1e-5, 1e5, 100.0), "m": (1e-9, 10.0, 1.0)}
 """Least and largest plausible peak of a motion of the base, the latter also if the unit of a record is assumed."""
 _FASTEST_SHAKER = 10.0  # m/s; shakers reach 3 m/s
+_ROUNDING = 1 + 1e-9  # of an amplitude that is exactly at a limit
 _PERPENDICULAR = 1e-6
 """Cosine of an angle, or excitation of a mode relative to the largest one, below which it counts as zero."""
 _SMALLEST_FILL_RATIO = 1e-4
@@ -97,20 +98,19 @@ def _check_amplitudes(case: Case) -> Iterator[str]:
         what, most = "", _PEAKS["m/s^2"][1]
         if isinstance(signal, Harmonic) and signal.unit == "m":
             what = unusual_motion(amplitude, signal.frequency)
-        elif abs(amplitude) > most:
+        elif abs(amplitude) > most * _ROUNDING:
             what = f"; usual are up to {amount(most, 'm/s^2')}; a number without a unit is in m/s^2 here"
         if what:
             example = '"15 mm" or "15 g"' if isinstance(case.structure, Shaker) else '"15 g"'
-            yield f"{name} is {signal.words()}{what}; try: the amplitude with its unit, such as {example}"
+            # With its unit, a large amplitude may be meant, such as that of a gun launch.
+            yield f"{name} is {signal.words()}{what}; try: check the amplitude, and give it with its unit, such as {example}"
 
 
 def unusual_motion(amplitude: float, frequency: float) -> str:
-    """Return what is unusual of a harmonic displacement [m] at a frequency [Hz]; "" if it is usual.
-
-    A millimetre that is read as a metre is no large length at a low frequency, but a large speed at usual ones.
-    """
+    """Return a phrase on a harmonic displacement [m] that is too large at a frequency [Hz]; "" if it is usual."""
+    # A millimetre that is read as a metre is no large length at a low frequency, but a large speed at usual ones.
     omega, size, most = 2 * np.pi * frequency, abs(amplitude), _PEAKS["m"][1]
-    if size <= most and omega * size <= _FASTEST_SHAKER:
+    if size <= most * _ROUNDING and omega * size <= _FASTEST_SHAKER * _ROUNDING:
         return ""
     return (
         f", {amount(omega * size, 'm/s')} and {omega**2 * size / STANDARD_GRAVITY:.3g} g; usual are up to"

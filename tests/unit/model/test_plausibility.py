@@ -40,9 +40,9 @@ def test_usual_cases_have_no_notes():
     ],
 )
 def test_amplitudes_of_shakers_in_metres_are_noted(amplitude, frequency, noted):
-    """A run warns of a displacement that no shaker reaches: 15 for 15 g or 15 mm is 15 m. With a unit there is no warning.
+    """A run warns of a displacement that no shaker reaches: 15 for 15 g or 15 mm is 15 m.
 
-    Only records were tested for their peaks, so that a number without a unit for a motion passed without a word.
+    Only records were tested for their peaks, so that a number without a unit for a motion had no warning.
     """
     shaker = rb.Shaker(motion=rb.Harmonic(amplitude=amplitude, frequency=frequency))
     result = plausibility_notes(rb.Case(structure=shaker, damper=rb.ImpactDamper(**BALL), duration="1 ms"))
@@ -55,7 +55,7 @@ def test_amplitudes_of_shakers_in_metres_are_noted(amplitude, frequency, noted):
 
 @pytest.mark.parametrize("kind", [rb.Harmonic, rb.HalfSine, rb.Sawtooth, rb.SineSweep])
 def test_accelerations_of_the_base_that_are_too_large_are_noted(kind):
-    """Motions of the base and of a shaker above 10 000 g have a warning with the unit of a bare number."""
+    """Motions of the base and of a shaker above 100 km/s^2 have a warning with the unit of a bare number."""
     fields = {
         rb.Harmonic: {"frequency": 50},
         rb.SineSweep: {"first_frequency": 5, "last_frequency": 50, "sweep_rate": "9 oct/s"},
@@ -64,9 +64,12 @@ def test_accelerations_of_the_base_that_are_too_large_are_noted(kind):
     beam = rb.SDOF(mass=20, stiffness=8e4)
     (note,) = [each for each in plausibility_notes(rb.Case(structure=beam, base=motion, duration=9)) if "usual" in each]
     assert note.startswith("warning: base is a") and "up to 100000 m/s^2" in note
-    assert note.endswith('a number without a unit is in m/s^2 here; try: the amplitude with its unit, such as "15 g"')
-    usual = rb.Case(structure=beam, base=motion.model_copy(update={"amplitude": 3e3}), duration=9)
-    assert not any("usual" in each for each in plausibility_notes(usual))
+    assert "a number without a unit is in m/s^2 here; try: check the amplitude" in note and note.endswith(
+        'such as "15 g"'
+    )
+    for amplitude in (3e3, -1e5 * (1 + 1e-12)):  # the limit itself is allowed, whatever the rounding
+        usual = rb.Case(structure=beam, base=motion.model_copy(update={"amplitude": amplitude}), duration=9)
+        assert not any("usual" in each for each in plausibility_notes(usual))
 
 
 def test_sizes_in_metres_are_noted():
