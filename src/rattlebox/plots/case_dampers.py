@@ -142,17 +142,16 @@ def _draw_particle_damper(damper: ParticleDamper, axes: Axes, cells: Cells) -> N
     else:
         _draw_level(axes, damper, places[:, :2], *half)
     unit = 0.08 * max(right - left, top - bottom)
-    # Those in front hide those behind.
-    for place in places[np.argsort(places[:, 2], kind="stable")]:
-        _draw_walls(axes, cavity, place[:2])
+    for place in places[:, :2]:
+        _draw_walls(axes, cavity, place)
     if cavity.is_aligned:  # else the extents are no dimensions of the cavity
         corners = np.concatenate(cavity.outline(_FRONT)) @ _FRONT[:2].T
         low, high = corners.min(axis=0), corners.max(axis=0)
-        # The lowest and the rightmost cell, beside which nothing is in the way.
-        under, beside = places[np.lexsort((places[:, 0], places[:, 1]))[0]], places[np.argmax(places[:, 0])]
-        (x, z), (end, _) = low + under[:2], high + under[:2]
+        # The dimensions are those of the lowest and of the rightmost cell, so that they cross no other one.
+        lowest, rightmost = places[np.lexsort((places[:, 0], places[:, 1]))[0]], places[np.argmax(places[:, 0])]
+        (x, z), (end, _) = low + lowest[:2], high + lowest[:2]
         dimension(axes, (x, z), (end, z), amount(end - x, "m"), -1.5 * unit)
-        (_, z), (x, end) = low + beside[:2], high + beside[:2]
+        (_, z), (x, end) = low + rightmost[:2], high + rightmost[:2]
         dimension(axes, (x, z), (x, end), amount(end - z, "m"), -1.5 * unit, rotate=True)
     several = [f"{len(cells)} cells, in each:"] if len(cells) > 1 else []
     inside = [each.words() for each in damper.bodies]
@@ -165,7 +164,7 @@ def _draw_particle_damper(damper: ParticleDamper, axes: Axes, cells: Cells) -> N
     _draw_directions(axes, damper, left - 5.2 * unit, bottom, unit)
     text(axes, (0.5 * (left + right), bottom - 3.4 * unit), "\n".join(words), va="top")
     axes.set_xlim(left - 7 * unit, right + 4 * unit)
-    axes.set_ylim(bottom - (9 + bool(several)) * unit, top + unit)
+    axes.set_ylim(bottom - (9 + bool(several)) * unit, max(top + unit, bottom + 7 * unit))  # the latter for gravity
 
 
 def _contents(damper: ParticleDamper) -> list[str]:

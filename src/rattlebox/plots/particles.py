@@ -295,8 +295,10 @@ def _groups(dampers: Sequence[Mapping[str, Any]]) -> list[_Group]:
         before = first
         for places in [offsets] * points if len(offsets) else [np.zeros((1, 3))] * (points * damper.get("number", 1)):
             name = f"{given}{first - before + 1}" if first > before else given
-            groups.append(_Group(name if given else f"damper {first + 1}", cavity, first, places))
-            first += len(places)
+            last = first + len(places)
+            usual = f"damper {last}" if last == first + 1 else f"dampers {first + 1} to {last}"
+            groups.append(_Group(name if given else usual, cavity, first, places))
+            first = last
     return groups
 
 

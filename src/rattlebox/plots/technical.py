@@ -49,10 +49,11 @@ def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *
     # Words are never upside down.
     angle = float(np.degrees(np.arctan2(along[1], along[0]))) if rotate else 0.0
     angle = angle - 180 if angle > 90 else angle + 180 if angle <= -90 else angle
-    # The words stand beside the line, on the side to which it is shifted.
-    across = abs(shift[0]) < abs(shift[1])
-    horizontal = "center" if across or rotate else ("left" if shift[0] > 0 else "right")
-    vertical = ("bottom" if shift[1] > 0 else "top") if across else "bottom" if rotate else "center"
+    # The words are next to the line, on the side to which it is shifted, which is above or below them as they are read.
+    above = float(shift @ (-np.sin(np.radians(angle)), np.cos(np.radians(angle)))) > 0
+    across = rotate or abs(shift[0]) < abs(shift[1])
+    horizontal = "center" if across else "left" if shift[0] > 0 else "right"
+    vertical = ("bottom" if above else "top") if across else "center"
     turned: Style = {"rotation": angle, "rotation_mode": "anchor"}
     text(axes, (middle[0], middle[1]), words, ha=horizontal, va=vertical, zorder=7, **turned)
 

@@ -79,7 +79,7 @@ def test_cells_are_at_their_offsets(changes: dict[str, Any], tmp_path: Path) -> 
 
 
 def test_two_points_with_cells() -> None:
-    """The cells of two dampers stand beside each other without overlap, and those without offsets have a panel each."""
+    """The cells of two dampers are drawn side by side without overlap, and those without offsets have a panel each."""
     both = rb.Case(
         structure=rb.SDOF(mass="1 kg", frequency="120 Hz", displacement="0.2 mm"),
         dampers=[*case(offsets=OFFSETS).dampers, *case(number=2).dampers],
@@ -87,9 +87,24 @@ def test_two_points_with_cells() -> None:
     )
     figure = rb.plot_particles(rb.simulate(both), renderer="plain")
     titles = [axes.get_title(loc="left").split(",")[0] for axes in figure.axes if axes.images]
-    assert titles == ["damper 1", "damper 4", "damper 5"]
+    assert titles == ["dampers 1 to 3", "damper 4", "damper 5"]
     places = np.array([cavity["place"] for cavity in views._cavities(both)])
     assert len(places) == 5
     for k in range(5):
         for other in range(k):
             assert np.any(np.abs(places[k] - places[other]) > SIZE - 1e-12)
+
+
+def test_words_of_a_flat_drawing_are_in_its_panel() -> None:
+    """In the drawing of a row of cells the arrow of gravity is in the panel, and no dimension is written on its line.
+
+    Drawings were tested for cells that are about as high as wide, and for the words alone.
+    """
+    figure = rb.plot_case(case(offsets=[[0.03 * k, 0, 0] for k in range(6)]))
+    figure.canvas.draw()
+    _, panel = figure.axes
+    (gravity,) = [words for words in panel.texts if words.get_text() == "g"]
+    assert panel.get_ylim()[0] < gravity.get_position()[1] < panel.get_ylim()[1]
+    (height,) = [words for words in panel.texts if words.get_text() == "16 mm"]
+    lines = max(line.get_window_extent().x1 for line in panel.lines)
+    assert height.get_rotation() == 90 and height.get_window_extent().x0 > lines - 1
