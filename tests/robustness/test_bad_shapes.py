@@ -215,7 +215,7 @@ def noted(**changes: Any) -> list[str]:
     [
         ({"cavity": mesh((BOX[0], BOX[1][:, ::-1]))}, "point inward"),
         ({"cavity": mesh(BOX, unit="m"), "packing": {"kind": "lattice", "seed": 1}}, "fill ratio of damper is"),
-        ({"bodies": [mesh(INNER, unit="um")]}, "hardly notice it"),
+        ({"bodies": [mesh(INNER, unit="um")]}, "too small to matter"),
         ({"bodies": [mesh((INNER[0], INNER[1][:, ::-1]))]}, "point inward"),
     ],
 )

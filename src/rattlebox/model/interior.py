@@ -18,10 +18,11 @@ from .necks import neck_notes, widest_sphere
 from .solids import Solid, Solids
 from .surfaces import Surface
 
-_SAMPLES, _LEAST = (
-    2**19,
-    2**11,
-)  # points on the surfaces of all bodies, and at least of one, by which areas are computed
+_SAMPLES, _LEAST = 2**19, 2**11
+"""Points on the surfaces of all bodies, and least number on one of them, by which areas are computed."""
+_TOUCHING = (
+    1e-7  # distance of two surfaces that touch, over the size of the cavity: files round coordinates to half of it
+)
 _SMALL = 0.05  # size of a body over the radius of a particle that suggests a wrong unit
 
 
@@ -69,13 +70,9 @@ class Interior(Cavity):
         """Share of the volume of each body that is in the cavity, and in no body before it."""
         shares = []
         for k, solid in enumerate(self.solids):
-            low, high = solid.bounds
-            before = [
-                other for other in self.solids[:k] if (other.bounds[0] < high).all() and (other.bounds[1] > low).all()
-            ]
             points = solid.samples(len(self.solids))
             free = self.shape.depth(points) >= 0
-            for other in before:
+            for other in _overlapping(solid, self.solids[:k]):
                 free &= ~other.is_within(points)
             shares.append(float(free.mean()))
         return shares
@@ -115,23 +112,19 @@ class Interior(Cavity):
         labels = self.walls().labels
         areas = np.zeros(len(labels))
         areas[: len(self.shape.walls().labels)] = self.shape.face_areas
-        count, tiny = max(_LEAST, _SAMPLES // len(self.solids)), 1e-9 * float(self.lengths.max())
-        for solid in self.solids:
-            points = solid.surface_samples(count)
+        count, tiny = max(_LEAST, _SAMPLES // len(self.solids)), _TOUCHING * float(self.lengths.max())
+        for k, solid in enumerate(self.solids):
+            points, normals = solid.surface_samples(count)
             free = self.shape.depth(points) > tiny
-            for other in self._beside(solid):
-                free &= ~other.is_within(points)
+            for other in _overlapping(solid, self.solids, tiny):
+                # Bodies that touch have no particles between them; of two in one place, the surface is that of the first.
+                rest = np.flatnonzero(free)
+                covered = other.is_within(points[rest] + tiny * normals[rest])
+                if other in self.solids[:k]:
+                    covered |= other.is_within(points[rest] - tiny * normals[rest])
+                free[rest] = ~covered
             areas[labels.index(solid.name)] += float(free.mean()) * solid.area
         return areas
-
-    def _beside(self, solid: Solid) -> list[Solid]:
-        """Return the other bodies that may reach into a body."""
-        low, high = solid.bounds
-        return [
-            other
-            for other in self.solids
-            if other is not solid and (other.bounds[0] < high).all() and (other.bounds[1] > low).all()
-        ]
 
     @property
     def period(self) -> Vector:
@@ -176,8 +169,8 @@ class Interior(Cavity):
         for name, size in sizes.items():
             if size < _SMALL * radius:
                 yield (
-                    f"warning: the body {name!r} is {amount(size, 'm')} large, and particles of {amount(2 * radius, 'm')} "
-                    "hardly notice it; try: another unit of its sizes, or no body"
+                    f"warning: the body {name!r} has a size of {amount(size, 'm')}, too small to matter for particles of "
+                    f"{amount(2 * radius, 'm')}; try: another unit for its sizes, or no body"
                 )
         yield from neck_notes(self, radius)
 
@@ -213,3 +206,13 @@ class Interior(Cavity):
     def words(self) -> str:
         """Return a phrase about the cavity and its bodies."""
         return f"{self.shape.words()}, {bodies_words(self.bodies)}"
+
+
+def _overlapping(solid: Solid, others: Sequence[Solid], tolerance: float = 0.0) -> list[Solid]:
+    """Return the other bodies that may reach into a body, or are at most a distance from it [m]."""
+    low, high = solid.bounds[0] - tolerance, solid.bounds[1] + tolerance
+    return [
+        other
+        for other in others
+        if other is not solid and (other.bounds[0] < high).all() and (other.bounds[1] > low).all()
+    ]

@@ -110,18 +110,29 @@ class Solid:
             local = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)
         return to_global(local, self.axes) + self.centre
 
-    def surface_samples(self, count: int) -> Vector:
-        """Return points that cover the surface evenly, (count, 3) [m]."""
+    def surface_samples(self, count: int) -> tuple[Vector, Vector]:
+        """Return points that cover the surface evenly, (count, 3) [m], and the normals there, out of the body."""
         surface = self.surface()
         fans = [(face[0], face[k], face[k + 1]) for face in surface.polygons for k in range(1, len(face) - 1)]
         corners = surface.points[np.array(fans)]
-        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        areas = np.linalg.norm(normals, axis=1)
         # Each triangle has points by its area; in it they are a Kronecker sequence, as in `Cavity.spread`.
         share = (np.arange(count) + 0.5) / count
         u, v = ((np.arange(count)[:, None] * _FLAT_SPREAD ** -np.arange(1.0, 3.0) + 0.5) % 1.0).T
-        chosen = corners[np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(fans) - 1)]
+        index = np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(fans) - 1)
+        chosen, outward = corners[index], normals[index] / areas[index, None]
         u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
-        return np.asarray(chosen[:, 0] * (1 - u - v) + chosen[:, 1] * u + chosen[:, 2] * v)
+        points = chosen[:, 0] * (1 - u - v) + chosen[:, 1] * u + chosen[:, 2] * v
+        if self.form in ("rod", "ball"):  # drawn facets are chords of the round surface
+            along = self.axes[2]
+            is_round = np.ones(count, bool) if self.form == "ball" else np.abs(outward @ along) < 0.5
+            spoke = points[is_round] - self.centre
+            if self.form == "rod":
+                spoke -= (spoke @ along)[:, None] * along
+            outward[is_round] = spoke / np.linalg.norm(spoke, axis=1)[:, None]
+            points[is_round] += self.size[0] * outward[is_round] - spoke
+        return points, outward
 
     def is_within(self, points: Vector) -> NDArray[np.bool_]:
         """Return whether points are in the body, where there are no particles, (n,)."""

@@ -237,7 +237,8 @@ class Ledger:
     @property
     def wall_pressure(self) -> FloatArray:
         """Normal contact force on each wall over its area [Pa], (T, W); 3-D runs that record their walls only."""
-        return np.asarray(self.arrays.wall_normal_force / self.arrays.wall_area)
+        with np.errstate(invalid="ignore"):  # NaN where a body is inside of another one and has no area
+            return np.asarray(self.arrays.wall_normal_force / self.arrays.wall_area)
 
     def __repr__(self) -> str:
         shares = ", ".join(f"{channel} {quantity(share, '%')}" for channel, share in self.shares.items())

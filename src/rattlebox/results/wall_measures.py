@@ -24,7 +24,8 @@ def _over_area_and_time(run: Record, name: str) -> dict[str, float]:
             "output = rb.Output(walls=True)" if arrays.engine == "dem" else "a ParticleDamper",
         )
     sums: NDArray[np.float64] = getattr(arrays, name)
-    rates = (sums[-1] - sums[0]) / arrays.wall_area / float(arrays.time[-1] - arrays.time[0])
+    with np.errstate(invalid="ignore"):  # NaN where a body is inside of another one and has no area
+        rates = (sums[-1] - sums[0]) / arrays.wall_area / float(arrays.time[-1] - arrays.time[0])
     return dict(zip(arrays.walls, rates.tolist(), strict=True))
 
 

@@ -310,3 +310,22 @@ def test_part_of_a_surface_is_a_face_by_a_body_in_front_of_it():
 def test_area_of_a_body_is_that_inside_the_cavity(bodies, area):
     """What is in a wall, or in another body, is not an area of a body on which particles press."""
     assert 1e6 * damper(bodies=bodies).interior.face_areas[-1] == pytest.approx(area, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "areas"),
+    [
+        ([rb.PlateBody(size=("8 mm", "6 mm", "2 mm"), position=(0, 0, f"{2 * k} mm")) for k in range(2)], [104, 104]),
+        ([rb.PlateBody(size=("8 mm", "6 mm", "2 mm"))] * 2, [152, 0]),
+        ([rb.PlateBody(size=("8 mm", "6 mm", "2 mm")), rb.PlateBody(size=("8 mm", "4 mm", "2 mm"))], [152, 0]),
+        ([rb.BallBody(diameter="6 mm")] * 2, [math.pi * 36, 0]),
+        ([rb.RodBody(diameter="4 mm", length="10 mm")] * 2, [math.pi * 48, 0]),
+    ],
+)
+def test_area_of_bodies_that_touch(bodies, areas):
+    """Faces on each other are no area, and a surface of two bodies is that of the first.
+
+    Bodies reached into each other or were apart, so that it was not seen that faces on each other counted for both, and the
+    surfaces of equal balls for none.
+    """
+    assert 1e6 * damper(bodies=bodies).interior.face_areas[-2:] == pytest.approx(areas, rel=2e-3, abs=0.01)
