@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import particle_dampers
 
 import rattlebox as rb
 from rattlebox.analysis import notch
@@ -75,16 +76,14 @@ def test_without_nonlinearity_it_is_the_linear_notch(damped: bool) -> None:
 
 def bed(**changes: Any) -> rb.ParticleDamper:
     """Return a box with spheres that rest on its floor."""
-    parts: dict[str, Any] = {
-        "particles": rb.Particles(material="steel", diameter="8 mm", count=8),
+    usual: dict[str, Any] = {
+        "particles": particle_dampers.balls(8, diameter="8 mm"),
         "cavity": rb.Box(size=("40 mm", "30 mm", "20 mm")),
         "contact": rb.Tsuji(restitution=0.5),
-        "friction": 0.3,
         "packing": rb.Settled(seed=2),
         "softening": 1000,
-        "direction": "x",
     }
-    return rb.ParticleDamper(**(parts | changes))
+    return particle_dampers.damper(**(usual | changes))
 
 
 def test_particles_that_touch_nothing() -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import particle_dampers
 
 import rattlebox as rb
 
@@ -13,15 +14,14 @@ OFFSETS = (("-15 mm", "0 mm", "0 mm"), ("25 mm", "0 mm", "5 mm"))
 
 def damper(**changes: Any) -> rb.ParticleDamper:
     """Return a box with a few balls."""
-    values: dict[str, Any] = {
-        "particles": rb.Particles(material="steel", diameter="4 mm", count=8),
+    usual: dict[str, Any] = {
+        "particles": particle_dampers.balls(8),
         "cavity": rb.Box(size=("20 mm", "20 mm", "16 mm")),
         "contact": rb.Tsuji(restitution=0.6),
-        "friction": 0.3,
         "packing": rb.Settled(seed=3),
         "softening": 1000,
     }
-    return rb.ParticleDamper(**(values | changes))
+    return particle_dampers.damper(**(usual | changes))
 
 
 def case(*dampers: rb.ParticleDamper, **changes: Any) -> rb.Case:

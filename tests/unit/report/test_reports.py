@@ -217,6 +217,15 @@ def page_of(name: str) -> Page:
         return Page(rb.write_report(result_of(name), Path(folder) / "report.html"))
 
 
+def result_of_script(page: Page) -> Any:
+    """Write the files of a report into the current folder, and return the result of its script."""
+    for file, content in page.downloads.items():
+        Path(file).write_text(content, encoding="utf-8")
+    names: dict[str, Any] = {}
+    exec(page.downloads["script.py"], names)
+    return names["result"]
+
+
 KINDS = {
     "run": "How does an oscillator of 1 kg at 31.83 Hz with a steel ball of 90.23 g",
     "free run": "vibrate freely within 2 s?",
@@ -286,11 +295,7 @@ def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, m
     if name not in ("run", "sweep"):
         monkeypatch.setattr(rb, "write_report", lambda result, path: Path(path).touch())
     monkeypatch.chdir(tmp_path)
-    for file, content in page.downloads.items():
-        Path(file).write_text(content, encoding="utf-8")
-    names: dict[str, Any] = {}
-    exec(page.downloads["script.py"], names)
-    again = names["result"]
+    again = result_of_script(page)
     if name == "run":
         assert again == result
     elif name == "comparison":
@@ -311,11 +316,8 @@ def test_the_files_of_a_branch_follow_it_again(tmp_path: Path, monkeypatch: pyte
     branch, page = result_of("branch"), page_of("branch")
     monkeypatch.setattr(rb, "write_report", lambda result, path: None)
     monkeypatch.chdir(tmp_path)
-    for file, content in page.downloads.items():
-        Path(file).write_text(content, encoding="utf-8")
-    names: dict[str, Any] = {}
-    exec(page.downloads["script.py"], names)
-    for again in (names["result"], rb.Branch(read_study("study.toml").run(progress=False))):
+    result = result_of_script(page)
+    for again in (result, rb.Branch(read_study("study.toml").run(progress=False))):
         assert [point.kind for point in again.specials] == [point.kind for point in branch.specials] == ["pitchfork"]
         assert again.specials[0].value == pytest.approx(branch.specials[0].value, rel=1e-9)
         for end in (np.min, np.max):
@@ -663,11 +665,7 @@ def test_files_are_named_without_the_folders_of_the_author(
     kept = author if name == "two folders" else author / "quakes"  # the folder that holds all files
     shutil.copytree(kept, reader, dirs_exist_ok=True)
     monkeypatch.chdir(reader)
-    for file, content in page.downloads.items():
-        Path(file).write_text(content, encoding="utf-8")
-    names: dict[str, Any] = {}
-    exec(page.downloads["script.py"], names)
-    again = names["result"]
+    again = result_of_script(page)
     if name == "run":
         assert np.array_equal(again.arrays.displacement, result.arrays.displacement)
     elif name == "comparison":

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import particle_dampers
 
 import rattlebox as rb
 from rattlebox.analysis import shaken_cavity
@@ -24,14 +25,14 @@ AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency
 def box(**changes: Any) -> rb.ParticleDamper:
     """Return a box with a dozen balls."""
     usual: dict[str, Any] = {
-        "particles": rb.Particles(material="steel", diameter="5 mm", count=12),
+        "particles": particle_dampers.balls(12, diameter="5 mm"),
         "cavity": rb.Box(size=("15 mm", "15 mm", "20 mm")),
         "contact": rb.Tsuji(restitution=0.7),
         "friction": 0.2,
         "packing": rb.Settled(seed=1),
         "softening": 1000,
     }
-    return rb.ParticleDamper(**{**usual, **changes})
+    return particle_dampers.damper(**(usual | changes))
 
 
 def shaken(**changes: Any) -> rb.Case:
