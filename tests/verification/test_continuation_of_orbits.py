@@ -35,7 +35,7 @@ def test_bouncing_ball(restitution):
     assert located["fold"] == pytest.approx(fold, abs=1e-8)
     assert located["flip"] == pytest.approx(flip, abs=1e-8)
     assert not branch.is_closed
-    # Beyond the flip the motion goes on as an unstable one with the same approach speed.
+    # Past the flip the motion exists, but is unstable, with the same approach speed.
     beyond = branch.data.where(branch.data.value > 1.1 * flip, drop=True)
     speed = 2 * math.pi / (1 + restitution)
     assert beyond.point.size > 5
@@ -109,6 +109,30 @@ def test_limit_of_stability_over_gap_and_restitution():
             assert abs(nearest) == pytest.approx(1, abs=1e-8)
 
 
+def test_curve_of_a_torus_ends_at_a_resonance():
+    """A Neimark-Sacker curve ends where the pair of multipliers becomes real, and its points are limits of stability.
+
+    It continued as a curve of saddles with multipliers r and 1/r; the curves of tests kept their pairs.
+    """
+    case = rb.Case(
+        structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"),
+        method=rb.Newton(),
+        duration="3 s",
+    )
+    branch = rb.continue_orbit(rb.find_orbit(case), "load.frequency", ("33 Hz", "38 Hz"), progress=False)
+    (point,) = branch.specials
+    limits = [("25 Hz", "45 Hz"), ("2 N", "6 N")]
+    curve = rb.continue_point(point, ("load.frequency", "load.amplitude"), limits, points=100, step=0.1, progress=False)
+    assert "becomes real" in curve.attrs["ended"]
+    angles = curve["angle"].values
+    assert angles.size > 15
+    assert 0 < angles.min() < 0.3
+
+
 def oscillator(amplitude=1.0, gap=0.3):
     """Return an oscillator with a stop, and a state of its motion with one impact a cycle."""
     (exact, *_) = impact_oscillator.orbits(0.05, 2.0, gap / amplitude, 0.5)
@@ -162,10 +186,10 @@ def reach(omega):
 
 
 @pytest.mark.parametrize(("omega", "folds"), [(0.45, False), (0.55, True), (0.9, False), (1.1, True), (2.5, False)])
-def test_branch_behind_a_grazing(omega, folds):
-    """Behind a grazing the branch has one impact more: it turns back or goes on as the closed form of that motion does.
+def test_branch_past_a_grazing(omega, folds):
+    """Past a grazing the branch has one impact more: it turns back or continues as the closed form of that motion does.
 
-    The search behind a grazing began at the grazing state on the wrong side or with an overlap of the wrong order, so that
+    The search for this motion began at the grazing state on the wrong side or with an overlap of the wrong order, so that
     many branches ended there; no test followed a branch from a near miss to an impact.
     """
     size = reach(omega)
@@ -175,9 +199,9 @@ def test_branch_behind_a_grazing(omega, folds):
     assert point.value == pytest.approx(size, rel=1e-9)
     assert point.passage == ("nonsmooth fold, turns back with 1 impact" if folds else "continues with 1 impact")
     assert point.passage in str(branch)
-    behind = branch.data.isel(point=branch.data.impacts.values == 1).isel(point=slice(0, 20))
-    assert (np.sign(behind.value.values[0] - size) > 0) == folds
-    for gap, speed in zip(behind.value.values, behind.slowest_impact.values, strict=True):
+    past = branch.data.isel(point=branch.data.impacts.values == 1).isel(point=slice(0, 20))
+    assert (np.sign(past.value.values[0] - size) > 0) == folds
+    for gap, speed in zip(past.value.values, past.slowest_impact.values, strict=True):
         exact = [each.speed for each in impact_oscillator.candidates(0.05, omega, float(gap), 0.5)]
         assert min(abs(each - speed) for each in exact) < 1e-8 * size
 
@@ -200,7 +224,7 @@ def test_beginning_of_sticking(gap):
 
 
 def test_beginning_of_chatter():
-    """The limit of complete chatter is located to 1e-9: runs just beside it stick on one side only."""
+    """The limit of complete chatter is located to 1e-8: the motion sticks below this frequency and not above it."""
     branch = rb.continue_orbit(
         rb.find_orbit(stopped(0.75, 0.2, 0.5), period=1), "load.frequency", ("0.7 rad/s", "0.78 rad/s"), progress=False
     )

@@ -151,13 +151,13 @@ def compare_with_differences(seed: int, law: str) -> tuple[float, float] | None:
 FLOORS = {"power": 1e-7}
 """Errors of derivatives where they are not below 1e-9: the derivative of d^q, q < 1, is singular where a contact begins."""
 SHARP = {"tabulated": 0.3, "power": 0.5}
-"""Part of the runs whose differences can tell, if it is not 0.6: the slope of a measured curve has a kink at each knot."""
+"""Least part of runs with accurate differences, if it is not 0.6: the slope of a measured curve has a kink at each knot."""
 
 
 def check_many(seeds: range, law: str) -> None:
-    """Compare derivatives of random runs with differences; a part of them must be sharp enough to tell 1e-9.
+    """Compare derivatives of random runs with differences; in a part of the runs these must be accurate to 3e-9.
 
-    The others have rougher differences: their derivatives are only known to agree within three times that roughness.
+    In the other runs derivatives and differences are compared to three times the error of the differences.
     """
     results = [compare_with_differences(seed, law) for seed in seeds]
     known = [result for result in results if result is not None]

@@ -18,8 +18,8 @@ from tests.support.quad.store import CLOSED, Stored, read
 
 STATE = 2e-13
 """Largest error of a state, in units of the largest gap and the largest approach speed and for each unit of growth."""
-STATE_BESIDE_OTHERS = 5e-13
-"""The same with contacts solved as a whole, whose energy balance is judged beside a part of the energy of all bodies."""
+STATE_COLLOCATED = 5e-13
+"""The same with collocated contacts, whose energy balance is tested relative to a part of the energy of all bodies."""
 DERIVATIVES = 1e-9
 """Largest error of a derivative, as a part of the largest term of its component."""
 FLOORS = {"power": 1e-7}
@@ -51,7 +51,7 @@ def check(several: list[Stored]) -> None:
     for each in several:
         error = deviation(each)
         floor = FLOORS.get(each.run["family"], DERIVATIVES)
-        state = STATE_BESIDE_OTHERS if error.collocated else STATE
+        state = STATE_COLLOCATED if error.collocated else STATE
         if not (error.agrees and error.state < state and error.derivatives < floor):
             wrong.append((each.run["number"], each.run["family"], error))
     assert not wrong

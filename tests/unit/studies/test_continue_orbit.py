@@ -146,6 +146,31 @@ def test_progress_stops(orbit):
     """The continuation ends with the points so far if the function of the progress returns False."""
     branch = rb.continue_orbit(orbit, "load.frequency", ("31 Hz", "38 Hz"), progress=lambda done, _: done < 4)
     assert 1 <= len(branch) < 12
+    assert branch.data.attrs["ended"].endswith("the continuation was stopped")
+
+
+def test_progress_stops_a_curve(branch):
+    """A curve in two parameters ends on both sides when the progress returns False once, and states it.
+
+    It stated no reason and followed the other side; tests stopped branches only.
+    """
+    answers, axes = iter([True, True, False]), ("load.frequency", "damper.gap")
+    curve = rb.continue_point(
+        branch.specials[0], axes, [("28 Hz", "36 Hz"), (0.7e-3, 1.3e-3)], progress=lambda *_: next(answers, True)
+    )
+    assert curve.sizes["point"] < 5
+    assert curve.attrs["ended"].count("the continuation was stopped") == 2
+
+
+def test_phases_between_loads(orbit):
+    """With two loads, the message about a phase does not state that it has no effect.
+
+    The test of phases had one load.
+    """
+    loads = [rb.Harmonic(amplitude="5 N", frequency="33 Hz"), rb.Harmonic(amplitude="1 N", frequency="33 Hz")]
+    both = rb.find_orbit(orbit.case.model_copy(update={"loads": tuple(loads)}), period=1)
+    with pytest.raises(rb.CaseError, match="one of 2 loads, cannot be followed"):
+        rb.continue_orbit(both, "load[1].phase", (-0.5, 0.5), progress=False)
 
 
 def test_a_closed_branch_has_no_first_stretch(branch):
@@ -207,7 +232,7 @@ def same(one, other):
 
 @pytest.mark.parametrize("stop", [1, 10, 30])
 def test_resume(orbit, tmp_path, stop):
-    """A branch that was stopped on either side resumes from its file with the same bits, and a complete one is read."""
+    """A branch that was stopped on either side resumes from its file with the same bits; a complete branch is read."""
     file, limits = tmp_path / "branch.nc", ("31 Hz", "35 Hz")
     whole = rb.continue_orbit(orbit, "load.frequency", limits, progress=False)
     part = rb.continue_orbit(orbit, "load.frequency", limits, store=file, progress=lambda done, _: done < stop)
@@ -236,8 +261,8 @@ def test_resume_of_a_closed_branch(orbit, tmp_path, stop):
     assert again.is_closed and same(again, whole)
 
 
-def test_files_keep_the_way_behind_a_grazing(tmp_path):
-    """The way on at a grazing is in the file of a branch, in its special points and in its words."""
+def test_files_keep_the_passage_at_a_grazing(tmp_path):
+    """How the branch continues at a grazing is in its file, in its special points and in its text."""
     case = rb.Case(
         structure=rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio=0.05),
         stop=rb.Stop(gap=2.0, contact=rb.Linear(stiffness=1.0, restitution=0.5)),

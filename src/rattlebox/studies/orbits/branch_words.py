@@ -147,6 +147,11 @@ def sentences(data: xarray.Dataset) -> Iterator[str]:
         yield f"The branch ends before the limits: {ended}."
 
 
+def stopped_words(count: int, most: int) -> str:
+    """Return the reason why a branch or curve with some number of points ends at no limit of a parameter."""
+    return f"the limit of {counted(count, 'point')} is reached" if count >= most else "the continuation was stopped"
+
+
 def noun(kind: str) -> str:
     """Return the noun for a kind of special point."""
     return _NOUNS.get(kind, kind)

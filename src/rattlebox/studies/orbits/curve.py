@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.narrow import present
-from rattlebox.model.errors import several
+from rattlebox.studies.orbits.branch_words import stopped_words
 from rattlebox.studies.orbits.find import away_from_impacts, size_of
 from rattlebox.studies.orbits.forcing import Forcing, number_at
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
@@ -27,6 +27,8 @@ _CHANGE = 1e-5
 _CORRECTIONS = 8
 _FEW, _MANY = 3, 6
 """Numbers of corrections at which a step becomes longer or shorter."""
+_ON_CIRCLE = 1e-3
+"""Largest distance of a critical pair of multipliers from the unit circle."""
 _SHORTEST = 1e-5
 """Shortest step, where the size of the motion and the ranges of the parameters are 1."""
 
@@ -63,11 +65,11 @@ class Curve(ABC):
         """Return whether values of both parameters are between their limits."""
         return bool((values >= self.limits[:, 0]).all() and (values <= self.limits[:, 1]).all())
 
-    def follow(self, side: float, most: int) -> Iterator[Row]:
+    def follow(self, side: float, most: int, proceed: Callable[[], bool]) -> Iterator[Row]:
         """Yield the motions on one side of the start."""
         self.begin(side)
         length, count = self.longest / 4, 0
-        while count < most:
+        while count < most and proceed():
             taken = self.step(length)
             if taken is None:
                 length /= 2
@@ -76,8 +78,8 @@ class Curve(ABC):
                     return
                 continue
             row, corrections = taken
-            if not self.is_inside(row[1]):
-                self.reasons.append("")
+            if (reason := self.end(row)) is not None:
+                self.reasons.append(reason)
                 return
             yield row
             count += 1
@@ -85,7 +87,11 @@ class Curve(ABC):
                 length = min(1.4 * length, self.longest)
             elif corrections >= _MANY:
                 length /= 2
-        self.reasons.append(f"the limit of {several(count, 'point')} is reached")
+        self.reasons.append(stopped_words(count, most))
+
+    def end(self, row: Row) -> str | None:
+        """Return the reason if the curve ends before a motion, "" at a limit; None if it continues."""
+        return None if self.is_inside(row[1]) else ""
 
     @abstractmethod
     def begin(self, side: float) -> None:
@@ -217,6 +223,18 @@ class StabilityCurve(SmoothCurve):
         value = self.test(np.linalg.eigvals(shot.monodromy()).astype(complex))
         result = np.append(shot.residual[0] / scale, value), np.vstack([top, row])
         return result if np.isfinite(result[1]).all() else None
+
+
+class TorusCurve(StabilityCurve):
+    """Curve on which a complex pair of multipliers is on the unit circle."""
+
+    def end(self, row: Row) -> str | None:
+        """Return the reason if the curve ends before a motion, also where the pair becomes real; see `Curve.end`."""
+        # The product of the pair stays 1 beyond a double multiplier, as a curve of saddles without a change of stability.
+        second = np.sort(np.abs(np.abs(row[0].multipliers) - 1))[1]
+        return (
+            super().end(row) if second < _ON_CIRCLE else "the pair of multipliers becomes real (1:1 or 1:2 resonance)"
+        )
 
 
 def _null(slopes: Vector) -> Vector:

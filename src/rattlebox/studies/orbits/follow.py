@@ -14,8 +14,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rattlebox.model.errors import several
+from rattlebox.studies.orbits.branch_words import stopped_words
 from rattlebox.studies.orbits.corrector import TESTS, Corrector, Point
-from rattlebox.studies.orbits.grazing import NAMES, NOT_FOUND, approach, beyond, is_pressed, located_by
+from rattlebox.studies.orbits.grazing import (
+    NAMES,
+    NOT_FOUND,
+    Indicator,
+    Passage,
+    approach,
+    beyond,
+    is_pressed,
+    with_passage,
+)
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
 from rattlebox.studies.orbits.stability import flip_test
 from rattlebox.studies.orbits.symmetry import is_mirrored
@@ -37,7 +47,7 @@ _REPEATED = 1e-7
 _ON_CIRCLE = 1e-6
 """Largest distance of a multiplier from -1 there."""
 _ACCURATE = 1e-12
-"""Accuracy of its place."""
+"""Accuracy of the value of the parameter there, over its range."""
 _IMAGES = {
     "pitchfork": "the mirror images of these motions follow",
     "flip": "the same motions follow, half of their period later",
@@ -49,7 +59,7 @@ _LOOP = 10
 
 @dataclass(frozen=True)
 class Restart:
-    """State in which the loop of a continuation goes on from a point, with the same bits as without a stop."""
+    """State of the loop of a continuation after a point: a restart from it yields the same bits as no stop."""
 
     point: Point
     before: Point | None
@@ -65,11 +75,10 @@ class Follower:
         self.corrector = corrector
         self.is_closed = False
         self._is_mirrored = is_mirrored(corrector.returns.forcing)
-        self._image = ""  # reason why the branch ends between the last two points
         self.reasons: list[str] = []
         """Reason why the branch ends on each side that was followed; empty at a limit."""
         self.loop: tuple[float, int, int, bool] = 0.0, 0, 0, False
-        """Length, count and tiny steps of the loop when it asks whether to proceed; whether it knows the point before."""
+        """Length, count and tiny steps of the loop when `proceed` is called, and whether the point before is known."""
 
     def follow(
         self, start: Point, most: int, proceed: Callable[[], bool], restart: Restart | None = None
@@ -82,47 +91,40 @@ class Follower:
         if restart is not None:
             point, length, count, tiny = corrector.resection(restart.point), restart.length, restart.count, restart.tiny
             before = None if restart.before is None else corrector.resection(restart.before)
-        while count < most and self._goes_on(proceed, (length, count, tiny, before is not None)):
+        while count < most and self._proceeds(proceed, (length, count, tiny, before is not None)):
             tiny = tiny + 1 if length < _TINY * longest else 0
             taken = corrector.step(point, length)
             is_near = taken is not None and corrector.is_near(point, taken[0])
-            if taken is None or not is_near or taken[0].contacts != point.contacts:
-                # Near grazing the map is a square root, which no step crosses.
-                event = None if before is None else approach(corrector, before, point, longest)
-                if event is not None:
-                    points, indicator = event
-                    passage = beyond(corrector, points[-1], indicator)
-                    yield from points[:-1]
-                    yield located_by(points[-1], passage)
-                    count += len(points) + 1
-                    if passage is None:
-                        self.reasons.append(f"grazing, {NOT_FOUND}")
-                        return
-                    yield passage.point
-                    before, point, length = None, corrector.resection(passage.point), longest / 64
-                    continue
-                if taken is None or not is_near:
-                    length /= 2
-                    if length < _SHORTEST or tiny > _MOST_TINY:
-                        self.reasons.append("no further motion was found")
-                        return
-                    continue
+            changes = taken is None or not is_near or taken[0].contacts != point.contacts
+            # Near grazing the map is a square root, which no step crosses.
+            if changes and before is not None and (event := approach(corrector, before, point, longest)) is not None:
+                points, passage = self._passed(*event)
+                yield from points
+                count += len(event[0]) + 1
+                if passage is None:
+                    self.reasons.append(f"grazing, {NOT_FOUND}")
+                    return
+                before, point, length = None, corrector.resection(passage.point), longest / 64
+                continue
+            # The branch turns too much, or Newton's method fails: a shorter step.
+            if taken is None or not is_near:
+                length /= 2
+                if length < _SHORTEST or tiny > _MOST_TINY:
+                    self.reasons.append("no further motion was found")
+                    return
+                continue
             after, corrections = taken
+            # The last point is at the limit, not beyond it.
             if not limits[0] <= after.value <= limits[1]:
                 self.reasons.append("")
-                if (last := corrector.at_limit(point, after)) is not None:
-                    yield from self._special(point, last)
-                    yield last
+                yield from self._up_to_limit(point, after)
                 return
-            found = list(self._special(point, after))
-            if not self._image and self._repeats_sooner(after):
-                # The step has left the branch for that of which its motions are the images.
-                end = self._halved(after)
-                self._image = _IMAGES.get(end.special, "a motion of half of the period follows")
-                found = [end] if end.special in _IMAGES else []
+            found, image = self._special(point, after)
+            if not image and self._repeats_sooner(after):
+                found, image = self._turned_back(after)
             yield from found
-            if self._image:
-                self.reasons.append(self._image)
+            if image:
+                self.reasons.append(image)
                 return
             yield after
             count += 1
@@ -136,12 +138,23 @@ class Follower:
             moved = corrector.resection(after)
             # Distances are between points whose maps begin at the same phase.
             before, point = (point if moved is after else None), moved
-        self.reasons.append(f"the limit of {several(count, 'point')} is reached")
+        self.reasons.append(stopped_words(count, most))
 
-    def _goes_on(self, proceed: Callable[[], bool], loop: tuple[float, int, int, bool]) -> bool:
+    def _proceeds(self, proceed: Callable[[], bool], loop: tuple[float, int, int, bool]) -> bool:
         """Return whether to proceed, while the state of the loop is known."""
         self.loop = loop
         return proceed()
+
+    def _passed(self, points: list[Point], indicator: Indicator) -> tuple[list[Point], Passage | None]:
+        """Return the points up to a grazing and the first one past it, and how the branch continues there."""
+        passage = beyond(self.corrector, points[-1], indicator)
+        further = [] if passage is None else [passage.point]
+        return [*points[:-1], with_passage(points[-1], passage), *further], passage
+
+    def _up_to_limit(self, point: Point, after: Point) -> list[Point]:
+        """Return the special points between the last point and the limit, and the point at the limit."""
+        last = self.corrector.at_limit(point, after)
+        return [] if last is None else [*self._special(point, last)[0], last]
 
     def _has_returned(self, start: Point, point: Point, after: Point) -> bool:
         """Return whether the branch passes its start between two points, in the same direction."""
@@ -156,9 +169,9 @@ class Follower:
         old, new = (np.sort([impact.approach_speed for impact in each.orbit.impacts]) for each in (start, after))
         return old.size == new.size and bool(np.allclose(old, new, rtol=0.1))
 
-    def _special(self, point: Point, after: Point) -> Iterator[Point]:
-        """Yield the special points between two points in their order."""
-        found, self._image = [], ""
+    def _special(self, point: Point, after: Point) -> tuple[list[Point], str]:
+        """Return the special points between two points in their order, and the reason if the branch ends there, or ""."""
+        found, image = [], ""
         for name, test in TESTS.items():
             low, high = test(point), test(after)
             if low * high < 0 and (located := self.corrector.locate(point, after, test)) is not None:
@@ -171,9 +184,16 @@ class Follower:
             fold = names.index("fold")
             found[fold] = self._halved(found[fold])
             if found[fold].special != "fold":
-                self._image = _IMAGES[found[fold].special]
+                image = _IMAGES[found[fold].special]
                 found = [each for each in found if each.special != "branch point"]
-        yield from sorted(found, key=lambda each: self.corrector.distance(point, each))
+        return sorted(found, key=lambda each: self.corrector.distance(point, each)), image
+
+    def _turned_back(self, after: Point) -> tuple[list[Point], str]:
+        """Return the special point and the reason of the end if a step has led to the motions that the branch ends in."""
+        end = self._halved(after)
+        if end.special not in _IMAGES:
+            return [], "a motion of half of the period follows"
+        return [end], _IMAGES[end.special]
 
     def _half(self, point: Point) -> ReturnMap | None:
         """Return the map over half of the period, mirrored if the period is odd; None if the case has no mirror image."""
@@ -191,13 +211,10 @@ class Follower:
         return shot.is_complete and bool(np.abs(shot.residual / point.scale).max() < _REPEATED)
 
     def _halved(self, point: Point) -> Point:
-        """Return the point at which a branch turns back into its image half a period later: a flip, or a pitchfork.
-
-        There the motion repeats after half of its period, or with the opposite sign if the branch lost the symmetry, and
-        the map over this half has a multiplier -1. The map over the whole is singular in two directions, and its fixed
-        points are inaccurate. The point stays what it is if there is no
-        such motion.
-        """
+        """Return the flip or pitchfork at which a branch turns back into its image; the same point if there is none."""
+        # The motion there repeats after half of its period, or with the opposite sign if the branch lost the symmetry, and
+        # the map over this half has a multiplier -1. That over the whole period is singular in two directions, and its
+        # fixed points are inaccurate.
         returns, state = self._half(point), point.orbit.state
         if returns is None:
             return point

@@ -104,7 +104,10 @@ class Forcing:
                 "the path of a number, such as load.frequency, load.amplitude or damper.gap",
             )
         if place[-1] == "phase":
-            raise Hint(f"{path} only shifts the time of the motion", "a frequency, an amplitude or a gap")
+            if len(self.cycles) == 1:
+                raise Hint(f"{path} only shifts the time of the motion", "a frequency, an amplitude or a gap")
+            # The map may begin at another phase, for which those of all loads are replaced (`shifted`).
+            raise Hint(f"{path}, a phase of one of {len(self.cycles)} loads, cannot be followed", "rb.sweep over it")
         if self.is_frequency(path) and len(self.cycles) > 1:
             raise Hint(
                 f"{path} is one of {len(self.cycles)} frequencies; if it varies alone, the loads have no common period",

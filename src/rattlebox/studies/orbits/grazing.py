@@ -16,7 +16,7 @@ import numpy as np
 from rattlebox.model.errors import several
 from rattlebox.studies.orbits.motion import GapLines
 from rattlebox.studies.orbits.shooting import solve
-from rattlebox.studies.orbits.unfolding import aimed, touch_at, unfolding_at
+from rattlebox.studies.orbits.unfolding import aimed, touch_at, touches, unfolding_at
 
 if TYPE_CHECKING:
     from rattlebox.studies.orbits.corrector import Corrector, Point
@@ -44,7 +44,7 @@ _NEAR = 0.05
 _REFINED, _SMALLER = 4, 0.01
 """Number of motions without the impact that approach a grazing, and ratio of their gaps."""
 _AGREES = 1e-3
-"""Largest difference of the values of a grazing from both sides, over the value."""
+"""Largest difference of the values of a grazing from both sides, over the range of the parameter."""
 _APART = 1.1
 """Smallest ratio of the quantities of two points from which a grazing is extrapolated."""
 
@@ -144,11 +144,9 @@ class Passage(NamedTuple):
 
 
 def beyond(corrector: Corrector, point: Point, indicator: Indicator) -> Passage | None:
-    """Return the motion with one contact more or less that begins at a grazing, on either side; None if none is found.
-
-    The map near the grazing without the contact, and the kick of the contact in proportion to its approach speed, say on
-    which side it exists and where the search begins.
-    """
+    """Return the motion with one contact more or less that begins at a grazing, on either side; None if none is found."""
+    # The side on which it exists, and a guess of it, follow from the map without the contact and the jump of the state
+    # at the impact, which is proportional to the approach speed.
     is_lost = indicator.kind == "slow"
     touch = touch_at(point.returns, point.orbit.state, [point.value], impact=is_lost)
     near = None if touch is None else unfolding_at(point.returns, point.orbit.state, [point.value], touch)
@@ -178,33 +176,29 @@ def beyond(corrector: Corrector, point: Point, indicator: Indicator) -> Passage 
             continue
         there = corrector.finish(point.returns, *found[:3], point.scale, normal)
         if there is not None and len(there.orbit.impacts) == expected:
-            located = _limit(corrector, there) if is_lost else np.nan
+            located = _limit(corrector, there, touch.contact) if is_lost else np.nan
+            if abs(located - point.located) > _AGREES * corrector.width:  # of another near miss
+                located = np.nan
             return Passage(there, (there.value > value) == (point.value > value), located)
     return _search(corrector, point)
 
 
-def located_by(point: Point, passage: Passage | None) -> Point:
-    """Return a point at a grazing with the way on, and with its value from the side without the impact if that is known."""
+def with_passage(point: Point, passage: Passage | None) -> Point:
+    """Return a point at a grazing with the words for the passage and the more accurate value of the parameter."""
     if passage is None:
         return replace(point, passage=NOT_FOUND)
-    return replace(
-        point,
-        passage=str(passage),
-        located=passage.located
-        if abs(passage.located - point.located) < _AGREES * abs(point.located)
-        else point.located,
-    )
+    located = passage.located if np.isfinite(passage.located) else point.located
+    return replace(point, passage=str(passage), located=located)
 
 
-def _limit(corrector: Corrector, point: Point) -> float:
-    """Return the value of the parameter at which the smallest gap of a motion vanishes; NaN if it is not found.
-
-    Next to a grazing, rounding errors of the motion with the impact grow as one over its approach speed.
-    """
+def _limit(corrector: Corrector, point: Point, contact: int) -> float:
+    """Return the value of the parameter at which the smallest gap of a contact vanishes; NaN if it is not found."""
+    # Rounding errors of the motion with the impact grow as one over its approach speed, those without it do not.
     returns, scale, state, value = point.returns, point.scale, point.orbit.state, point.value
     located = np.nan
     for _ in range(_REFINED):
-        touch = touch_at(returns, state, [value], impact=False)
+        misses = touches(returns, state, [value], impact=False)
+        touch = next((miss for miss in misses if miss.contact == contact), None)
         near = None if touch is None else unfolding_at(returns, state, [value], touch)
         if touch is None or near is None:
             return located
@@ -225,10 +219,8 @@ def is_pressed(point: Point) -> bool:
 
 
 def _search(corrector: Corrector, point: Point) -> Passage | None:
-    """Return a motion with another sequence of impacts near a grazing, onward or backward; None if none is found.
-
-    Where bodies are pressed together at the slow impact, as in chatter, many contacts change at once.
-    """
+    """Return a motion with another sequence of impacts near a grazing, past it or before it; None if none is found."""
+    # Where bodies are pressed together at the slow impact, as in chatter, many contacts change at once.
     onward = 1.0 if point.tangent[-1] >= 0 else -1.0
     for direction in (onward, -onward):
         for share in _SEARCHED:

@@ -13,7 +13,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
 from rattlebox.studies.orbits.branch import SpecialPoint
 from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of
-from rattlebox.studies.orbits.curve import TESTS, Curve, Row, StabilityCurve
+from rattlebox.studies.orbits.curve import TESTS, Curve, Row, StabilityCurve, TorusCurve
 from rattlebox.studies.orbits.grazing_curve import GrazingCurve
 from rattlebox.studies.orbits.sticking_curve import StickingCurve
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _CURVES: dict[str, type[Curve]] = {
     **dict.fromkeys(TESTS, StabilityCurve),
+    "torus": TorusCurve,
     "grazing": GrazingCurve,
     "impact lost": GrazingCurve,
     "sticking": StickingCurve,
@@ -116,17 +117,19 @@ def continue_point(
     if not curve.is_inside(curve.start[1]):
         raise Hint("the point is not between the limits", "limits around it")
     most = whole_number(points, "points", 1)
+    rows: tuple[list[Row], list[Row]] = [], []
+    going = True
     with progress_bar(progress, "points") as report:
-        rows = list[list[Row]]()
-        for side in (-1.0, 1.0):
-            row = []
-            for each in curve.follow(side, most):
-                row.append(each)
-                if report(len(rows) + len(row), 2 * most) is False:
-                    break
-            rows.append(row)
-    row = [*rows[0][::-1], curve.start, *rows[1]]
-    return _dataset(curve, row, axes, [unit for _, unit in both], point.kind)
+
+        def proceed() -> bool:
+            nonlocal going
+            going = going and report(sum(map(len, rows)) + 1, 2 * most) is not False
+            return going
+
+        for side, row in zip((-1.0, 1.0), rows, strict=True):
+            row.extend(curve.follow(side, most, proceed))
+    whole = [*rows[0][::-1], curve.start, *rows[1]]
+    return _dataset(curve, whole, axes, [unit for _, unit in both], point.kind)
 
 
 def _dataset(curve: Curve, row: Sequence[Row], axes: Sequence[str], units: Sequence[str], kind: str) -> xarray.Dataset:
