@@ -11,10 +11,12 @@ from types import FrameType
 
 from rattlebox.cli.exit_codes import STOPPED
 
-# Python discards exceptions that a signal handler raises while these run: finalizers and the callbacks of importlib's
-# locks, and compiled modules that import others.
+# Finalizers, the callbacks of importlib's locks and compiled modules that import others are not interrupted: most discard
+# exceptions, and they would end halfway.
 _DISCARDING_FUNCTIONS = ("__del__", "cb")
 _DISCARDING_LOADER = "ExtensionFileLoader."
+_ALARM = getattr(signal, "SIGALRM", None)
+"""Signal that repeats a discarded one; Windows has none, and Ctrl-C must be pressed again."""
 
 
 def main() -> None:
@@ -32,15 +34,26 @@ def main() -> None:
 
     def stop(number: int, frame: FrameType | None) -> None:
         # The first signal decides the exit code; the alarm only repeats one that came at a bad moment.
-        if number != signal.SIGALRM:
+        if number != _ALARM:
             received.append(number)
-        if _discards_exceptions(frame):
-            signal.setitimer(signal.ITIMER_REAL, 1e-3)  # try again when that function has returned
+        if _ALARM is not None and _discards_exceptions(frame):
+            repeat()
         else:
             raise KeyboardInterrupt
 
-    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+    def repeat() -> None:
+        signal.setitimer(signal.ITIMER_REAL, 1e-3)  # by then the function that runs now has returned
+
+    def discarded(event: sys.UnraisableHookArgs) -> None:
+        # Compiled code that asks for the type of an object discards exceptions, too.
+        if _ALARM is not None and issubclass(event.exc_type, KeyboardInterrupt):
+            repeat()
+        else:
+            hook(event)
+
+    numbers = [signal.SIGINT, signal.SIGTERM, *([] if _ALARM is None else [_ALARM])]
     before = {number: signal.signal(number, stop) for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
+    hook, sys.unraisablehook = sys.unraisablehook, discarded
     try:
         from rattlebox.cli.commands import run_command
 
@@ -51,6 +64,7 @@ def main() -> None:
     except SystemExit as end:
         sys.exit(128 + received[0] if received and end.code == STOPPED else end.code)
     finally:
+        sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
 

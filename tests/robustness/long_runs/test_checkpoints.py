@@ -513,6 +513,41 @@ def test_sigterm_where_python_discards_exceptions() -> None:
     assert done.returncode == 128 + signal.SIGTERM, done.stderr
 
 
+ASKING = """
+import os, signal, sys, time
+from collections.abc import Mapping
+from pydantic import TypeAdapter, ValidationError
+from rattlebox.cli.commands import app
+from rattlebox.cli.main import main
+
+class Kind:
+    @property
+    def __class__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        return Kind
+
+@app.command()
+def wait():
+    try:
+        TypeAdapter(dict[str, int]).validate_python(Kind())
+    except ValidationError:
+        pass
+    time.sleep(10)
+
+sys.argv = ["rattlebox", "wait"]
+main()
+"""
+
+
+def test_sigterm_while_compiled_code_asks_for_a_type() -> None:
+    """SIGTERM while a validator in compiled code asks for the type of an object, which discards it, stops the command.
+
+    One in some hundred signals to a continuation was lost; the tests knew the places in Python's own modules only.
+    """
+    done = subprocess.run([sys.executable, "-c", ASKING], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "stopped\n")
+
+
 LOADING = """
 import os, signal, sys, time
 from contextlib import suppress
