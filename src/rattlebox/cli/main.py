@@ -64,6 +64,7 @@ def main() -> None:
     except SystemExit as end:
         sys.exit(128 + received[0] if received and end.code == STOPPED else end.code)
     finally:
+        exec("")  # Python ends by SIGINT if the last text that was executed was interrupted
         sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -548,6 +548,27 @@ def test_sigterm_while_compiled_code_asks_for_a_type() -> None:
     assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "stopped\n")
 
 
+EXECUTING = """
+import os, signal
+from rattlebox.cli import commands
+from rattlebox.cli.main import main
+
+commands.run_command = lambda: exec("os.kill(os.getpid(), signal.SIGTERM)")
+main()
+"""
+
+
+def test_sigterm_in_the_execution_of_a_text(tmp_path: Path) -> None:
+    """SIGTERM in the exec() of a text, as when dataclasses are defined, has the exit code of SIGTERM, not of Ctrl-C.
+
+    `python -m` then ends by SIGINT whatever the exit code is; signals to commands were sent after all modules were loaded.
+    """
+    (tmp_path / "early.py").write_text(EXECUTING)
+    command = [sys.executable, "-m", "early"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "stopped\n")
+
+
 LOADING = """
 import os, signal, sys, time
 from contextlib import suppress
