@@ -569,6 +569,21 @@ def test_sigterm_in_the_execution_of_a_text(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "stopped\n")
 
 
+WITHOUT_ALARM = """
+import os, signal, sys
+del signal.SIGALRM, signal.setitimer, os.sched_getaffinity, os.posix_fallocate
+from rattlebox.cli.main import main
+sys.argv = ["rattlebox", "doctor"]
+main()
+"""
+
+
+def test_commands_without_an_alarm() -> None:
+    """Commands work where Python has no alarm signal, as on Windows; they ended with a traceback, since tests run on Linux."""
+    done = subprocess.run([sys.executable, "-c", WITHOUT_ALARM], capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "rattlebox" in done.stdout, done.stderr
+
+
 LOADING = """
 import os, signal, sys, time
 from contextlib import suppress
