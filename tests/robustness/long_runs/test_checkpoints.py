@@ -579,7 +579,7 @@ main()
 
 
 def test_commands_without_an_alarm() -> None:
-    """Commands work where Python has no alarm signal, as on Windows; they ended with a traceback, since tests run on Linux."""
+    """Commands work where Python has no alarm signal, as on Windows; they ended with a traceback, unseen on Linux."""
     done = subprocess.run([sys.executable, "-c", WITHOUT_ALARM], capture_output=True, text=True, check=False)
     assert done.returncode == 0 and "rattlebox" in done.stdout, done.stderr
 
