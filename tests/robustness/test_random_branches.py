@@ -1,6 +1,7 @@
 """Branches of periodic motions of random cases: no exception but those of Rattlebox, no NaN, multipliers that fit."""
 
 import contextlib
+import itertools
 import warnings
 
 import numpy as np
@@ -62,6 +63,20 @@ def test_random_branches(seed):
         check(branch.data)
 
 
+def assert_is_complete(data):
+    """Fail if a branch leaves its limits, or turns or changes its stability without a special point there."""
+    low, high = data.attrs["limits"]
+    value, special = data.value.values, data.special.values.astype(str)
+    assert value.min() >= low * (1 - 1e-12) and value.max() <= high * (1 + 1e-12)
+    ordinary = np.flatnonzero(special == "")
+    stable = data.stable.values.astype(bool)
+    for before, after in itertools.pairwise(ordinary):
+        assert stable[before] == stable[after] or after - before > 1, f"stability changes before point {after}"
+    for first, middle, last in zip(ordinary, ordinary[1:], ordinary[2:], strict=False):
+        turns = (value[middle] - value[first]) * (value[last] - value[middle]) < 0
+        assert not turns or last - first > 2, f"the branch turns at point {middle}"
+
+
 def check(data):
     """Fail if a number is missing, or a located point has another multiplier than its kind."""
     for name in ("value", "amplitude", "multiplier_real", "multiplier_imaginary", "state"):
@@ -70,5 +85,6 @@ def check(data):
         values = data.multiplier_real.values[row] + 1j * data.multiplier_imaginary.values[row]
         assert np.isfinite(data.located.values[row])
         assert off_circle(str(data.special.values[row]), values) < ON_CIRCLE
+    assert_is_complete(data)
     known = data.determinant_error.values[np.isfinite(data.determinant_error.values)]
     assert known.size == 0 or known.max() < 1e-6

@@ -17,7 +17,7 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, several
 from rattlebox.studies.orbits.branch_data import KINDS, STUDY
 from rattlebox.studies.orbits.branch_words import sentences, special_kinds
-from rattlebox.studies.orbits.find import size_of
+from rattlebox.studies.orbits.find import simplest, size_of
 from rattlebox.studies.orbits.forcing import Forcing
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
@@ -152,6 +152,10 @@ class Branch:
             shot = returns.shoot(state[None])
             found = (state[None], shot) if shot.is_complete else None
             scale = np.ones_like(state) if scale is None else scale
+        if found is not None and scale is not None and str(row.special.item()) in ("flip", "pitchfork"):
+            # A branch that begins or ends there has a map over twice the period, whose derivative is singular.
+            returns, states, shot, scale = simplest(returns, *found, scale)
+            found = states, shot
         orbit = None if found is None else orbit_of(returns, found[1], found[0][0], scale)
         if orbit is None:
             raise Hint(f"the motion of point {index} cannot be computed", "a neighbouring point")

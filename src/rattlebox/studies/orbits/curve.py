@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,8 +23,10 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
-_CHANGE = 1e-5
-"""Step of the central differences of the test function in scaled coordinates."""
+_CHANGES = (1e-5, 1e-6, 1e-7)
+"""Steps of the central differences of the test function in scaled coordinates; next to grazing only short ones are valid."""
+_SAME_SLOPE = 1e-2
+"""Largest difference of the derivatives with two steps, over their size."""
 _CORRECTIONS = 8
 _FEW, _MANY = 3, 6
 """Numbers of corrections at which a step becomes longer or shorter."""
@@ -197,6 +200,14 @@ class StabilityCurve(SmoothCurve):
     ) -> None:
         super().__init__(point, axes, limits, step)
         self.test = TESTS[point.kind]
+        self._change = _CHANGES[-1]
+        state, values = self._begin
+        scale = present(size_of(self.returns, state))
+        for change, shorter in pairwise(_CHANGES):
+            one, other = (self._slopes(self.returns, state, values, scale, each) for each in (change, shorter))
+            if np.abs(one - other).max() < _SAME_SLOPE * np.abs(other).max():
+                self._change = change
+                break
 
     def _psi(self, returns: ReturnMap, state: Vector, values: Vector) -> float:
         """Return the test function; NaN if the motion cannot be computed."""
@@ -205,23 +216,24 @@ class StabilityCurve(SmoothCurve):
             return float("nan")
         return self.test(np.linalg.eigvals(shot.monodromy()).astype(complex))
 
+    def _slopes(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector, change: float) -> Vector:
+        """Return the scaled derivatives of the test function by central differences, (n + 2,)."""
+        n = state.size
+        steps = np.diag(np.concatenate([scale, self.width]) * change)
+        sides = [
+            [self._psi(returns, state + side * step[:n], values + side * step[n:]) for step in steps]
+            for side in (1.0, -1.0)
+        ]
+        return np.asarray((np.array(sides[0]) - np.array(sides[1])) / (2 * change))
+
     def linear(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector) -> tuple[Vector, Vector] | None:
         """Return residual and test function, (n + 1,), and their scaled derivatives, (n + 1, n + 2)."""
-        n = state.size
         shot = returns.shoot(state[None], values.tolist())
         if not shot.is_complete:
             return None
-        top = self.scaled_slopes(shot, scale)
-        sizes = np.concatenate([scale, self.width]) * _CHANGE
-        row = np.zeros(n + 2)
-        for k, size in enumerate(sizes):
-            change = np.zeros(n + 2)
-            change[k] = size
-            up = self._psi(returns, state + change[:n], values + change[n:])
-            down = self._psi(returns, state - change[:n], values - change[n:])
-            row[k] = (up - down) / (2 * _CHANGE)
+        row = self._slopes(returns, state, values, scale, self._change)
         value = self.test(np.linalg.eigvals(shot.monodromy()).astype(complex))
-        result = np.append(shot.residual[0] / scale, value), np.vstack([top, row])
+        result = np.append(shot.residual[0] / scale, value), np.vstack([self.scaled_slopes(shot, scale), row])
         return result if np.isfinite(result[1]).all() else None
 
 

@@ -131,7 +131,7 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
             "a longer run, so that its transient has decayed; another `period`; a run at a parameter where the motion is "
             "stable, and continue_orbit from there; rb.lyapunov, to see whether the motion is chaotic",
         )
-    returns, states, shot, scale = _simplest(*found)
+    returns, states, shot, scale = simplest(*found)
     orbit = orbit_of(returns, shot, states[0], scale)
     if orbit is None:
         raise Hint("the periodic motion cannot be simulated over its period", "rb.simulate(case), to see where")
@@ -305,7 +305,7 @@ def away_from_impacts(returns: ReturnMap, state: Vector) -> tuple[ReturnMap, Vec
     return returns.with_(phase=(returns.phase + middle / period) % 1.0), there.state[-1]
 
 
-def _simplest(returns: ReturnMap, states: Vector, shot: Shot, scale: Vector) -> tuple[ReturnMap, Vector, Shot, Vector]:
+def simplest(returns: ReturnMap, states: Vector, shot: Shot, scale: Vector) -> tuple[ReturnMap, Vector, Shot, Vector]:
     """Return the fixed point over its own period, and mirrored over half of it if the motion is symmetric."""
     for divisor in range(returns.cycles, 1, -1):
         if returns.cycles % divisor:

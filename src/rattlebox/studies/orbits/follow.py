@@ -8,12 +8,13 @@ Applications of Bifurcation Theory, Academic Press, 359-384.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
-from rattlebox.model.errors import several
 from rattlebox.studies.orbits.branch_words import stopped_words
 from rattlebox.studies.orbits.corrector import TESTS, Corrector, Point
 from rattlebox.studies.orbits.grazing import (
@@ -24,6 +25,7 @@ from rattlebox.studies.orbits.grazing import (
     approach,
     beyond,
     is_pressed,
+    passage_words,
     with_passage,
 )
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
@@ -53,6 +55,8 @@ _IMAGES = {
     "flip": "the same motions follow, half of their period later",
 }
 """Reasons why a branch ends where it turns back into its image, by the special point there."""
+_JUMP = 1e-3
+"""Change of the state over the size of the motion, between neighbouring points, that no single branch has."""
 _LOOP = 10
 """Number of points after which a branch may be closed."""
 
@@ -85,7 +89,7 @@ class Follower:
     ) -> Iterator[Point]:
         """Yield the points after a start, with special points, up to the limits or the end of the branch."""
         corrector = self.corrector
-        limits, longest = corrector.limits, corrector.longest
+        longest = corrector.longest
         point, length, count, tiny = corrector.resection(start), longest / 4, 0, 0
         before: Point | None = None
         if restart is not None:
@@ -98,28 +102,42 @@ class Follower:
             changes = taken is None or not is_near or taken[0].contacts != point.contacts
             # Near grazing the map is a square root, which no step crosses.
             if changes and before is not None and (event := approach(corrector, before, point, longest)) is not None:
-                points, passage = self._passed(*event)
-                yield from points
+                row, passage = [point, *event[0]], None
+                outside = next((k for k, each in enumerate(row) if not self._is_inside(each)), len(row))
+                if outside == len(row):
+                    row, passage = self._passed(row, event[1])
+                for last, each in pairwise(row[: min(outside, len(event[0]) + 1)]):
+                    found, image = self._special(last, each)
+                    yield from found
+                    if image:
+                        self.reasons.append(image)
+                        return
+                    yield each
+                if outside <= len(event[0]):  # the branch reaches its limit before it grazes
+                    self.reasons.append("")
+                    yield from self._up_to_limit(row[outside - 1], row[outside])
+                    return
+                yield from row[len(event[0]) + 1 :]
                 count += len(event[0]) + 1
                 if passage is None:
                     self.reasons.append(f"grazing, {NOT_FOUND}")
                     return
                 before, point, length = None, corrector.resection(passage.point), longest / 64
                 continue
-            # The branch turns too much, or Newton's method fails: a shorter step.
-            if taken is None or not is_near:
+            # The branch turns too much, a step leads to another branch, or Newton's method fails: a shorter step.
+            if taken is None or not is_near or self._jumps(point, taken[0]):
                 length /= 2
                 if length < _SHORTEST or tiny > _MOST_TINY:
                     self.reasons.append("no further motion was found")
                     return
                 continue
             after, corrections = taken
-            # The last point is at the limit, not beyond it.
-            if not limits[0] <= after.value <= limits[1]:
-                self.reasons.append("")
-                yield from self._up_to_limit(point, after)
-                return
             found, image = self._special(point, after)
+            # The last point is at the limit, not beyond it; the branch may also turn back beyond it.
+            if not all(map(self._is_inside, both := (*found, after))):
+                self.reasons.append("")
+                yield from self._up_to_limit(point, next(each for each in both if not self._is_inside(each)))
+                return
             if not image and self._repeats_sooner(after):
                 found, image = self._turned_back(after)
             yield from found
@@ -140,14 +158,26 @@ class Follower:
             before, point = (point if moved is after else None), moved
         self.reasons.append(stopped_words(count, most))
 
+    def _is_inside(self, point: Point) -> bool:
+        """Return whether the parameter of a point is between its limits."""
+        low, high = self.corrector.limits
+        return low <= point.value <= high
+
+    def _jumps(self, point: Point, after: Point) -> bool:
+        """Return whether the sequence of impacts changes between two points at a jump, from one branch to another."""
+        if _sequence(point) == _sequence(after):
+            return False
+        low, high = self.corrector.change(point, after, _sequence)
+        return bool(np.abs((high.orbit.state - low.orbit.state) / point.scale).max() > _JUMP)
+
     def _proceeds(self, proceed: Callable[[], bool], loop: tuple[float, int, int, bool]) -> bool:
         """Return whether to proceed, while the state of the loop is known."""
         self.loop = loop
         return proceed()
 
     def _passed(self, points: list[Point], indicator: Indicator) -> tuple[list[Point], Passage | None]:
-        """Return the points up to a grazing and the first one past it, and how the branch continues there."""
-        passage = beyond(self.corrector, points[-1], indicator)
+        """Return points up to a grazing and the first one past it, and how the branch continues there."""
+        passage = beyond(self.corrector, points[-2], points[-1], indicator)
         further = [] if passage is None else [passage.point]
         return [*points[:-1], with_passage(points[-1], passage), *further], passage
 
@@ -250,10 +280,16 @@ class Follower:
             # The number of impacts of complete chatter depends on the threshold of sticking.
             if low.orbit.sticks and high.orbit.sticks and is_pressed(high if gains else low):
                 return []
-            passage = f"continues with {several(high.contacts.total(), 'impact')}"
+            located = 0.5 * (low.value + high.value)
+            passage = passage_words(high, (point.value - located) * (after.value - located) > 0)
             kind = NAMES["miss" if gains else "slow"]
-            return [replace(low, special=kind, located=0.5 * (low.value + high.value), passage=passage)]
+            return [replace(low, special=kind, located=located, passage=passage)]
         return []
+
+
+def _sequence(point: Point) -> tuple[bool, Counter[int]]:
+    """Return whether bodies stick in the motion of a point, and the number of impacts of each contact."""
+    return point.orbit.sticks, point.contacts
 
 
 def _kind(name: str, point: Point) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _APPROACHES = 40
 _SHARE = 0.85
 """Part of the extrapolated distance to the grazing point that is gone in one step."""
-_CLOSE = {"miss": 1e-9, "slow": 1e-5}
+_CLOSE = {"miss": 1e-8, "slow": 1e-5}
 """Gap or approach speed, over the sizes of gaps and of speeds in the motion, at which grazing is extrapolated."""
 _ENOUGH = {"miss": 1e-5, "slow": 1e-3}
 """The same, at which it is extrapolated if no closer motion can be computed."""
@@ -85,6 +85,7 @@ def approach(corrector: Corrector, before: Point, point: Point, length: float) -
             # A larger gap is that of another near miss of the contact.
             if (
                 taken is not None
+                and corrector.is_near(row[-1], taken[0])
                 and taken[0].contacts == point.contacts
                 and indicators(taken[0]).get(chosen, np.inf) < smallest
             ):
@@ -139,12 +140,20 @@ class Passage(NamedTuple):
     located: float = np.nan  # value of the parameter at the grazing, from the side without the impact
 
     def __str__(self) -> str:
-        count = several(len(self.point.orbit.impacts), "impact") + " and sticking" * self.point.orbit.sticks
-        return f"nonsmooth fold, turns back with {count}" if self.folds else f"continues with {count}"
+        return passage_words(self.point, self.folds)
 
 
-def beyond(corrector: Corrector, point: Point, indicator: Indicator) -> Passage | None:
-    """Return the motion with one contact more or less that begins at a grazing, on either side; None if none is found."""
+def passage_words(point: Point, folds: bool) -> str:
+    """Return the words for how a branch continues past a grazing with the motion of a point."""
+    count = several(len(point.orbit.impacts), "impact") + " and sticking" * point.orbit.sticks
+    return f"nonsmooth fold, turns back with {count}" if folds else f"continues with {count}"
+
+
+def beyond(corrector: Corrector, before: Point, point: Point, indicator: Indicator) -> Passage | None:
+    """Return the motion with one contact more or less that begins at a grazing, on either side; None if none is found.
+
+    `before` is the point before the grazing, which shows the side from which the branch comes.
+    """
     # The side on which it exists, and a guess of it, follow from the map without the contact and the jump of the state
     # at the impact, which is proportional to the approach speed.
     is_lost = indicator.kind == "slow"
@@ -179,7 +188,7 @@ def beyond(corrector: Corrector, point: Point, indicator: Indicator) -> Passage 
             located = _limit(corrector, there, touch.contact) if is_lost else np.nan
             if abs(located - point.located) > _AGREES * corrector.width:  # of another near miss
                 located = np.nan
-            return Passage(there, (there.value > value) == (point.value > value), located)
+            return Passage(there, (there.value > point.located) == (before.value > point.located), located)
     return _search(corrector, point)
 
 

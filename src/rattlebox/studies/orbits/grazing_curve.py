@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
-_FOLLOWED = 1e-3
-"""Smallest gap over the size of the gaps, at which the curve is followed, so that steps along it meet no impact."""
+_FOLLOWED = (1e-3, 1e-4, 1e-5, 1e-6)
+"""Smallest gaps over the size of the gaps, at which a curve may be followed: the largest one, with which steps meet no
+impact, at which there is a motion without the impact."""
 _LEVELS = ((2e-5, 1e-8), (3e-4, 5e-5, 8e-6, 8e-7, 1e-8))
 """Smallest gaps that lead from there to the grazing; the last one is extrapolated to zero."""
 _SAME_TIME = 0.1
@@ -51,7 +52,7 @@ class GrazingCurve(SmoothCurve):
     ) -> None:
         super().__init__(point, axes, limits, step)
         orbit, values = self.start
-        self._level, self._size, scale = _FOLLOWED, 1.0, present(size_of(self.returns, orbit.state))
+        self._size, scale = 1.0, present(size_of(self.returns, orbit.state))
         lost = point.kind == "impact lost"
         touch = touch_at(self.returns, orbit.state, values.tolist(), impact=lost)
         near, index = self._unfolding(orbit.state, values, touch)
@@ -67,16 +68,22 @@ class GrazingCurve(SmoothCurve):
         self._share = self._started = self._absolute(self.returns, touch)
         self._impacts = touch.impacts - lost
         here = near.with_impact(touch.speed) if lost else near.without(touch.gap)
-        ahead = near.without(_FOLLOWED * self._size)
-        values = values.copy()
-        values[index] += ahead[1] - here[1]
         fixed = np.zeros(orbit.state.size + 2)
         fixed[orbit.state.size + 1 - index] = 1.0
-        found = self.correct(self.returns, orbit.state + ahead[0] - here[0], values, scale, fixed)
-        row = None if found is None else self.row(self.returns, *found[:2], scale, fixed)
-        if found is None or row is None:
-            raise Hint("no motion without the impact was found next to this point", "a branch with a shorter step")
-        self._begin, self.start = found[:2], row
+        for self._followed in _FOLLOWED:
+            self._level = self._followed
+            ahead = near.without(self._level * self._size)
+            at = values.copy()
+            at[index] += ahead[1] - here[1]
+            found = self.correct(self.returns, orbit.state + ahead[0] - here[0], at, scale, fixed)
+            row = None if found is None else self.row(self.returns, *found[:2], scale, fixed)
+            if found is not None and row is not None:
+                self._begin, self.start = found[:2], row
+                return
+        raise Hint(
+            "no motion without the impact was found next to this point, because the motion is very unstable there",
+            "another parameter for the branch, or rb.continue_orbit on each side of the point",
+        )
 
     def _unfolding(self, state: Vector, values: Vector, touch: Touch | None) -> tuple[Unfolding | None, int]:
         """Return the map near the grazing over the parameter that changes the gap more, and its index."""
@@ -133,7 +140,7 @@ class GrazingCurve(SmoothCurve):
         try:
             for levels in _LEVELS:
                 at = state, values
-                for self._level in levels:
+                for self._level in (level for level in levels if level < self._followed):
                     found = self.correct(returns, *at, scale, normal)
                     if found is None:
                         break
@@ -141,7 +148,7 @@ class GrazingCurve(SmoothCurve):
                 if found is not None:
                     break
         finally:
-            self._level = _FOLLOWED
+            self._level = self._followed
         if found is None:
             return None
         state, values, slopes, _ = found

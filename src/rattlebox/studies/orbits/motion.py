@@ -23,7 +23,7 @@ SAMPLES = 512
 MOST_EVENTS = 5_000
 """Largest number of flights and contacts in a stretch; a search may pass through states that no motion has."""
 _TOUCHING = 1e-9
-"""Gap over the clearance, below which the end of an interval belongs to a contact."""
+"""Gap over the largest gap of the contact, below which the end of an interval belongs to a contact."""
 
 
 class NearMiss(NamedTuple):
@@ -95,13 +95,13 @@ class Motion:
         """Return the minima of all gaps over time at which there is no contact."""
         gap, rate = self.gaps()
         found = []
-        size = max((float(damper.clearance) for damper in self.dampers), default=1.0)
+        size = np.abs(gap).max(axis=0)
         for contact in range(gap.shape[1]):
             times, values = _turning_points(self.time, gap[:, contact], rate[:, contact], rising=True)
             found += [
                 NearMiss(contact, float(t), float(g))
                 for t, g in zip(times, values, strict=True)
-                if g > _TOUCHING * size
+                if g > _TOUCHING * size[contact]
             ]
         return sorted(found, key=lambda miss: miss.gap)
 

@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox._util.progress import progress_bar
 from rattlebox._util.quantities import quantity
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
+from rattlebox.studies.orbits.bisected_curve import ContactCurve, StickingCurve
 from rattlebox.studies.orbits.branch import SpecialPoint
 from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of
 from rattlebox.studies.orbits.curve import TESTS, Curve, Row, StabilityCurve, TorusCurve
 from rattlebox.studies.orbits.grazing_curve import GrazingCurve
-from rattlebox.studies.orbits.sticking_curve import StickingCurve
 
 if TYPE_CHECKING:
     import xarray
@@ -38,6 +39,9 @@ _EQUATIONS = {
     "impact lost": _GAP,
     "sticking": "the pressing force is zero where a rest would begin",
 }
+
+
+_SEPARATES = "bodies that are pressed together begin to separate for an instant, so that one contact becomes two"
 
 
 def continue_point(
@@ -113,7 +117,7 @@ def continue_point(
     if axes[0] == axes[1]:
         raise Hint(f"axes: {axes[0]} is given twice", "two different paths")
     both = [corrector_of(point.orbit.case, axis, pair, step) for axis, pair in zip(axes, limits, strict=True)]
-    curve = _CURVES[point.kind](point, tuple(axes), [corrector.limits for corrector, _ in both], float(step))
+    curve = _curve(point, tuple(axes), [corrector.limits for corrector, _ in both], float(step))
     if not curve.is_inside(curve.start[1]):
         raise Hint("the point is not between the limits", "limits around it")
     most = whole_number(points, "points", 1)
@@ -130,6 +134,19 @@ def continue_point(
             row.extend(curve.follow(side, most, proceed))
     whole = [*rows[0][::-1], curve.start, *rows[1]]
     return _dataset(curve, whole, axes, [unit for _, unit in both], point.kind)
+
+
+def _curve(point: SpecialPoint, axes: tuple[str, ...], limits: Sequence[tuple[float, float]], step: float) -> Curve:
+    """Return the curve of a special point; raise if none can be followed."""
+    try:
+        return _CURVES[point.kind](point, axes, limits, step)
+    except CaseError:
+        if point.kind not in ("grazing", "impact lost"):
+            raise
+        curve = ContactCurve(point, axes, limits, step)
+        if not curve.is_inside(curve.start[1]) or curve.has_sides():
+            return curve
+        raise
 
 
 def _dataset(curve: Curve, row: Sequence[Row], axes: Sequence[str], units: Sequence[str], kind: str) -> xarray.Dataset:
@@ -154,7 +171,7 @@ def _dataset(curve: Curve, row: Sequence[Row], axes: Sequence[str], units: Seque
     about = {
         "study": "continue_point",
         "kind": kind,
-        "equation": _EQUATIONS[kind],
+        "equation": _SEPARATES if isinstance(curve, ContactCurve) else _EQUATIONS[kind],
         "case": curve.start[0].case.to_toml(),
         "axes": list(axes),
         "ended": "; ".join(ended),

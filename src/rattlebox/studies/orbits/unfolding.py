@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
-_SKIPPED = 1e-7
-"""Time before and after a slow impact, over that of the map, that is left out to compute the motion without it."""
+_SKIPPED = (1e-7, 1e-5, 1e-4)
+"""Times before and after a slow impact, over that of the map, that are left out to compute the motion without it."""
 _SAME_TIME = 0.02
 """Largest change of the time of a contact over that of the map, at which it is the same one."""
 _SINGULAR = 1e12
@@ -40,13 +40,17 @@ _GUESSED = 0.7
 
 @dataclass(frozen=True)
 class Touch:
-    """A near miss or a slow impact of a contact in a return, at a share of its time: gap [m] or approach speed [m/s]."""
+    """A near miss or a slow impact of a contact in a return, at a share of its time: gap [m] or approach speed [m/s].
+
+    `duration` is that of a soft contact over the time of the return.
+    """
 
     contact: int
     share: float
     gap: float
     speed: float
     impacts: int  # number of impacts in the return
+    duration: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -103,8 +107,9 @@ def touches(returns: ReturnMap, state: Vector, values: Sequence[float], *, impac
         return [Touch(miss.contact, miss.time / length, miss.gap, 0.0, count) for miss in motion.near_misses()]
     first = np.cumsum([0, *(int(np.size(damper.mass)) + 1 for damper in motion.dampers)])
     contacts, shares = first[np.asarray(log.damper)] + log.contact, log.time / length
+    spans = np.nan_to_num(log.duration) / length
     return [
-        Touch(int(contacts[k]), float(shares[k]), 0.0, float(log.approach_speed[k]), shares.size)
+        Touch(int(contacts[k]), float(shares[k]), 0.0, float(log.approach_speed[k]), shares.size, float(spans[k]))
         for k in np.argsort(log.approach_speed)
     ]
 
@@ -165,13 +170,17 @@ def unfolding_at(
 ) -> Unfolding | None:
     """Return the map near a motion that grazes, or nearly so, over one of the parameters; None if there is none."""
     n, contact = state.size, touch.contact
-    skipped = _SKIPPED if touch.speed > 0 else 0.0
-    before = returns.stretch(state, values, 0.0, touch.share - skipped)
-    restarted = before if not skipped else returns.stretch(state, values, 0.0, touch.share + skipped)
-    if not (before.ok and restarted.ok):
+    before = returns.stretch(state, values, 0.0, touch.share - (_SKIPPED[0] if touch.speed > 0 else 0.0))
+    if not before.ok:
         return None
-    after = returns.stretch(restarted.state, values, touch.share + skipped, 1.0)
-    if not after.ok:
+    # At the end of a soft contact bodies may still overlap, without force, for a short time.
+    for skipped in _SKIPPED if touch.speed > 0 else (0.0,):
+        again = touch.share + touch.duration + skipped
+        restarted = returns.stretch(state, values, 0.0, again) if skipped else before
+        after = returns.stretch(restarted.state, values, again, 1.0) if restarted.ok else restarted
+        if after.ok:
+            break
+    else:
         return None
     _, gap_by_state, gap_by_value, curvature = gap_slopes(returns, values, contact, before)
     if not curvature > 0:
