@@ -186,3 +186,65 @@ def test_curve_where_a_contact_divides():
     assert "pressed together" in curve.attrs["equation"]
     ratio = curve[axes[0]].values / curve[axes[1]].values
     np.testing.assert_allclose(ratio, point.value / 5.15, rtol=1e-8)
+
+
+def biased(gravity=0.0, second=0.0, ratio=2):
+    """Return a symmetric case that gravity or a second load makes asymmetric."""
+    case = damped()
+    loads = [*case.loads, rb.Harmonic(amplitude=second, frequency=f"{33 * ratio} Hz", phase="0.4 rad")]
+    return case.replaced({"loads": loads, "damper.gravity": gravity})
+
+
+@pytest.mark.parametrize(
+    ("axis", "limits"),
+    [("damper.gravity", (-1.0, 1.0)), ("loads[1].amplitude", (0.0, 2.0)), ("damper.gap", (8e-4, 1.1e-3))],
+)
+def test_parameter_that_breaks_the_symmetry(axis, limits):
+    """Motions stay symmetric along a parameter only if the case does; gravity and even harmonics break the symmetry.
+
+    The whole branch had the map over half a period of its first motion, whose fixed points are no motions then: speeds of
+    impacts were wrong by 5 %. Only parameters that keep the symmetry were tested.
+    """
+    branch = rb.continue_orbit(rb.find_orbit(biased()), axis, limits, points=25, step=0.1, progress=False)
+    breaks = axis != "damper.gap"
+    assert branch.data.value.values[[0, -1]] == pytest.approx(limits)
+    assert branch.data.symmetric.values.all() == (not breaks)
+    for k in (0, 3, -1):
+        orbit = branch.orbit(k)
+        run = orbit.run().arrays
+        np.testing.assert_allclose(run.displacement[-1], run.displacement[0], rtol=1e-8)
+        same = rb.find_orbit(orbit.case, near=orbit, period=1)
+        speeds = [sorted(impact.approach_speed for impact in each.impacts) for each in (orbit, same)]
+        np.testing.assert_allclose(speeds[0], speeds[1], rtol=1e-9)
+
+
+def test_pitchfork_in_a_plane_without_symmetry():
+    """A pitchfork is refused in a plane in which only one line has symmetric cases, with the reason."""
+    branch = rb.continue_orbit(rb.find_orbit(damped()), "load.frequency", ("31 Hz", "35 Hz"), progress=False)
+    (point,) = (each for each in branch.specials if each.kind == "pitchfork")
+    with pytest.raises(rb.CaseError, match="only in symmetric cases"):
+        rb.continue_point(point, ("load.frequency", "damper.gravity"), [("31 Hz", "35 Hz"), (-1, 1)], progress=False)
+
+
+@pytest.mark.parametrize(("axis", "high"), [("structure.damping_ratio", 0.02), ("stop.gap", 4e-4)])
+def test_limit_at_the_last_valid_value(axis, high):
+    """A branch reaches a limit beyond which no case exists, such as a gap or a damping ratio of 0.
+
+    A step beyond the limit raised the error of a negative value.
+    """
+    case = damped()
+    if axis == "stop.gap":
+        stop = rb.Stop(gap="0.2 mm", contact=rb.Linear(stiffness="2 MN/m", restitution=0.5))
+        case = case.replaced({"dampers": (), "stops": (stop,), "load.amplitude": "30 N", "load.frequency": "41 Hz"})
+    branch = rb.continue_orbit(rb.find_orbit(case), axis, (0, high), points=60, progress=False)
+    assert branch.data.value.values[[0, -1]].tolist() == [0, high]
+    assert not branch.data.attrs["ended"]
+
+
+def test_amplitude_of_a_subharmonic_load_to_zero():
+    """Limits that include the amplitude 0 of a load that doubles the period are refused; motions have other cycles there."""
+    orbit = rb.find_orbit(biased(second=0.2, ratio=0.5))
+    with pytest.raises(rb.CaseError, match="limits without 0"):
+        rb.continue_orbit(orbit, "loads[1].amplitude", (0, 0.4), progress=False)
+    branch = rb.continue_orbit(orbit, "loads[1].amplitude", (0.01, 0.4), points=20, step=0.1, progress=False)
+    assert branch.data.value.values[[0, -1]] == pytest.approx([0.01, 0.4])

@@ -73,7 +73,8 @@ class BisectedCurve(Curve):
 
     def _across(self, near: Orbit, place: Vector, across: Vector) -> Row | None:
         """Return the motion at the limit on the line through a guess across the curve; None if there is none near."""
-        here = ReturnMap(Forcing.of(near.case), self.returns.cycles, phase=near.phase, mirrored=near.is_symmetric)
+        forcing = Forcing.of(near.case, self.returns.parameters)
+        here = ReturnMap(forcing, self.returns.cycles, phase=near.phase, mirrored=self.returns.mirrored)
         moved, state = away_from_impacts(here, near.state)
         returns, scale = self.returns.with_(phase=moved.phase), size_of(moved, state)
         if scale is None:

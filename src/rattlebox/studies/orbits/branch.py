@@ -141,7 +141,7 @@ class Branch:
         if not -len(self) <= index < len(self):
             raise Hint(f"there is no point {index}; the branch has {several(len(self), 'point')}", "branch.orbit(0)")
         row = self.data.isel(point=index)
-        forcing = Forcing.of(self.case.replaced({self.parameter: float(row.value)}))
+        forcing = Forcing.of(self.case.replaced({self.parameter: float(row.value)}), (self.parameter,))
         returns = ReturnMap(
             forcing, int(self.data.attrs["cycles"]), phase=float(row.phase), mirrored=bool(row.symmetric.item())
         )

@@ -11,6 +11,7 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox._util.narrow import present
 from rattlebox._util.quantities import quantity
 from rattlebox.model.errors import Hint
+from rattlebox.model.paths import place_of
 from rattlebox.studies.grid.axes import materials_in
 from rattlebox.studies.grid.grid import Parameter
 from rattlebox.studies.orbits.branch_words import sentences
@@ -28,6 +29,8 @@ LONGEST_STEP = 0.02
 """Default of the longest step, as part of the range of the parameter or of the size of the motion."""
 MOST_POINTS = 500
 """Default of the largest number of points in each direction."""
+_SAME_PERIOD = 1e-9
+"""Relative difference below which two periods are the same."""
 STUDY = "continue_orbit"
 """Attribute of the dataset of a branch."""
 KINDS = {
@@ -45,10 +48,10 @@ KINDS = {
 
 def corrector_of(case: Case, axis: str, limits: Sequence[Any], step: float) -> tuple[Corrector, str]:
     """Return the continuation of a case along a parameter, and the unit of the parameter; raise if it is not valid."""
-    forcing = Forcing.of(case)
     if not isinstance(axis, str):
         raise Hint(f"axis = {axis!r:.60} is not a path", 'axis = "load.frequency"')
-    forcing.check_parameter(axis)
+    Forcing.of(case).check_parameter(axis)
+    forcing = Forcing.of(case, (axis,))
     if isinstance(limits, str) or not isinstance(limits, Sequence) or len(limits) != 2:
         raise Hint(f"limits = {limits!r:.60} must be the smallest and the largest value", '("20 Hz", "40 Hz")')
     parameter = Parameter(case, axis, "limits", materials_in(case))
@@ -57,6 +60,13 @@ def corrector_of(case: Case, axis: str, limits: Sequence[Any], step: float) -> t
         raise Hint(f"limits = {limits!r:.60}: the first value must be the smaller one", "the values in rising order")
     if not 1e-5 <= float(step) <= 0.5:
         raise Hint(f"step = {step} is a part of the range and must be between 1e-5 and 0.5", "step = 0.02")
+    vanishes = low <= 0 <= high and len(forcing.cycles) > 1 and place_of(case, axis)[-1] == "amplitude"
+    if vanishes and Forcing.of(case.replaced({axis: 0.0})).period < (1 - _SAME_PERIOD) * forcing.period:
+        raise Hint(
+            f"limits: with {axis} = 0 the common period of the other loads is shorter, and motions have another number of "
+            "cycles",
+            "limits without 0",
+        )
     for end in (low, high):
         try:
             case.replaced({axis: end})

@@ -17,6 +17,7 @@ from rattlebox.studies.orbits.follow import Follower
 from rattlebox.studies.orbits.orbit import Orbit
 from rattlebox.studies.orbits.shooting import ReturnMap
 from rattlebox.studies.orbits.stored_branch import BranchFile, request_of
+from rattlebox.studies.orbits.symmetry import stays_mirrored
 
 
 def continue_orbit(
@@ -109,8 +110,13 @@ def continue_orbit(
     if not isinstance(orbit, Orbit):
         raise Hint(f"orbit = {orbit!r:.60} is not a periodic motion", "orbit = rb.find_orbit(case)")
     corrector, unit = corrector_of(orbit.case, axis, limits, step)
+    forcing = corrector.returns.forcing
     corrector.returns = ReturnMap(
-        corrector.returns.forcing, orbit.cycles, (axis,), phase=orbit.phase, mirrored=orbit.is_symmetric
+        forcing,
+        orbit.cycles,
+        (axis,),
+        phase=orbit.phase,
+        mirrored=orbit.is_symmetric and stays_mirrored(forcing, (axis,), [corrector.limits]),
     )
     value = start_value(orbit.case, axis, corrector, unit)
     scale = size_of(corrector.returns, orbit.state)

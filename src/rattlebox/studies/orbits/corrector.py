@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox.studies.orbits.find import away_from_impacts, sizes_in
 from rattlebox.studies.orbits.orbit import Orbit, orbit_and_motion
 from rattlebox.studies.orbits.shooting import TOLERANCE, ReturnMap, Shot
@@ -112,7 +113,14 @@ class Corrector:
         if corrected is None:
             return None
         state, value, shot, count = corrected
-        after = self.finish(point.returns, state, value, shot, point.scale, point.tangent)
+        try:
+            after = self.finish(point.returns, state, value, shot, point.scale, point.tangent)
+        except CaseError:
+            # Beyond a limit there may be no case, as with a negative gap: the step ends at the limit.
+            low, high = self.limits
+            if low <= value <= high:
+                raise
+            after = self._at_value(point, state, value, low if value < low else high)
         return None if after is None else (after, count)
 
     def correct(
@@ -188,7 +196,7 @@ class Corrector:
         begins = [(impact.phase * orbit.cycles - returns.phase) % orbit.cycles for impact in orbit.impacts]
         if all(min(time, orbit.cycles - time) > _NEAR_SECTION for time in begins):
             return point
-        here = ReturnMap(type(returns.forcing).of(orbit.case), returns.cycles, phase=returns.phase)
+        here = ReturnMap(type(returns.forcing).of(orbit.case, returns.parameters), returns.cycles, phase=returns.phase)
         moved, _ = away_from_impacts(here, orbit.state)
         shift = (moved.phase - returns.phase) % 1.0
         if shift == 0:
@@ -218,15 +226,20 @@ class Corrector:
         return bool(np.sum(weights * scaled * point.tangent) > _TURN * size)
 
     def at_limit(self, point: Point, after: Point) -> Point | None:
-        """Return the point at the limit that lies between two points."""
-        limit = self.limits[0] if after.value < self.limits[0] else self.limits[1]
-        share = (limit - point.value) / (after.value - point.value)
-        state = point.orbit.state + share * (after.orbit.state - point.orbit.state)
-        n = state.size
-        corrected = self.correct(point.returns, state, limit, point.scale, np.append(np.zeros(n), 1.0))
+        """Return the point at the limit that lies between two points, or at the second one."""
+        low, high = self.limits
+        limit = low if abs(after.value - low) < abs(after.value - high) else high
+        return self._at_value(point, after.orbit.state, after.value, limit)
+
+    def _at_value(self, point: Point, state: Vector, value: float, between: float) -> Point | None:
+        """Return the point at a value of the parameter between a point and a fixed point beyond it."""
+        share = (between - point.value) / (value - point.value) if value != point.value else 0.0
+        state = point.orbit.state + share * (state - point.orbit.state)
+        fixed = np.append(np.zeros(state.size), 1.0)
+        corrected = self.correct(point.returns, state, between, point.scale, fixed)
         if corrected is None:
             return None
-        return self.finish(point.returns, corrected[0], limit, corrected[2], point.scale, point.tangent)
+        return self.finish(point.returns, corrected[0], between, corrected[2], point.scale, point.tangent)
 
     def locate(self, point: Point, after: Point, test: Callable[[Point], float]) -> Point | None:
         """Return the point between two points at which a test function is zero, by the Illinois method."""

@@ -10,13 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox._util.narrow import present
+from rattlebox.model.errors import Hint
 from rattlebox.studies.orbits.branch_words import stopped_words
 from rattlebox.studies.orbits.find import away_from_impacts, size_of
 from rattlebox.studies.orbits.forcing import Forcing, number_at
 from rattlebox.studies.orbits.orbit import Orbit, orbit_of
 from rattlebox.studies.orbits.shooting import TOLERANCE, ReturnMap, Shot
 from rattlebox.studies.orbits.stability import flip_test, fold_test, torus_test
+from rattlebox.studies.orbits.symmetry import stays_mirrored
 
 if TYPE_CHECKING:
     from rattlebox.studies.orbits.branch import SpecialPoint
@@ -57,9 +60,15 @@ class Curve(ABC):
         self.limits = np.array(limits)
         self.width = self.limits[:, 1] - self.limits[:, 0]
         self.longest = step
-        self.returns = ReturnMap(
-            Forcing.of(orbit.case), orbit.cycles, axes, phase=orbit.phase, mirrored=orbit.is_symmetric
-        )
+        forcing = Forcing.of(orbit.case, axes)
+        mirrored = orbit.is_symmetric and stays_mirrored(forcing, axes, limits)
+        if point.kind == "pitchfork" and not mirrored:
+            raise Hint(
+                f"the case is not symmetric at other values of {axes[0]} and {axes[1]}, and a pitchfork exists only in "
+                "symmetric cases",
+                "parameters that keep the symmetry, such as a frequency, an amplitude or the gap of a damper",
+            )
+        self.returns = ReturnMap(forcing, orbit.cycles, axes, phase=orbit.phase, mirrored=mirrored)
         self.start: Row = orbit, np.array([present(number_at(orbit.case, axis)) for axis in axes])
         self.reasons: list[str] = []
         """Reason why the curve ends on each side that was followed; empty at a limit."""
@@ -71,13 +80,16 @@ class Curve(ABC):
     def follow(self, side: float, most: int, proceed: Callable[[], bool]) -> Iterator[Row]:
         """Yield the motions on one side of the start."""
         self.begin(side)
-        length, count = self.longest / 4, 0
+        length, count, is_valid = self.longest / 4, 0, True
         while count < most and proceed():
-            taken = self.step(length)
+            try:
+                taken, is_valid = self.step(length), True
+            except CaseError:  # beyond a limit there may be no case, as with a negative gap
+                taken, is_valid = None, False
             if taken is None:
                 length /= 2
                 if length < _SHORTEST:
-                    self.reasons.append("no further motion was found")
+                    self.reasons.append("no further motion was found" if is_valid else "")
                     return
                 continue
             row, corrections = taken
@@ -142,7 +154,7 @@ class SmoothCurve(Curve):
 
     def _move_section(self, orbit: Orbit) -> None:
         """Let the map begin in the longest flight if an impact has come near its beginning."""
-        here = ReturnMap(Forcing.of(orbit.case), self._at.cycles, phase=self._at.phase)
+        here = ReturnMap(Forcing.of(orbit.case, self._at.parameters), self._at.cycles, phase=self._at.phase)
         moved, there = away_from_impacts(here, self._state)
         if moved.phase == self._at.phase:
             return

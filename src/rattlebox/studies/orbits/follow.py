@@ -30,7 +30,7 @@ from rattlebox.studies.orbits.grazing import (
 )
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
 from rattlebox.studies.orbits.stability import flip_test
-from rattlebox.studies.orbits.symmetry import is_mirrored
+from rattlebox.studies.orbits.symmetry import stays_mirrored
 
 _FEW, _MANY = 3, 5
 """Numbers of corrections at which a step becomes longer or shorter."""
@@ -78,7 +78,8 @@ class Follower:
     def __init__(self, corrector: Corrector) -> None:
         self.corrector = corrector
         self.is_closed = False
-        self._is_mirrored = is_mirrored(corrector.returns.forcing)
+        returns = corrector.returns
+        self._is_mirrored = stays_mirrored(returns.forcing, returns.parameters, [corrector.limits])
         self.reasons: list[str] = []
         """Reason why the branch ends on each side that was followed; empty at a limit."""
         self.loop: tuple[float, int, int, bool] = 0.0, 0, 0, False
@@ -159,9 +160,9 @@ class Follower:
         self.reasons.append(stopped_words(count, most))
 
     def _is_inside(self, point: Point) -> bool:
-        """Return whether the parameter of a point is between its limits."""
+        """Return whether the parameter of a point is between its limits, not at one of them."""
         low, high = self.corrector.limits
-        return low <= point.value <= high
+        return low < point.value < high
 
     def _jumps(self, point: Point, after: Point) -> bool:
         """Return whether the sequence of impacts changes between two points at a jump, from one branch to another."""
@@ -192,9 +193,10 @@ class Follower:
         if not low <= start.value <= high or after.tangent[-1] * start.tangent[-1] <= 0:
             return False
         share = (start.value - point.value) / (after.value - point.value) if high > low else 0.5
-        for name, size in start.orbit.amplitudes.items():
+        sizes = start.orbit.amplitudes
+        for name, size in sizes.items():
             one, other = point.orbit.amplitudes[name], after.orbit.amplitudes[name]
-            if abs(one + share * (other - one) - size) > 0.01 * size:
+            if abs(one + share * (other - one) - size) > 0.01 * max(sizes.values()):
                 return False
         old, new = (np.sort([impact.approach_speed for impact in each.orbit.impacts]) for each in (start, after))
         return old.size == new.size and bool(np.allclose(old, new, rtol=0.1))

@@ -36,8 +36,11 @@ class Forcing:
     period: float  # [s]
 
     @classmethod
-    def of(cls, case: Case) -> Forcing:
-        """Return the forcing of a case; raise if its motion cannot be periodic or is not computed."""
+    def of(cls, case: Case, axes: Sequence[str] = ()) -> Forcing:
+        """Return the forcing of a case; raise if its motion cannot be periodic or is not computed.
+
+        A load without amplitude does not act, unless its amplitude is one of the parameters that vary.
+        """
         if case.particle_dampers:
             raise Hint(
                 "periodic motions are computed for impact dampers and stops, not for particle dampers, whose state has "
@@ -70,7 +73,12 @@ class Forcing:
                     "no start and no stop of the load",
                     place_of(case, path),
                 )
-        acting = {path: signal for path, signal in harmonics.items() if signal.amplitude != 0}
+        varied = [place_of(case, axis) for axis in axes]
+        acting = {
+            path: signal
+            for path, signal in harmonics.items()
+            if signal.amplitude != 0 or place_of(case, f"{path}.amplitude") in varied
+        }
         if not acting:
             raise Hint(
                 "the case has no load; a periodic motion repeats after whole cycles of a harmonic load or base motion",

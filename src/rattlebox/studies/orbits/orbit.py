@@ -278,7 +278,7 @@ def orbit_and_motion(
     if len(returns.parameters):
         case = case.replaced(dict(zip(returns.parameters, map(float, values), strict=True)))
     period = returns.cycles * returns.forcing.period_of(returns.parameters, values)[0]
-    motion = motion_of(Forcing.of(case).shifted(returns.phase), state, period)
+    motion = motion_of(Forcing.of(case, returns.parameters).shifted(returns.phase), state, period)
     if motion is None:
         return None
     matrix = shot.monodromy()

@@ -135,7 +135,7 @@ class ReturnMap:
     def forcing_at(self, values: Sequence[float]) -> Forcing:
         """Return the forcing of the case at values of the parameters."""
         case = replaced(self.forcing.case, dict(zip(self.parameters, map(float, values), strict=True)))
-        return type(self.forcing).of(case)
+        return type(self.forcing).of(case, self.parameters)
 
     def stretch(self, state: Vector, values: Sequence[float], begin: float, end: float) -> End:
         """Return the motion between two shares of the time of the map, from a state at the first one."""
