@@ -110,13 +110,15 @@ inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::s
         target.walls.push_back(wall);
     }
     const int plain = static_cast<int>(target.walls.size());
+    std::size_t walls = given.walls.size();
+    for (const SolidShape& one : given.solids) walls += one.materials.shape(0);
     for (const SolidShape& one : given.solids) {
-        require(one.material >= 0 && one.material < static_cast<int>(wall_material_count),
-                "a body has no laws");
-        require(one.label >= 0 && one.label < static_cast<int>(given.walls.size() + given.solids.size()),
-                "the label of a body is less than the number of walls");
         target.solids.add(solid_of(one, static_cast<int>(target.walls.size())), plain, one.encloses);
-        target.walls.push_back({Row{}, dem::Wall::solid, one.material, one.label});
+        require(one.labels.shape(0) == one.materials.shape(0), "each wall of a body needs a label");
+        const auto material = indices(one.materials, wall_material_count, "a body has no laws"),
+                   label = indices(one.labels, walls, "the label of a body is less than the number of walls");
+        for (std::size_t k = 0; k < material.size(); ++k)
+            target.walls.push_back({Row{}, dem::Wall::solid, material[k], label[k]});
     }
     target.period = one_row(given.period);
     for (int a = 0; a < 3; ++a) {

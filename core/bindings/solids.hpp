@@ -13,7 +13,8 @@ using Indices = nb::ndarray<nb::numpy, const std::int64_t, nb::ndim<axes>, nb::c
 
 struct SolidShape : Node {
     dem::Solid::Form form{};
-    int material = 0, label = 0;
+    Indices<1> materials, labels; // of its walls
+    Indices<1> groups;            // number of the wall of each triangle; empty if there is one
     bool encloses = false;
     double smooth = 0;
     Input<1> centre, size;
@@ -31,21 +32,33 @@ inline void require(bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(what);
 }
 
-// `wall` is its number among the walls.
+inline std::shared_ptr<const dem::Triangles> triangles_of(const Input<2>& vertices, const Indices<2>& faces) {
+    const std::size_t n = vertices.shape(0), m = faces.shape(0);
+    require(m > 0 && vertices.shape(1) == 3 && faces.shape(1) == 3,
+            "a surface needs rows of three coordinates and of three corners");
+    for (std::size_t i = 0; i < 3 * m; ++i)
+        require(faces.data()[i] >= 0 && faces.data()[i] < static_cast<std::int64_t>(n),
+                "a triangle has a corner that does not exist");
+    return std::make_shared<const dem::Triangles>(vertices.data(), n, faces.data(), m);
+}
+
+// `wall` is the number of its first wall.
 inline dem::Solid solid_of(const SolidShape& given, int wall) {
     dem::Solid solid;
     solid.form = given.form, solid.wall = wall, solid.smooth = given.smooth;
     if (given.form == dem::Solid::mesh) {
-        const std::size_t n = given.vertices.shape(0), m = given.faces.shape(0);
-        require(m > 0 && given.vertices.shape(1) == 3 && given.faces.shape(1) == 3,
-                "a surface needs rows of three coordinates and of three corners");
-        for (std::size_t i = 0; i < 3 * m; ++i)
-            require(given.faces.data()[i] >= 0 && given.faces.data()[i] < static_cast<std::int64_t>(n),
-                    "a triangle has a corner that does not exist");
-        solid.triangles =
-            std::make_shared<const dem::Triangles>(given.vertices.data(), n, given.faces.data(), m);
+        solid.triangles = triangles_of(given.vertices, given.faces);
+        const std::size_t walls = given.materials.shape(0);
+        require(given.groups.shape(0) == given.faces.shape(0) || (given.groups.shape(0) == 0 && walls == 1),
+                "each triangle of a surface of several walls needs a group");
+        for (std::size_t i = 0; i < given.groups.shape(0); ++i) {
+            const std::int64_t group = given.groups.data()[i];
+            require(group >= 0 && group < static_cast<std::int64_t>(walls), "a group has no wall");
+            solid.group.push_back(static_cast<int>(group));
+        }
         return solid;
     }
+    require(given.materials.shape(0) == 1, "a body is one wall");
     require(given.centre.shape(0) == 3 && given.size.shape(0) == 3 && given.axes.shape(0) == 3 &&
                 given.axes.shape(1) == 3,
             "a body needs a centre, three axes and three sizes");
@@ -58,27 +71,29 @@ inline dem::Solid solid_of(const SolidShape& given, int wall) {
 class Surfaces {
     dem::Solids solids_;
     std::vector<int> first_leaf_;
+    std::size_t walls_ = 0;
 
 public:
     explicit Surfaces(const std::vector<SolidShape>& shapes) {
         int leaf = 0;
         for (std::size_t s = 0; s < shapes.size(); ++s) {
             first_leaf_.push_back(leaf);
-            const dem::Solid solid = solid_of(shapes[s], static_cast<int>(s));
-            leaf += solid.leaves();
+            const dem::Solid solid = solid_of(shapes[s], static_cast<int>(walls_));
+            leaf += solid.leaves(), walls_ += shapes[s].materials.shape(0);
             solids_.add(solid, 0, shapes[s].encloses);
         }
     }
 
     Doubles<2> distances(const Input<2>& points) const {
-        const std::size_t n = points.shape(0), count = solids_.solids().size();
+        const std::size_t n = points.shape(0);
         require(n == 0 || points.shape(1) == 3, "points have three components");
-        std::vector<real> values;
-        values.reserve(n * count);
+        std::vector<real> values(n * walls_, infinity);
         for (std::size_t i = 0; i < n; ++i)
-            for (const dem::Solid& solid : solids_.solids())
-                values.push_back(solid.signed_distance(row(points.data() + 3 * i)));
-        return owned<Doubles<2>>(std::move(values), {n, count});
+            for (const dem::Solid& solid : solids_.solids()) {
+                const auto [distance, group] = solid.nearest_group(row(points.data() + 3 * i));
+                values[i * walls_ + static_cast<std::size_t>(solid.wall + group)] = distance;
+            }
+        return owned<Doubles<2>>(std::move(values), {n, walls_});
     }
 
     SurfaceContacts contacts(const Input<2>& points, const Input<1>& radii) const {
@@ -122,10 +137,8 @@ public:
 
 // Returns pairs of triangles that cross each other, at most a hundred.
 inline Integers<2> crossing_triangles(const Input<2>& vertices, const Indices<2>& faces) {
-    SolidShape shape;
-    shape.form = dem::Solid::mesh, shape.vertices = vertices, shape.faces = faces;
     std::vector<std::int64_t> pairs;
-    for (const auto& [f, g] : solid_of(shape, 0).triangles->crossings(100))
+    for (const auto& [f, g] : triangles_of(vertices, faces)->crossings(100))
         pairs.push_back(f), pairs.push_back(g);
     const std::size_t count = pairs.size() / 2;
     return owned<Integers<2>>(std::move(pairs), {count, 2});
@@ -138,19 +151,20 @@ inline void add_solids(nb::module_& module) {
         .value("ball", dem::Solid::ball)
         .value("mesh", dem::Solid::mesh);
     using S = SolidShape;
-    define<S>(module, "Solid",
-              "A body in a cavity, or a closed surface of triangles with normals out of the space of the "
-              "particles. "
-              "`size` is half of the edges of a plate, radius and half of the length of a rod, or the radius "
-              "of a "
-              "ball [m]; the third of the axes is along a rod.",
-              field("form", &S::form), field("material", &S::material), field("label", &S::label, 0),
-              field("encloses", &S::encloses), field("smooth", &S::smooth), field("centre", &S::centre),
-              field("size", &S::size), field("axes", &S::axes), field("vertices", &S::vertices),
-              field("faces", &S::faces));
+    define<S>(
+        module, "Solid",
+        "A body in a cavity, which is one wall, or a closed surface of triangles with normals out of the "
+        "space of the particles, with a wall for each group of triangles. "
+        "`size` is half of the edges of a plate, radius and half of the length of a rod, or the radius "
+        "of a "
+        "ball [m]; the third of the axes is along a rod.",
+        field("form", &S::form), field("materials", &S::materials), field("labels", &S::labels),
+        field("groups", &S::groups), field("encloses", &S::encloses), field("smooth", &S::smooth),
+        field("centre", &S::centre), field("size", &S::size), field("axes", &S::axes),
+        field("vertices", &S::vertices), field("faces", &S::faces));
     using C = SurfaceContacts;
     define<C>(module, "SurfaceContacts",
-              "Contacts of spheres with solids: number of the sphere and of the solid, outward normal, and "
+              "Contacts of spheres with solids: number of the sphere and of the wall, outward normal, and "
               "distance of "
               "the centre [m].",
               field("point", &C::point), field("solid", &C::solid), field("normal", &C::normal),
@@ -160,7 +174,9 @@ inline void add_solids(nb::module_& module) {
     nb::class_<Surfaces>(module, "Surfaces", "The solids of a cavity.")
         .def(nb::init<const std::vector<SolidShape>&>(), nb::arg("solids"))
         .def("distances", &Surfaces::distances, nb::arg("points"),
-             "Return the distance of each point from each solid, positive where particles may be.")
+             "Return the distance of each point from the walls of the solids, positive where particles may "
+             "be; "
+             "infinity for walls of a surface of which another one is nearer.")
         .def("contacts", &Surfaces::contacts, nb::arg("points"), nb::arg("radii"),
              "Return the contacts of spheres, as a run has them.");
 }

@@ -21,6 +21,7 @@ struct ContactHistory {
     std::vector<Row>
         yield_history; // of a law with hysteresis: deepest overlap, stiffness and origin of the unloading
                        // curve, and the deepest overlap for which the curve was computed
+    std::vector<int> began_at; // the same: wall whose normal law the contact has, if it is at another one now
     std::vector<real> start_step; // the step in which the contact began
     std::vector<int> free;
     bool rolls = false, yields = false;
@@ -36,21 +37,21 @@ struct ContactHistory {
         if (state.size() == state.capacity()) reserve(state.size() + state.size() / 8 + 4);
         state.emplace_back(), start_step.emplace_back();
         if (rolls) rolling.emplace_back();
-        if (yields) yield_history.emplace_back();
+        if (yields) yield_history.emplace_back(), began_at.push_back(-1);
         return static_cast<int>(state.size()) - 1;
     }
 
     void reserve(std::size_t slots) {
         state.reserve(slots), start_step.reserve(slots);
         if (rolls) rolling.reserve(slots);
-        if (yields) yield_history.reserve(slots);
+        if (yields) yield_history.reserve(slots), began_at.reserve(slots);
     }
 
     int add(const ContactStart& b, real step) {
         const int s = allocate();
         at(state, s) = b.state, at(start_step, s) = step;
         if (rolls) at(rolling, s) = b.rolling;
-        if (yields) at(yield_history, s) = b.yield_history;
+        if (yields) at(yield_history, s) = b.yield_history, at(began_at, s) = -1;
         return s;
     }
 
@@ -61,18 +62,20 @@ struct ContactHistory {
         at(state, s) = {turn * at(old.state, slot).friction, at(old.state, slot).law};
         at(start_step, s) = at(old.start_step, slot);
         if (rolls) at(rolling, s) = {turn * at(old.rolling, slot).spring, at(old.rolling, slot).law};
-        if (yields) at(yield_history, s) = at(old.yield_history, slot);
+        if (yields)
+            at(yield_history, s) = at(old.yield_history, slot), at(began_at, s) = at(old.began_at, slot);
         return s;
     }
 
     std::size_t bytes() const {
         return state.capacity() * sizeof(ContactState) + rolling.capacity() * sizeof(RollingState) +
-               yield_history.capacity() * sizeof(Row) + start_step.capacity() * sizeof(real) +
+               yield_history.capacity() * (sizeof(Row) + sizeof(int)) + start_step.capacity() * sizeof(real) +
                free.capacity() * sizeof(int);
     }
 
     template <class Archive> void serialize(Archive& a) {
         a(state, rolling, yield_history, start_step, free);
+        if (yields) a(began_at);
     }
 };
 

@@ -81,12 +81,29 @@ class ContactLoop {
                                 Chunk& chunk) const {
         Diagnostics& diagnostics = chunk.diagnostics;
         const int s = at(list.slot, k);
-        const real cost =
-            dem::update_unloading_curve(at(list.history.yield_history, s), new_contact_of(list, k, partner));
+        NewContact contact = new_contact_of(list, k, partner);
+        if (const int w = at(list.history.began_at, s); w != ContactList::none)
+            contact.law = &wall_law(at(list.first, k), w);
+        const real cost = dem::update_unloading_curve(at(list.history.yield_history, s), contact);
         diagnostics.plastic[partner] += cost;
         if (WallTotals* wall = totals_of(chunk, list, k, partner)) wall->plastic += cost;
         if (static_cast<real>(list.steps) - at(list.history.start_step, s) > laws.enduring)
             diagnostics.enduring[partner] += first_lane(cost);
+    }
+
+    // Lets a contact, whose history has moved from one candidate to another one, go on at the wall of that.
+    // It keeps its age, its springs, and the normal law with which it began, so that no energy comes from a
+    // change of stiffness at constant overlap. Friction and rolling resistance are those of the new wall; the
+    // energy that a softer spring holds no more is lost in the next step
+    // (contact/tangential/spring_slider.hpp).
+    void change_wall(ContactList& list, int from, int to) const {
+        const int s = at(list.slot, to);
+        if (list.history.yields && at(list.history.began_at, s) == ContactList::none)
+            at(list.history.began_at, s) = at(list.second, from);
+        const ContactStart begun = begin(new_contact_of(list, to, wall), problem_.dt);
+        Row& law = at(list.history.state, s).law;
+        law[2] = begun.state.law[2], law[3] = begun.state.law[3];
+        if (list.history.rolls) at(list.history.rolling, s).law = begun.rolling.law;
     }
 
     // Calls f(normal law, whether there is friction, whether there is rolling resistance) with types for the
@@ -236,7 +253,7 @@ public:
             });
         };
         with_pairs(chunk.pairs, [&](const auto& view) { change(chunk.pairs, view, pair_, particle); });
-        find_wall_points(chunk.walls, bed_, chunk.begin, false);
+        find_wall_points(chunk.walls, bed_, chunk.begin, false, [](int, int) {});
         change(chunk.walls, wall_view(chunk), wall_, wall);
         if (has_forces && !chunk.each_wall.empty()) change_impulses(chunk, dt_before);
     }
@@ -267,7 +284,8 @@ public:
             at(bed_.chunk_motion, chunk.begin / Bed::chunk_size).moved + bed_.cavity_moved;
         ++chunk.walls.steps_since_scan, ++chunk.walls.steps;
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
-        find_wall_points(chunk.walls, bed_, chunk.begin, true);
+        find_wall_points(chunk.walls, bed_, chunk.begin, true,
+                         [&](int from, int to) { change_wall(chunk.walls, from, to); });
         compute(chunk.walls, wall_view(chunk), wall_, wall, sampled, chunk, Prefetch());
         // The reaction on the cavity. Its moment is a result, computed for samples, unless a drive turns the
         // cavity against it.

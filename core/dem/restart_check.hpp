@@ -28,7 +28,8 @@ class RestartCheck {
     static void check(const ContactHistory& history) {
         const std::size_t slots = history.state.size();
         require(history.rolling.size() == (history.rolls ? slots : 0));
-        require(history.yield_history.size() == (history.yields ? slots : 0));
+        for (const std::size_t size : {history.yield_history.size(), history.began_at.size()})
+            require(size == (history.yields ? slots : 0));
         require(history.start_step.size() == slots);
         require(history.free.size() <= slots);
         for (const int slot : history.free) require(is_within(slot, 0, static_cast<int>(slots)));
@@ -45,6 +46,7 @@ class RestartCheck {
             require(numbers->size() == padded);
         require(list.origin.size() == listed && is_within(list.touching_count, 0, list.size() + 1));
         check(list.history);
+        for (const int w : list.history.began_at) require(is_within(w, -1, partners));
         std::vector<char> touches(listed, false);
         for (int a = 0, last = -1; a < list.touching_count; ++a) {
             const int k = at(list.touching, a);

@@ -23,9 +23,10 @@ inline void find_surfaces(ContactList& list, const Cavity& cavity) {
 }
 
 // Moves the history of a contact that ends on one of the leaves near a particle to a leaf that begins one, if
-// the surface goes on there.
-inline void move_history(ContactList& list, const Cavity& cavity, const LeafPoint& from,
-                         const std::vector<LeafPoint>& points) {
+// the surface goes on there; calls changed(from, to) with the candidates if laws differ.
+template <class Changed>
+void move_history(ContactList& list, const Cavity& cavity, const LeafPoint& from,
+                  const std::vector<LeafPoint>& points, Changed&& changed) {
     int& slot = at(list.slot, from.candidate);
     if (from.counts || slot == ContactList::none) return;
     const auto material = [&](const LeafPoint& p) {
@@ -34,15 +35,19 @@ inline void move_history(ContactList& list, const Cavity& cavity, const LeafPoin
     const LeafPoint* to = nullptr;
     for (const LeafPoint& next : points)
         if (next.counts && at(list.slot, next.candidate) == ContactList::none &&
-            cavity.solids.continues(from, next) && material(from) == material(next) &&
+            cavity.solids.continues(from, next) &&
             (!to || dot(from.near, next.near) > dot(from.near, to->near)))
             to = &next;
-    if (to) std::swap(slot, at(list.slot, to->candidate));
+    if (!to) return;
+    std::swap(slot, at(list.slot, to->candidate));
+    if (material(from) != material(*to)) changed(from.candidate, to->candidate);
 }
 
 // Fills `near` of a list of the chunk that begins with a particle. `selects`: whether contacts are chosen;
-// else the list keeps those of the last step.
-inline void find_wall_points(ContactList& list, const Bed& bed, int begin, bool selects) {
+// else the list keeps those of the last step. Calls changed(from, to) for contacts that go on with other
+// laws.
+template <class Changed>
+void find_wall_points(ContactList& list, const Bed& bed, int begin, bool selects, Changed&& changed) {
     if (list.near.empty()) return;
     const Cavity& cavity = *bed.cavity;
     const Solids& solids = cavity.solids;
@@ -83,7 +88,7 @@ inline void find_wall_points(ContactList& list, const Bed& bed, int begin, bool 
         for (const LeafPoint& p : touching)
             if (p.counts) at(list.near, p.candidate) = p.near;
         for (const auto* points : {&touching, &ended})
-            for (const LeafPoint& p : *points) move_history(list, cavity, p, touching);
+            for (const LeafPoint& p : *points) move_history(list, cavity, p, touching, changed);
     }
 }
 

@@ -1,6 +1,6 @@
 // Surfaces of a cavity that are no plain walls: rods, plates and balls inside, and closed surfaces of
-// triangles, which are cavities or bodies. Each is one wall with a name; its leaves, the body or each of its
-// triangles, are what a particle can touch.
+// triangles, which are cavities or bodies. A body is one wall with a name, and so is each group of triangles
+// of a surface; the leaves, the body or each of its triangles, are what a particle can touch.
 //
 // A particle has one contact for each distinct point at which its distance from the surfaces has a local
 // minimum:
@@ -10,6 +10,9 @@
 //  - where two triangles meet at a smooth edge, only the nearest of them counts: facets of a curved surface
 //    act as one surface. The potential of a contact is then continuous across the edge;
 //  - a contact point behind a nearer surface does not count.
+// Where triangles of several groups are equally near, the contact is with the one whose normal has the
+// smallest angle with that of the contact, and else with the first group, whatever the order of the
+// triangles.
 //
 // Leaves near a point are found in a grid of cells in the frame of the cavity, which is built once. In a cell
 // near which the space of the particles is convex, between planes that meet at 120 degrees or less, the
@@ -17,7 +20,8 @@
 //  - the space near the cell is what is below all planes: a straight line that leaves it crosses a triangle,
 //    and one that does not leave it crosses none, because all triangles are below all planes;
 //  - the foot is below the other planes, unless the centre is nearer to one of them than half of its radius.
-// Such a plane is one more wall (Cavity::walls) and one more leaf, however many triangles lie in it.
+// Such a plane is one more wall (Cavity::walls) and one more leaf, however many triangles of a group lie in
+// it. Where groups meet in one plane the triangles remain.
 #pragma once
 
 #include <memory>
@@ -31,13 +35,15 @@ namespace rattlebox::dem {
 struct Solid {
     enum Form : int { rod = 0, plate = 1, ball = 2, mesh = 3 };
     Form form = ball;
-    int wall = 0;  // index in Cavity::walls
+    int wall = 0;  // index in Cavity::walls; that of the first group
     Row centre{};  // of a body
     Row axis[3]{}; // unit vectors; the third is along a rod
     Row size{};    // half of the edges of a plate; radius and half of the length of a rod; radius of a ball
     real smooth = 0.9; // cosine of the largest angle between the normals at a smooth edge
     std::shared_ptr<const Triangles> triangles;
+    std::vector<int> group; // by triangle; empty if there is one
 
+    int group_of(int face) const { return group.empty() ? 0 : group[static_cast<std::size_t>(face)]; }
     int leaves() const { return form == mesh ? triangles->faces() : 1; }
 
     Row local(Row p) const {
@@ -81,12 +87,13 @@ struct Solid {
         return {axis[nearest] * direction[nearest], apart[nearest]};
     }
 
-    // Distance of a position from the surface, positive on the side of the particles.
-    real signed_distance(Row p) const {
-        if (form != mesh) return nearest_on_body(p).distance;
+    // Distance of a position from the surface, positive on the side of the particles, and the nearest group.
+    std::pair<real, int> nearest_group(Row p) const {
+        if (form != mesh) return {nearest_on_body(p).distance, 0};
         const auto [face, point] = triangles->nearest(p);
-        return triangles->signed_distance(p, face, point);
+        return {triangles->signed_distance(p, face, point), group_of(face)};
     }
+    real signed_distance(Row p) const { return nearest_group(p).first; }
 
     // Half of the edges of the bounding box around the centre of a body.
     Row reach() const {
@@ -137,6 +144,7 @@ class Solids {
 
     const Solid& solid_of(int leaf) const { return solids_[static_cast<std::size_t>(solid_[index(leaf)])]; }
     std::size_t index(int leaf) const { return static_cast<std::size_t>(leaf - plain_); }
+    int group_of(int leaf) const { return solid_of(leaf).group_of(face_[index(leaf)]); }
 
     Row middle(int x, int y, int z) const { return origin_ + row(x + 0.5, y + 0.5, z + 0.5) * width_; }
     int cell_index(int x, int y, int z) const { return (z * cells_[1] + y) * cells_[0] + x; }
@@ -161,6 +169,30 @@ class Solids {
         return one.nearest_on_body(other.place).distance <= tolerance;
     }
 
+    // Among the triangles of one surface that are equally near to a particle, moves the contact to that of
+    // the group which does not depend on rounding.
+    void choose_group(LeafPoint* points, int count, int contact, real tolerance) const {
+        const LeafPoint& p = points[contact];
+        const Solid& solid = solid_of(p.leaf);
+        const Triangles& t = *solid.triangles;
+        const int f = face_[index(p.leaf)];
+        const auto along = [&](const LeafPoint& q) { return dot(q.near, t.normal(face_[index(q.leaf)])); };
+        int best = contact;
+        for (int k = 0; k < count; ++k) {
+            const LeafPoint& q = points[k];
+            if (q.counts || &solid_of(q.leaf) != &solid || group_of(q.leaf) == group_of(p.leaf)) continue;
+            const int g = face_[index(q.leaf)];
+            const Row apart = q.place - p.place;
+            const bool same_point = dot(apart, apart) < square(tolerance),
+                       same_curve = t.share_corner(f, g) && dot(t.plane(f), t.plane(g)) > solid.smooth &&
+                                    q.region == Triangles::on_face && p.region == Triangles::on_face;
+            if (!(same_point || same_curve) || std::fabs(q.near[3] - p.near[3]) > tolerance) continue;
+            const real gain = along(q) - along(points[best]);
+            if (gain > 1e-9 || (gain > -1e-9 && group_of(q.leaf) < group_of(points[best].leaf))) best = k;
+        }
+        std::swap(points[contact].counts, points[best].counts);
+    }
+
 public:
     // Adds a solid; walls are added before.
     void add(Solid solid, int plain_walls, bool encloses) {
@@ -179,7 +211,7 @@ public:
     int plain_walls() const { return plain_; }
     int wall_of(int leaf) const {
         if (leaf >= first_plane()) return first_plane_wall_ + leaf - first_plane();
-        return leaf < plain_ ? leaf : solid_of(leaf).wall;
+        return leaf < plain_ ? leaf : solid_of(leaf).wall + group_of(leaf);
     }
     // Whether one leaf is a triangle and the other one the plane that takes its place elsewhere.
     bool is_in_place_of(int one, int other) const {
@@ -265,6 +297,9 @@ public:
                     nearest_wall_point(walls[static_cast<std::size_t>(w)], p.place).distance >= -tolerance;
             p.counts = counts;
         }
+        for (int b = 0; b < count; ++b)
+            if (points[b].counts && !solid_of(points[b].leaf).group.empty())
+                choose_group(points, count, b, tolerance);
     }
 
     // Whether the springs of a contact move to another one: the surface has gone on smoothly.
@@ -357,7 +392,10 @@ private:
         for (const Solid& solid : solids_) {
             const int first = plain_ + static_cast<int>(flat.size());
             if (solid.form == Solid::mesh)
-                for (const int f : solid.triangles->flats(tolerance)) flat.push_back(first + f);
+                for (const int f : solid.triangles->flats(tolerance, [&](int one, int other) {
+                         return solid.group_of(one) == solid.group_of(other);
+                     }))
+                    flat.push_back(first + f);
             else
                 flat.push_back(first);
         }
@@ -396,7 +434,7 @@ private:
         int& plane = plane_leaf_[index(leaf)];
         if (plane < 0) {
             const Solid& solid = solid_of(leaf);
-            Wall wall = walls[static_cast<std::size_t>(solid.wall)];
+            Wall wall = walls[static_cast<std::size_t>(wall_of(leaf))];
             wall.form = Wall::plane, wall.axis = solid.triangles->plane(face_[index(leaf)]);
             plane = leaves();
             planes_.push_back(wall.axis), walls.push_back(wall);

@@ -201,9 +201,9 @@ public:
     // Height of a point over the plane of a triangle, positive outside.
     real above(int f, Row p) const { return dot(plane(f), p) - plane(f)[3]; }
 
-    // Returns for each triangle the largest one of its flat: of the triangles that are connected with it and
-    // lie in one plane, to a tolerance.
-    std::vector<int> flats(real tolerance) const {
+    // Returns for each triangle the largest one of its flat: of the triangles that are connected with it, lie
+    // in one plane, to a tolerance, and are alike(one, other).
+    template <class Alike> std::vector<int> flats(real tolerance, Alike&& alike) const {
         const auto count = face_.size();
         std::vector<std::array<int, 2>> beside(edge_normal_.size(), {-1, -1});
         std::vector<real> area(count);
@@ -224,7 +224,7 @@ public:
         for (const int seed : order) {
             const auto add = [&](int f) { flat[static_cast<std::size_t>(f)] = seed, open.push_back(f); };
             const auto is_part = [&](int f) {
-                bool level = dot(plane(f), plane(seed)) > 0;
+                bool level = dot(plane(f), plane(seed)) > 0 && alike(f, seed);
                 for (int k = 0; k < 3; ++k) level &= std::fabs(above(seed, corner(f, k))) <= tolerance;
                 return level;
             };

@@ -43,6 +43,7 @@ from rattlebox.model.dampers import Sphere as Sphere
 from rattlebox.model.dampers import Striker as Striker
 from rattlebox.model.effective_masses import EffectiveMasses as EffectiveMasses
 from rattlebox.model.effective_masses import effective_masses as effective_masses
+from rattlebox.model.face_groups import FaceGroup as FaceGroup
 from rattlebox.model.friction import LinearSpring as LinearSpring
 from rattlebox.model.friction import Mindlin as Mindlin
 from rattlebox.model.friction import Rolling as Rolling

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
@@ -141,10 +141,9 @@ class Cavity(Part):
         """Return positions with those of the images inside, (n, 3) [m]; only a periodic cavity has images."""
         return positions
 
-    @property
-    def face_instead(self) -> str:
-        """Advice for a face that does not exist; by default the nearest name."""
-        return ""
+    def face_instead(self, name: str, labels: Sequence[str]) -> str:
+        """Return advice for a face that does not exist; by default the nearest name."""
+        return nearest(name, labels)
 
     def check_faces(self, names: Iterable[str]) -> None:
         """Raise unless the cavity has faces of these names."""
@@ -152,8 +151,7 @@ class Cavity(Part):
         for name in names:
             if name not in labels:
                 what = f"a {self.kind} has no face {name!r}"
-                advice = self.face_instead or nearest(name, labels)
-                raise Hint(f"{what}; its faces are {', '.join(labels)}", advice, [name])
+                raise Hint(f"{what}; its faces are {', '.join(labels)}", self.face_instead(name, labels), [name])
 
     @property
     def frame(self) -> Vector:

@@ -98,10 +98,9 @@ class Interior(Cavity):
         """Axes of the cavity, (3, 3)."""
         return self.shape.frame
 
-    @property
-    def face_instead(self) -> str:
-        """That of the cavity."""
-        return self.shape.face_instead
+    def face_instead(self, name: str, labels: Sequence[str]) -> str:
+        """Return that of the cavity."""
+        return self.shape.face_instead(name, labels)
 
     @property
     def face_areas(self) -> Vector:

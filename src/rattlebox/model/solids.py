@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -27,7 +27,7 @@ _FLAT_SPREAD = 1.324717957244746  # of the sequence in a plane: g^3 = g + 1
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A body, or a closed surface of triangles, which is one wall with a name."""
+    """A body, which is one wall with a name, or a closed surface of triangles, of which each group is a wall."""
 
     name: str
     form: SolidForm
@@ -39,6 +39,14 @@ class Solid:
     faces: NDArray[np.int64]
     smooth: float = 0.9  # Cosine of the largest angle between normals at a smooth edge
     encloses: bool = False  # Whether the surface is the cavity
+    # Names of the walls of a surface, and the number of that of each triangle, (m,); none if it is one wall
+    groups: tuple[str, ...] = ()
+    group: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+
+    @property
+    def walls(self) -> tuple[str, ...]:
+        """Names of its walls."""
+        return self.groups or (self.name,)
 
     def moved(self, shift: Vector, frame: Vector | None = None) -> Solid:
         """Return the solid turned, if the axes of another frame are given in rows, and then shifted."""
@@ -50,12 +58,13 @@ class Solid:
             vertices=to_global(self.vertices, turned) + shift,
         )
 
-    def packed(self, material: int = 0, label: int = 0) -> _core.Solid:
-        """Return the solid for the core, with the index of its material and of its name."""
+    def packed(self, materials: Sequence[int], labels: Sequence[int]) -> _core.Solid:
+        """Return the solid for the core, with the indices of the material and of the name of each of its walls."""
         return _core.Solid(
             form=_core.SolidForm[self.form],
-            material=material,
-            label=label,
+            materials=np.array(materials, np.int64),
+            labels=np.array(labels, np.int64),
+            groups=np.ascontiguousarray(self.group),
             encloses=self.encloses,
             smooth=self.smooth,
             centre=np.ascontiguousarray(self.centre),
@@ -86,9 +95,16 @@ class Solid:
             return 8 * float(self.size @ np.roll(self.size, 1))
         if self.form == "ball":
             return 4 * math.pi * float(self.size[0] ** 2)
-        corners = self.vertices[self.faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals = face_normals(self.vertices, self.faces)
         return 0.5 * float(np.linalg.norm(normals, axis=1).sum())
+
+    @property
+    def wall_areas(self) -> Vector:
+        """Area of each of its walls, (w,) [m^2]."""
+        if not self.groups:
+            return np.array([self.area])
+        areas = 0.5 * np.linalg.norm(face_normals(self.vertices, self.faces), axis=1)
+        return np.asarray(np.bincount(self.group, areas, len(self.groups)), np.float64)
 
     def samples(self, solids: int) -> Vector:
         """Return points that fill one of several bodies evenly, (n, 3) [m]; see `Cavity.spread` for the sequence."""
@@ -179,16 +195,19 @@ class Solid:
 
 @dataclass(frozen=True, eq=False)
 class Solids:
-    """The solids of a cavity, each a wall."""
+    """The solids of a cavity."""
 
     each: tuple[Solid, ...] = ()
 
     @cached_property
     def _surfaces(self) -> _core.Surfaces:
-        return _core.Surfaces([solid.packed() for solid in self.each])
+        return _core.Surfaces([solid.packed(none := [0] * len(solid.walls), none) for solid in self.each])
 
     def distances(self, positions: Vector) -> Vector:
-        """Return the distances of points from the solids, (n, s) [m], positive where particles may be."""
+        """Return the distances of points from the walls of the solids, (n, w) [m], positive where particles may be.
+
+        They are infinite for walls of a surface of which another one is nearer.
+        """
         if not self.each:
             return np.zeros((len(positions), 0))
         return np.asarray(self._surfaces.distances(np.ascontiguousarray(positions, dtype=np.float64)))
@@ -208,6 +227,12 @@ def body(
     none = np.zeros((0, 3))
     frame = np.eye(3) if axes is None else axes
     return Solid(name, form, np.asarray(centre, float), frame, np.asarray(size, float), none, none.astype(np.int64))
+
+
+def face_normals(vertices: Vector, faces: NDArray[np.int64]) -> Vector:
+    """Return normals of triangles whose lengths are twice their areas, (m, 3) [m^2]."""
+    corners = vertices[faces]
+    return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
 
 
 def mesh(name: str, vertices: Vector, faces: NDArray[np.int64], smooth: float, *, encloses: bool = False) -> Solid:

@@ -16,11 +16,12 @@ from rattlebox._util.digests import array_digest
 from rattlebox._util.phrases import counted
 from rattlebox._util.quantities import amount
 from rattlebox.core import _core
-from rattlebox.exchange.read.surfaces import STEP, read_surface
+from rattlebox.exchange.read.surfaces import STEP, read_groups, read_surface
 
 from .base import FilePart
 from .elementwise import Vector
 from .errors import Hint, at
+from .face_groups import FROM_FILE
 from .files import absolute, existing
 from .solids import Solids, mesh
 from .units import Angle, factor_of
@@ -86,8 +87,12 @@ class TriangleSurface(FilePart):
         if twice:
             raise Hint(f"{twice[0]} and file exclude each other", "one of them", [twice[0]])
         with at("file"):
+            values = dict(values)
             path = absolute(values["file"])
-            vertices, faces = read_surface(existing(path))
+            if values.get("groups") == FROM_FILE:
+                vertices, faces, values["face_groups"] = read_groups(existing(path))
+            else:
+                vertices, faces = read_surface(existing(path))
         return {**values, "vertices": vertices, "faces": faces, "file": path}
 
     @model_validator(mode="after")
@@ -159,6 +164,7 @@ class Triangles:
 
     vertices: Vector  # Corners [m], (n, 3)
     faces: Faces  # Triangles, with normals out of the space between the shells, (m, 3)
+    origin: NDArray[np.int64]  # Number of each triangle in the file or array, (m,)
     shells: int
     notes: tuple[str, ...]
 
@@ -196,8 +202,8 @@ def checked(vertices: Vector, faces: Faces) -> Triangles:
         )
     notes: list[str] = []
     vertices, faces = _merged(vertices, faces)
-    faces = _without_slivers(vertices, faces, notes)
-    vertices, faces = _used(vertices, faces)
+    origin = _without_slivers(vertices, faces, notes)
+    vertices, faces = _used(vertices, faces[origin])
     owner, other = _edges(vertices, faces)
     _check_folds(vertices, faces, owner, other)
     shell = _shells(len(faces), owner, other)
@@ -210,7 +216,7 @@ def checked(vertices: Vector, faces: Faces) -> Triangles:
             "a single boolean union in the CAD program before the export; bodies that overlap are separate `bodies`",
         )
     faces = _oriented(vertices, faces, shell, notes)
-    return Triangles(vertices, faces, int(shell.max()) + 1, tuple(notes))
+    return Triangles(vertices, faces, origin, int(shell.max()) + 1, tuple(notes))
 
 
 def _place(point: Vector) -> str:
@@ -237,16 +243,16 @@ def _merged(vertices: Vector, faces: Faces) -> tuple[Vector, Faces]:
     return vertices, np.asarray(faces, dtype=np.int64)
 
 
-def _without_slivers(vertices: Vector, faces: Faces, notes: list[str]) -> Faces:
-    """Return triangles that have three corners; raise if one has them on a line."""
+def _without_slivers(vertices: Vector, faces: Faces, notes: list[str]) -> NDArray[np.int64]:
+    """Return the numbers of triangles that have three corners; raise if one has them on a line."""
     corners = np.sort(faces, axis=1)
     repeated = (corners[:, 0] == corners[:, 1]) | (corners[:, 1] == corners[:, 2])
     if repeated.any():
         notes.append(f"{counted(int(repeated.sum()), 'triangle')} with two corners at one place left out")
-        faces = faces[~repeated]
-    if not len(faces):
+    kept = np.flatnonzero(~repeated)
+    if not kept.size:
         raise Hint("the surface has no triangle with an area", "a closed surface; check its unit and precision")
-    points = vertices[faces]
+    points = vertices[faces[kept]]
     sides = np.linalg.norm(points - np.roll(points, 1, axis=1), axis=2).max(axis=1)
     twice = _double_areas(points)
     flat = np.flatnonzero(twice < _SLIVER * sides**2)
@@ -256,7 +262,7 @@ def _without_slivers(vertices: Vector, faces: Faces, notes: list[str]) -> Faces:
             f"{_place(points[flat[0]].mean(axis=0))}: three corners on a line have no normal",
             "another export, or a repair that removes degenerate triangles",
         )
-    return faces
+    return kept
 
 
 def _double_areas(points: Vector) -> Vector:
@@ -380,10 +386,10 @@ def _outward(faces: Faces, volume: float) -> Faces:
     return faces if volume > 0 else np.ascontiguousarray(faces[:, ::-1])
 
 
-def surface_words(what: str, lengths: Vector, triangles: int) -> str:
+def surface_words(what: str, lengths: Vector, triangles: int, groups: str = "") -> str:
     """Return a phrase about a surface with its bounding box."""
     sides = " x ".join(f"{amount(1e3 * float(x))}" for x in lengths)
-    return f"{what} of {counted(triangles, 'triangle')}, {sides} mm"
+    return f"{what} of {counted(triangles, 'triangle')}{groups}, {sides} mm"
 
 
 def surface_notes(surface: TriangleSurface) -> Iterator[str]:

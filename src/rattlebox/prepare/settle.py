@@ -418,11 +418,11 @@ def pack_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
 
 def pack_solids(walls: Walls, material: NDArray[np.int_]) -> list[_core.Solid]:
     """Pack bodies and surfaces of triangles for the core, each with the index of its material."""
-    plain = walls.offset.size
-    return [
-        solid.packed(int(number), int(label))
-        for solid, number, label in zip(walls.solids.each, material[plain:], walls.label_numbers[plain:], strict=True)
-    ]
+    end, packed = walls.offset.size, []
+    for solid in walls.solids.each:
+        begin, end = end, end + len(solid.walls)
+        packed.append(solid.packed(material[begin:end].tolist(), walls.label_numbers[begin:end].tolist()))
+    return packed
 
 
 def _friction(damper: ParticleDamper) -> float:

@@ -266,17 +266,8 @@ def test_bed_of_a_file_that_has_changed_is_settled_again(tmp_path):
     assert lowest == pytest.approx([-0.005 + 0.0015, -0.0125 + 0.0015], abs=1e-5)
 
 
-def test_part_of_a_surface_is_a_face_by_a_body_in_front_of_it():
-    """A part of a surface is no face; the plate that the message advises in its place has results and laws of its own.
-
-    The message listed the one name of the surface, which is no advice for a lid.
-    """
-    for bodies in ([], [rb.RodBody(diameter="3 mm", length="8 mm")]):
-        for name in ("+z", "lid"):
-            with pytest.raises(
-                rb.CaseError, match=r'(?s)no face .*; its faces are mesh.*try: .*kind = "plate", name = "lid"'
-            ):
-                damper(box(), walls={name: "frictionless"}, bodies=bodies)
+def test_plate_in_front_of_a_surface_is_a_face():
+    """A plate in front of a part of a surface has results and laws of its own."""
     floor = rb.PlateBody(name="floor", size=("34 mm", "24 mm", "4 mm"), position=(0, 0, "-13.5 mm"))
     case = rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="20 m/s^2", frequency="30 Hz", direction="x")),
