@@ -1129,19 +1129,22 @@ class SolidForm(enum.Enum):
 
 class Solid(Node):
     """
-    A body in a cavity, or a closed surface of triangles with normals out of the space of the particles. `size` is half of the edges of a plate, radius and half of the length of a rod, or the radius of a ball [m]; the third of the axes is along a rod.
+    A body in a cavity, which is one wall, or a closed surface of triangles with normals out of the space of the particles, with a wall for each group of triangles. `size` is half of the edges of a plate, radius and half of the length of a rod, or the radius of a ball [m]; the third of the axes is along a rod.
     """
 
-    def __init__(self, *, form: SolidForm, material: int, label: int = 0, encloses: bool, smooth: float, centre: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], size: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], axes: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], faces: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+    def __init__(self, *, form: SolidForm, materials: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], labels: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], groups: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], encloses: bool, smooth: float, centre: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], size: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], axes: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], vertices: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], faces: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
 
     @property
     def form(self) -> SolidForm: ...
 
     @property
-    def material(self) -> int: ...
+    def materials(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
 
     @property
-    def label(self) -> int: ...
+    def labels(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def groups(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
 
     @property
     def encloses(self) -> bool: ...
@@ -1169,7 +1172,7 @@ class Solid(Node):
 
 class SurfaceContacts(Node):
     """
-    Contacts of spheres with solids: number of the sphere and of the solid, outward normal, and distance of the centre [m].
+    Contacts of spheres with solids: number of the sphere and of the wall, outward normal, and distance of the centre [m].
     """
 
     def __init__(self, *, point: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], solid: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], normal: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], distance: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None: ...
@@ -1199,7 +1202,7 @@ class Surfaces:
 
     def distances(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]:
         """
-        Return the distance of each point from each solid, positive where particles may be.
+        Return the distance of each point from the walls of the solids, positive where particles may be; infinity for walls of a surface of which another one is nearer.
         """
 
     def contacts(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radii: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> SurfaceContacts:

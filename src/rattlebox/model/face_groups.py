@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, model_validat
 from pydantic_core import CoreSchema, core_schema
 
 from rattlebox._util.phrases import counted
+from rattlebox._util.text import has_controls
 
 from .also_accepts import AlsoAccepts
 from .base import Part
@@ -145,8 +146,9 @@ def check_names(names: Iterable[str]) -> None:
     """Raise unless groups have names that the paths of a case can contain."""
     names = list(names)
     for name in names:
-        if not name.strip() or set(name) & set(_IN_PATHS):
-            raise Hint(f"{name!r} is no name of a group: it is empty or contains one of {_IN_PATHS}", "letters", [name])
+        if not name.strip() or set(name) & set(_IN_PATHS) or has_controls(name):
+            what = f"is no name of a group: it is empty, or contains a control character or one of {_IN_PATHS}"
+            raise Hint(f"{name!r} {what}", "letters", [name])
     if len(names) > MOST_GROUPS:
         raise Hint(f"{len(names)} groups are too many", f"at most {MOST_GROUPS}")
 

@@ -248,6 +248,28 @@ def test_groups_with_equal_laws_are_one_surface():
     assert [run.counts["first_touches_wall"] for run in runs] == [1, 1]
 
 
+def test_ball_slides_from_one_plate_to_another_of_other_friction():
+    """A contact that goes on at another body is one contact; where the two had different laws, it began anew."""
+    plates = [
+        rb.PlateBody(name=name, size=("20 mm", "30 mm", "3 mm"), position=(x, 0, "-8.5 mm"))
+        for name, x in (("left", "-10 mm"), ("right", "10 mm"))
+    ]
+    run = fly(
+        rb.Box(size=(0.06, 0.04, 0.02)),
+        (-0.008, 0.001, -0.007 + RADIUS),
+        (1.0, 0, 0),
+        bodies=plates,
+        walls={"left": rb.Wall(friction=0.1), "right": rb.Wall(friction=0.4, material="aluminium")},
+        gravity=(0, 0, -GRAVITY),
+        duration=0.016,
+    )
+    until = (1.0 - math.sqrt(1.0 - 2 * 0.1 * GRAVITY * 0.008)) / (0.1 * GRAVITY)
+    assert run.counts["first_touches_wall"] == 1
+    speed = 1.0 - 0.1 * GRAVITY * until - 0.4 * GRAVITY * (0.016 - until)
+    assert state(run)[1, 0, 0] == pytest.approx(speed, abs=3e-4)
+    assert run.ledger.energy_residual < 1e-3
+
+
 @pytest.mark.parametrize("contact", [rb.Tsuji(restitution=1.0), rb.Thornton(yield_pressure="1 GPa")])
 @pytest.mark.parametrize(
     "walls", [{"left": "nylon"}, {"right": "nylon"}, {"right": rb.Wall(material="nylon", friction=0.0)}]
