@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -74,27 +74,20 @@ def simulate_from(
     case: Case, before: Case, end: RunEnd, origin: str, progress: Progress | None = None, threads: int | None = None
 ) -> Run:
     """Run a case from the end of a run of the case `before`; `origin` names that run."""
-    method = instance(case.method, Dem)
     prepared, packed, state, is_same = pack_continued(case, before, end)
-    dem = _core.Dem(packed)
-    dem.threads = threads or method.threads or default_threads(packed)
-    active = DemRun(dem, packed, None, method)
+    active = _begin(case, packed, threads)
     active.continue_from(state, end.time, is_same=is_same)
     status = active.run(progress)
-    return _result(case, prepared, packed, dem, status, active, origin=origin, keeps_end=True)
+    return _result(case, prepared, active, status, origin=origin, keeps_end=True)
 
 
 def repeat_until(case: Case, time: float, progress: Progress | None = None) -> Run:
     """Run a case up to the step that is next to a time [s], with the time step of the whole run."""
-    method = instance(case.method, Dem)
     prepared = prepare(case)
     packed = pack_particles(prepared)
-    packed = packed.replace(steps=max(1, round(time / packed.dt)))
-    dem = _core.Dem(packed)
-    dem.threads = method.threads or default_threads(packed)
-    active = DemRun(dem, packed, None, method)
+    active = _begin(case, packed.replace(steps=max(1, round(time / packed.dt))), None)
     status = active.run(progress)
-    return _result(case, prepared, packed, dem, status, active, keeps_end=True)
+    return _result(case, prepared, active, status, keeps_end=True)
 
 
 def continue_dem(
@@ -105,17 +98,55 @@ def continue_dem(
     Particles, contacts with their history and the structure continue, and so does a harmonic load if the run before lasted
     whole cycles. Time, work and losses count from the beginning.
     """
-    method = instance(case.method, Dem)
     prepared = prepare(case, None if before is None else before.positions)
-    packed = pack_particles(prepared)
-    dem = _core.Dem(packed)
-    dem.threads = threads or method.threads or default_threads(packed)
-    active = DemRun(dem, packed, None, method)
+    active = _begin(case, pack_particles(prepared), threads)
     if before is not None:
         active.continue_from(before, 0.0)
     status = active.run(progress)
-    run = _result(case, prepared, packed, dem, status, active)
-    return run, EndState.of(dem, packed, active.records())
+    return _result(case, prepared, active, status), active.end()
+
+
+class PausedRun(NamedTuple):
+    """A particle run that has reached a sample: the state there, and the samples so far."""
+
+    state: EndState
+    records: dict[str, NDArray[Any]]
+    seconds: float  # Computing time so far [s]
+
+    @property
+    def memory(self) -> int:
+        """Size [bytes]."""
+        return self.state.state.nbytes + sum(array.nbytes for array in (*self.state.positions, *self.records.values()))
+
+
+def run_part(
+    case: Case,
+    share: float,
+    before: PausedRun | None,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> tuple[Run, PausedRun]:
+    """Run a case up to a share of its duration, where a sample is taken, from where an earlier part paused.
+
+    The run includes all parts so far. It has the bits of a run in one go, whose time step it has.
+    """
+    prepared = prepare(case, None if before is None else before.state.positions)
+    active = _begin(case, pack_particles(prepared), threads)
+    if before is not None:
+        active.resume(before.state.state, _core.Records(**before.records), before.seconds)
+    status = active.run(progress, round(share * active.packed.steps))
+    records = active.records()
+    samples = {name: getattr(records, name) for name in records.fields()}
+    return _result(case, prepared, active, status), PausedRun(active.end(), samples, active.seconds)
+
+
+def _begin(case: Case, packed: _core.DemProblem, threads: int | None, file: Checkpoint | None = None) -> DemRun:
+    """Return a run before its first step."""
+    method = instance(case.method, Dem)
+    dem = _core.Dem(packed)
+    dem.threads = threads or method.threads or default_threads(packed)
+    return DemRun(dem, packed, file, method)
 
 
 def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
@@ -141,20 +172,17 @@ def _simulate(
     *,
     keeps_end: bool,
 ) -> Run:
-    method = instance(case.method, Dem)
     data = None if file is None else file.read()
     prepared = prepare(case, None if data is None else data.positions)
     packed = pack_particles(prepared)
-    dem = _core.Dem(packed)
-    dem.threads = threads or method.threads or default_threads(packed)
-    active = DemRun(dem, packed, file, method)
+    active = _begin(case, packed, threads, file)
     if file is not None and data is not None:
         file.check(data, packed)
-        active.resume(data)
+        active.resume_from(data)
     if snapshots is not None:
         active.add_snapshots(*plan_snapshots(case, packed, snapshots))
     status = active.run(progress)
-    return _result(case, prepared, packed, dem, status, active, keeps_end=keeps_end)
+    return _result(case, prepared, active, status, keeps_end=keeps_end)
 
 
 def default_threads(packed: _core.DemProblem) -> int:
@@ -166,15 +194,14 @@ def default_threads(packed: _core.DemProblem) -> int:
 def _result(
     case: Case,
     prepared: Prepared,
-    packed: _core.DemProblem,
-    dem: _core.Dem,
-    status: Status,
     active: DemRun,
+    status: Status,
     *,
     origin: str = "",
     keeps_end: bool = False,
 ) -> Run:
     resolved_case, step = prepared.case, prepared.step
+    dem, packed = active.dem, active.packed
     records, totals = active.records(), dem.counts()
     raw = sums_from_zero(records) if active.is_continued else records
     arrays = _arrays(resolved_case, packed, raw, dem)

@@ -27,11 +27,12 @@ from rattlebox.prepare.time_step import exceeded_limits
 from rattlebox.studies.grid.axes import no_random_packing
 from rattlebox.studies.grid.sampling import Spaced
 from rattlebox.studies.run.runner import evaluate_cases
-from rattlebox.studies.work.particles import EXTENSIONS, steady_run
+from rattlebox.studies.work.particles import EXTENSIONS, SteadyRun, steady_run
 
 if TYPE_CHECKING:
     import xarray
 
+    from rattlebox.engines.dem import PausedRun
     from rattlebox.model.case import Case
     from rattlebox.results.run import Run
 
@@ -190,13 +191,17 @@ def curve_from(
     point: str | None,
     packings: int,
     cycles: tuple[int, int] | None,
+    part: tuple[int, int] | None = None,
 ) -> xarray.Dataset:
-    """Return the damping curve of a case; `run` simulates cases as `evaluate_cases` does."""
+    """Return the damping curve of a case; `run` simulates cases as `evaluate_cases` does.
+
+    `part`: numbers of cycles to skip and to evaluate after which shaken runs stop; default all.
+    """
     levels, about, cases = _prepared(case, amplitudes, way, mode, point, packings)
     remarks = Remarks()
     steady = None
     if way == "shaking":
-        ratios, steady, drift = _from_shaking(cases, about, levels, cycles, run, remarks)
+        ratios, steady, drift = _from_shaking(cases, about, levels, cycles, part, run, remarks)
         steady, drift = of_all_starts(steady, packings), of_all_starts(drift, packings)
     else:
         ratios = ratios_of_decays(cases, about, levels, way, run, remarks)
@@ -404,6 +409,7 @@ class _Row(NamedTuple):
     values: FloatArray  # Damping ratios, or the work in a cycle and its rise [J]
     largest: float = math.inf  # Largest amplitude of a decay [m]
     advice: str = "rb.simulate(case), to see where"  # for a run that failed
+    paused: PausedRun | None = None  # from where the next part of the run continues
 
 
 def _decay(run: Run, mode: CurveMode, levels: FloatArray, way: Way) -> _Row:
@@ -501,16 +507,18 @@ def _from_shaking(
     mode: CurveMode,
     levels: FloatArray,
     cycles: tuple[int, int] | None,
+    part: tuple[int, int] | None,
     evaluate: Evaluate,
     remarks: Remarks,
 ) -> tuple[FloatArray, NDArray[np.bool_], FloatArray]:
     """Return damping ratios, (starts, A), whether the motions were steady, and the rises of the ratios over the cycles."""
     extensions = EXTENSIONS if cycles is None else 0
     variants, owners = _shaken_variants(cases, mode, levels, cycles or CYCLES)
-    _, kept = cycles or CYCLES
+    _, kept = part or cycles or CYCLES
+    share = sum(part) / sum(cycles or CYCLES) if part else 1.0
     ratios = np.full((len(cases), levels.size), mode.ratio + _tuned(cases[0], mode))
     steady, drift = np.full(ratios.shape, True), np.zeros(ratios.shape)
-    simulate = partial(steady_run, frequency=mode.frequency, kept=kept, extensions=extensions)
+    simulate = partial(steady_run, frequency=mode.frequency, kept=kept, extensions=extensions, part=share)
     rows = evaluate(variants, partial(_work_in_cycles, frequency=mode.frequency, kept=kept), simulate=simulate)
     for (number, k), row in zip(owners, rows, strict=True):
         remarks.add(row, number)
@@ -540,9 +548,10 @@ def _shaken_variants(
     return variants, owners
 
 
-def _work_in_cycles(run: Run, frequency: float, kept: int) -> _Row:
+def _work_in_cycles(shaken: SteadyRun, frequency: float, kept: int) -> _Row:
     """Return the work of the cavity in a cycle, averaged over the last ones, and its rise between their halves."""
-    row = _row(run)
+    run = shaken.run
+    row = _row(run)._replace(paused=shaken.paused)
     if row.failure:
         return row
     loss = cycle_loss(run, frequency, kept)

@@ -14,8 +14,11 @@ from scipy.stats import t
 import rattlebox as rb
 from rattlebox._util.exceptions import CaseError
 from rattlebox.report.kinds.design import KIND
+from rattlebox.studies import damping_curve
+from rattlebox.studies.design import trials
 from rattlebox.studies.design.evidence import curves_of
 from rattlebox.studies.design.search import Candidate, DesignSearch, Evaluation, pooled
+from rattlebox.studies.design.trials import Trials
 from rattlebox.studies.kinds.design import Design
 from rattlebox.studies.run import runner
 from rattlebox.studies.run.estimate import Estimate
@@ -58,17 +61,16 @@ def shaken(case: rb.Case, parameters: Any, objective: Any = "damping_ratio", **o
 
 @pytest.fixture
 def cycles(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """Return a list to which the number of cycles of each case is added that is simulated on a shaker."""
+    """Return a list to which the number of cycles of each run, or of the part that is new, is added on a shaker."""
     counted: list[float] = []
-    usual = runner._Cases.run
+    usual = damping_curve.steady_run
 
-    def run(self: Any, numbers: range, **options: Any) -> Any:
-        for case in (self.cases[number] for number in numbers):
-            (motion, *_) = case.harmonics.values()
-            counted.append(case.duration * motion.frequency)
-        return usual(self, numbers, **options)
+    def run(case: rb.Case, *, frequency: float, part: float = 1.0, before: Any = None, **options: Any) -> Any:
+        done = 0.0 if before is None else before.records["time"][-1]
+        counted.append((part * case.duration - done) * frequency)
+        return usual(case, frequency=frequency, part=part, before=before, **options)
 
-    monkeypatch.setattr(runner._Cases, "run", run)
+    monkeypatch.setattr(damping_curve, "steady_run", run)
     return counted
 
 
@@ -135,8 +137,8 @@ def check_few_cycles(name: str, cycles: list[float], **options: Any) -> tuple[xr
     assert short.case.item() == full.case.item()
     few, total = max(8, sum(numbers) // 4), sum(numbers)
     after_few = (short.cycles_run == few).values
-    assert set(short.cycles_run.values.tolist()) == {few, total} and after_few.sum() >= 5
-    check_parts(short.isel(trial=~after_few), full, path)
+    assert set(short.cycles_run.values.tolist()) <= {few, 2 * few, total} and after_few.sum() >= 5
+    check_parts(short.isel(trial=(short.cycles_run == total).values), full, path)
     assert (short.packings_run.values[after_few] == 3).all() and short.dropped.values[after_few].all()
     stage = f"dropped after 3 of 12 packings and {few} of {total} cycles: worse than trial "
     assert all(reason.startswith(stage) for reason in short.reason.values[after_few])
@@ -201,11 +203,21 @@ class Killed(BaseException):
     """Stop of a process, after which nothing is stored."""
 
 
-@pytest.mark.parametrize("gaps", [GAPS[3:], ("0.2 mm", "1.4 mm")], ids=["all combinations", "between bounds"])
-def test_a_kill_at_any_stage_changes_nothing(gaps: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("case", "parameters", "cycles", "counts"),
+    [
+        (with_ball(), {GAP: GAPS[3:]}, (4, 20), {8, 24}),
+        (with_ball(), {GAP: ("0.2 mm", "1.4 mm")}, (4, 20), {8, 24}),
+        (with_bed(count=4), {COUNT: COUNTS[1:6]}, (4, 28), {8, 16, 32}),
+    ],
+    ids=["all combinations", "between bounds", "beds"],
+)
+def test_a_kill_at_any_stage_changes_nothing(
+    case: rb.Case, parameters: Any, cycles: Any, counts: set[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """After a kill in any evaluation, whatever was finished before, the same trials are dropped at the same stages."""
-    options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "cycles": (4, 20), "packings": 8, "drop": True}
-    options |= {} if isinstance(gaps, list) else {"trials": 6}
+    options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "cycles": cycles, "packings": 8, "drop": True}
+    options |= {"workers": 1} | ({} if isinstance(next(iter(parameters.values())), list) else {"trials": 6})
     usual, left = DesignSearch.evaluate, [10**9]
 
     def evaluate(self: DesignSearch, candidate: Candidate, count: int) -> Evaluation:
@@ -216,20 +228,59 @@ def test_a_kill_at_any_stage_changes_nothing(gaps: Any, tmp_path: Path, monkeypa
 
     monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
     monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
-    one = shaken(with_ball(), {GAP: gaps}, workers=1, **options)
+    one = shaken(case, parameters, **options)
     evaluations = 10**9 - left[0]
-    assert set(one.cycles_run.values.tolist()) == {8, 24} and one.dropped.any()
+    assert set(one.cycles_run.values.tolist()) <= counts and len(set(one.cycles_run.values.tolist())) > 1
+    assert one.dropped.any()
     for step in range(3, evaluations + 1, 7):
         store = tmp_path / str(step)
         for count in (step, max(2, evaluations - step)):
             left[0] = count
             try:
-                shaken(with_ball(), {GAP: gaps}, workers=1, store=store, **options)
+                shaken(case, parameters, store=store, **options)
             except Killed:
                 continue
         left[0] = 10**9
-        again = shaken(with_ball(), {GAP: gaps}, workers=1, store=store, **options)
+        again = shaken(case, parameters, store=store, **options)
         xr.testing.assert_identical(one.drop_attrs(), again.drop_attrs())
+
+
+@pytest.mark.parametrize("backend", ["threads", pytest.param("processes", marks=pytest.mark.slow)])
+def test_runs_of_beds_continue_after_each_part(
+    backend: str, cycles: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each cycle of a bed runs once, and complete trials have the bits of a search without dropping.
+
+    Before, runs that were not dropped began anew after each part. They still do if the memory for paused runs is full, and
+    nothing else changes then.
+    """
+    options: dict[str, Any] = {"amplitudes": ["2 mm", "3 mm"], "cycles": (4, 28), "packings": 4, "workers": 2}
+    case, counts = with_bed(count=4), {COUNT: [3, 5, 12, 20]}
+    sizes = []
+    usual = Trials._extend
+
+    def extend(self: Trials, begun: Any) -> None:
+        usual(self, begun)
+        sizes.append(sum(each.candidate.memory for each in self._begun.values()))
+
+    monkeypatch.setattr(Trials, "_extend", extend)
+    full = shaken(case, counts, **options)
+    cycles.clear()
+    short = shaken(case, counts, drop=True, backend=backend, **options)
+    assert len(set(short.cycles_run.values.tolist())) > 1 and short.dropped.any()
+    complete = short.isel(trial=(short.cycles_run == 32).values)
+    check_parts(complete, full, COUNT)
+    assert max(sizes) > 100_000
+    if backend == "processes":
+        return
+    assert sum(cycles) == pytest.approx(2 * int((short.cycles_run * short.packings_run).sum()))
+    once = sum(cycles)
+    for most in (max(sizes) // 2, 0):
+        cycles.clear(), sizes.clear()
+        monkeypatch.setattr(trials, "MOST_PAUSED", most)
+        again = shaken(case, counts, drop=True, **options)
+        xr.testing.assert_identical(short.drop_attrs(), again.drop_attrs())
+        assert max(sizes) <= most and sum(cycles) > once
 
 
 def transients(generator: np.random.Generator, designs: int) -> Any:

@@ -6,7 +6,7 @@ import json
 import math
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
@@ -49,6 +49,8 @@ from rattlebox.studies.work.work import Block, Work
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rattlebox.engines.dem import PausedRun
+
 Robust = Literal["worst", "mean", "median"]
 Vector = NDArray[np.float64]
 Values = dict[str, Any]
@@ -63,9 +65,11 @@ FLAGS = {**WARNINGS, OTHER_MOTION: "decays with another frequency than that of t
 FIRST = 3
 """Number of packings after which a trial can be dropped."""
 _SHORTER = 4
-"""Factor by which the first runs of a trial are shorter than all its runs, if it can be dropped after few cycles."""
+"""Factor by which the first part of a run is shorter than the run, if a trial can be dropped after few cycles."""
 _FEWEST_CYCLES = 8
-"""Smallest number of cycles of such a run; below twice as many, runs are not shortened."""
+"""Smallest number of cycles of such a part; below twice as many, a run has no parts."""
+MOST_PAUSED = 500_000_000
+"""Size of all paused runs of a search that stay in memory [bytes]; others start anew, with the same results."""
 _GROWTH = 1.5
 """Factor by which the number of packings grows from one decision about a trial to the next one."""
 
@@ -153,7 +157,7 @@ class Candidate:
     mass: float = math.nan
     refused: str = ""
     ran: int = 0  # Number of packings in the tables
-    short: Evaluation | None = None  # Result of its shortened runs
+    short: list[Evaluation] = field(default_factory=list)  # Results after the parts of its first packings
     tables: dict[str, tuple[Vector, Vector | None]] = field(default_factory=dict)
     missing: float = 0.0
     warnings: int = 0
@@ -161,18 +165,41 @@ class Candidate:
     rows: dict[str, Any] = field(default_factory=dict)  # Results of the runs of damping curves, by case
     seconds: Vector = field(default_factory=lambda: np.zeros(2))  # Wall and processor time of its runs [s]
 
-    def remember(self, evaluate: Evaluate) -> Evaluate:
-        """Return a function like `evaluate_cases` that runs each case once."""
+    paused: dict[str, PausedRun] = field(default_factory=dict)  # Runs after a part, by case
+    room: int = 0  # Size of further paused runs that may be stored [bytes]
+
+    @property
+    def memory(self) -> int:
+        """Size of its paused runs [bytes]."""
+        return sum(each.memory for each in self.paused.values())
+
+    def remember(self, evaluate: Evaluate, part: tuple[int, int] | None) -> Evaluate:
+        """Return a function like `evaluate_cases` that runs each case once, from where an earlier part of it paused."""
 
         def run(cases: Sequence[Case], function: Any, **options: Any) -> list[Any]:
             texts = [case.to_toml() for case in cases]
-            new = [k for k, text in enumerate(texts) if text not in self.rows]
-            if new:
+            keys = [f"{part} {text}" for text in texts]
+            new = [k for k, key in enumerate(keys) if key not in self.rows]
+            if not new:
+                return [self.rows[key] for key in keys]
+            if simulate := options.get("simulate"):  # shaken
+                before = {texts[k]: self.paused.pop(texts[k], None) for k in new}
+                options["simulate"] = partial(_continued, partial(simulate, room=self.room / len(new)))
+                found = evaluate([(cases[k], before[texts[k]]) for k in new], function, **options)
+                self.paused |= {texts[k]: row.paused for k, row in zip(new, found, strict=True) if row.paused}
+                found = [row._replace(paused=None) for row in found]
+            else:
                 found = evaluate([cases[k] for k in new], function, **options)
-                self.rows |= {texts[k]: row for k, row in zip(new, found, strict=True)}
-            return [self.rows[text] for text in texts]
+            self.rows |= {keys[k]: row for k, row in zip(new, found, strict=True)}
+            return [self.rows[key] for key in keys]
 
         return run
+
+
+def _continued(simulate: Callable[..., Any], item: tuple[Case, PausedRun | None], **options: Any) -> Any:
+    """Return the run of a case from where an earlier part of it paused."""
+    case, before = item
+    return simulate(case, before=before, **options)
 
 
 @dataclass(frozen=True)
@@ -192,6 +219,7 @@ class DesignSearch:
     drop: bool = False
     precision: float | None = None  # Half width over mean below which no packings are added
     where: dict[str, Any] = field(default_factory=dict)
+    part: tuple[int, int] | None = None  # Cycles to skip and to evaluate after which runs stop; None for all
 
     # ---- description and checks
 
@@ -229,30 +257,33 @@ class DesignSearch:
         return stages
 
     @cached_property
-    def shortened(self) -> DesignSearch | None:
-        """The search with few cycles, after which trials can be dropped; None if runs cannot be shortened.
+    def parts(self) -> list[DesignSearch]:
+        """The search after ever longer parts of runs, after which trials can be dropped; none if runs have no parts.
 
         A decay must pass all amplitudes, and the window of a measure may have to follow the transient of a structure, while
         the contents of a shaken cavity forget their start within some cycles.
         """
         if not self.drop or self.measured or self.curve is None or self.curve.way != "shaking":
-            return None
+            return []
         skip, kept = self.curve.cycles or CYCLES
-        few = max(_FEWEST_CYCLES, math.ceil((skip + kept) / _SHORTER))
-        if 2 * few > skip + kept:
-            return None
-        skipped = min(max(1, round(few * skip / (skip + kept))), few - 2)  # at least a cycle in each half of the others
-        return replace(self, curve=replace(self.curve, cycles=(skipped, few - skipped)))
+        count = max(_FEWEST_CYCLES, math.ceil((skip + kept) / _SHORTER))
+        parts = []
+        while 2 * count <= skip + kept:
+            skipped = min(max(1, round(count * skip / (skip + kept))), count - 2)  # a cycle in each half of the others
+            parts.append(replace(self, part=(skipped, count - skipped)))
+            count *= 2
+        # A run of balls starts anew after each part, so that only one part is worth its cost.
+        return parts if self.case.particle_dampers else parts[:1]
 
     @property
     def cycles(self) -> int:
         """Number of cycles of each run of a damping curve by shaking, before those that a run adds until it is steady."""
-        return sum(instance(self.curve, Curve).cycles or CYCLES)
+        return sum(self.part or instance(self.curve, Curve).cycles or CYCLES)
 
-    def transient(self, short: Evaluation, changes: Sequence[Vector]) -> Vector:
-        """Return by how much objectives may still change after shortened runs, (objectives,).
+    def transient(self, short: Evaluation, cycles: int, changes: Sequence[Vector]) -> Vector:
+        """Return by how much objectives may still change after parts of runs with some number of cycles, (objectives,).
 
-        `changes`: objectives of complete trials over those of their shortened runs, (objectives,) each.
+        `changes`: objectives of complete trials over those after such parts, (objectives,) each.
 
         Notes
         -----
@@ -263,9 +294,8 @@ class DesignSearch:
         longest = self.cycles
         if instance(self.curve, Curve).cycles is None:
             longest += EXTENSIONS * CYCLES[1]
-        doublings = math.log2(longest / instance(self.shortened, DesignSearch).cycles)
         ratio = np.max([np.fmax(change, 1 / change) for change in changes], axis=0)
-        return np.asarray(doublings * np.abs(short.drift) + (ratio - 1) * np.abs(short.values))
+        return np.asarray(math.log2(longest / cycles) * np.abs(short.drift) + (ratio - 1) * np.abs(short.values))
 
     def work_of(self, case: Case) -> Work:
         """Return the work that measures the runs of a trial."""
@@ -337,7 +367,7 @@ class DesignSearch:
         curve = {} if self.curve is None else {"curve": vars(self.curve)}
         early: dict[str, Any] = {"drop": True} if self.drop else {}
         early |= {} if self.precision is None else {"precision": self.precision}
-        early |= {} if self.shortened is None else {"drop_cycles": self.shortened.cycles}
+        early |= {"drop_cycles": [each.cycles for each in self.parts]} if self.parts else {}
         return {
             **describe_case(self.case, self.grid.columns),
             "parameters": {path: about for each in self.variables for path, about in each.describe().items()},
@@ -398,31 +428,22 @@ class DesignSearch:
 
     def predict(self, trials: int) -> Estimate:
         """Return the predicted cost of a number of trials: of all packings and cycles, and the least if trials end early."""
-        designs, first = self.sample(_SAMPLED), self._first
-        parts = [self._costs(designs)] + ([] if first is None else [first._costs(designs)])
-        groups = [group for part in parts for group in part.groups]
-        times, share = time_of_particle_runs(groups) if groups else ([], 1.0)
-        own = len(parts[0].groups)
-        trial, runs = self._time_of(parts[0], times[:own], designs), parts[0].runs
-        early = trial * self.stages[0] / self.count
-        if first is not None:  # shortened runs are repeated with all cycles
-            early = first._time_of(parts[1], times[own:], designs)
-            trial, runs = trial + early, runs + parts[1].runs
+        designs = self.sample(_SAMPLED)
+        costs = self._costs(designs)
+        times, share = time_of_particle_runs(costs.groups) if costs.groups else ([], 1.0)
+        trial, runs = self._time_of(costs, times, designs), costs.runs
+        first = self.stages[0] / self.count
+        early = trial * first
+        if self.parts:
+            early *= self.parts[0].cycles / self.cycles
+            if not self.case.particle_dampers:  # the parts start anew
+                trial, runs = trial + early, runs * (1 + first)
         cpu_time = START + trials * trial
         # At least one trial is complete, unless it is precise enough before.
         least = START + trials * early + (trial - early if self.precision is None else 0.0)
         workers = workers_of(self.where.get("backend", "threads"), self.where.get("workers"))
         wall_time = cpu_time / share / max(1, min(workers, runs))
         return Estimate(trials, round(trials * runs), cpu_time, wall_time, workers, least=min(least, cpu_time))
-
-    @cached_property
-    def _first(self) -> DesignSearch | None:
-        """The search of the shortened runs of all trials; None if runs are not shortened."""
-        if self.shortened is None:
-            return None
-        count = self.stages[0]
-        axis = None if self.packings is None else parse_axes(self.case, packing_axis(self.case, count), source="levels")
-        return replace(self.shortened, count=count, packings=axis, drop=False, precision=None)
 
     def _costs(self, designs: Sequence[Values]) -> _Costs:
         """Return the runs of a trial, whose time is predicted, from some designs."""
@@ -597,8 +618,8 @@ class DesignSearch:
         """Return the damping curves of a trial, the drift of all values, (..., P), and the names of exceeded limits."""
         run: Evaluate = partial(evaluate_cases, **self.where)
         if len(self.stages) > 1:
-            run = candidate.remember(run)
-        options = {**self.curve_options, "packings": count}
+            run = candidate.remember(run, self.part)
+        options = {**self.curve_options, "packings": count, "part": self.part}
         found = [curve_from(run, each, **options) for each in self.curve_cases(case)]
         curves = Curves(
             np.array([each.damping_ratios.transpose("amplitude", "packing").values for each in found]),
@@ -677,7 +698,7 @@ class DesignSearch:
             found[DROPPED] = "trial", dropped, {"long_name": "ended early, because certainly worse than another trial"}
             ran = {"units": "1", "long_name": "number of packings that ran"}
             found[PACKINGS_RUN] = "trial", [trial.user_attrs["ran"] for trial in trials], ran
-        if self.shortened is not None:
+        if self.parts:
             cycles = {"units": "1", "long_name": "number of cycles of each run, before those until it is steady"}
             found[CYCLES_RUN] = "trial", [trial.user_attrs["cycles"] for trial in trials], cycles
         front = pareto_front(values * np.array([each.sign for each in self.objectives]), feasible)

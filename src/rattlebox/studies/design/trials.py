@@ -23,6 +23,7 @@ from rattlebox.results.provenance import with_version
 from rattlebox.studies.design.evidence import DROPPED, certainly_worse
 from rattlebox.studies.design.search import (
     MOST_COMBINATIONS,
+    MOST_PAUSED,
     Candidate,
     Curves,
     DesignSearch,
@@ -233,8 +234,8 @@ class Trials:
             "seconds": candidate.seconds.tolist(),
             DROPPED: found.dropped,
             "ran": candidate.ran,
-            "cycles": None if self._search.shortened is None else found.cycles or self._search.cycles,
-            "short": None if candidate.short is None else candidate.short.packings.tolist(),
+            "cycles": found.cycles or self._search.cycles if self._search.parts else None,
+            "short": [each.packings.tolist() for each in candidate.short],
             "curves": None if found.curves is None else [each.tolist() for each in found.curves],
         }
         for name, value in attributes.items():
@@ -253,38 +254,59 @@ class Trials:
     def _next(self, missing: list[Values]) -> Values | None:
         """Return the combination whose trial is the next one; None if first packings of a combination ran instead.
 
-        Shortened runs of all come first. The best one is completed, each of the others is compared with it, and those that
-        are left run their first packings with all cycles. Then the best ones are completed first. All decisions depend on
-        results alone that are the same after a stop, whatever was finished before it.
+        The first parts of the runs of all come first. The best one is completed, and each of the others is compared with it.
+        Those that are left continue to the next part, after which they are compared again, and finally run their first
+        packings with all cycles. Then the best ones are completed first. All decisions depend on results alone that are the
+        same after a stop, whatever was finished before it.
         """
         for values in missing:
             if _key(values) not in self._begun:
                 self._begin(values)
                 return None
-        shortened = self._search.shortened is not None
-        missing.sort(key=self._order(short=shortened))
-        if shortened and self._complete():
-            for values in missing:
-                begun = self._begun[_key(values)]
-                if begun.found is None:
-                    return values if self._continue(begun).dropped else None
-            missing.sort(key=self._order(short=False))
+        levels = range(len(self._search.parts))
+        if levels:
+            missing.sort(key=self._order(short=True))
+            if not self._complete():
+                return missing[0]
+        begun = [(values, self._begun[_key(values)]) for values in missing]
+        # All are compared before any of them continues: the scatter of all is the same after a stop.
+        for level in levels:
+            for values, each in begun:
+                if each.compared == level and each.found is None:
+                    each.compared += 1
+                    each.found = self._dropped_after_few_cycles(each.candidate)
+                    if each.found is not None:
+                        return values
+            for _, each in begun:
+                if each.found is None and len(each.candidate.short) == level + 1:
+                    self._extend(each)
+                    return None
+        missing.sort(key=self._order(short=False))
         return missing[0]
 
     def _begin(self, values: Values) -> _Begun:
-        """Return a design after its first packings, with few cycles if runs can be shortened."""
-        search, candidate = self._search, self._search.candidate(values)
-        found = (search.shortened or search).evaluate(candidate, search.stages[0])
-        candidate.short = found if search.shortened else None
-        begun = self._begun[_key(values)] = _Begun(candidate, None if search.shortened else found)
+        """Return a design after the first part of its first packings."""
+        begun = self._begun[_key(values)] = _Begun(self._search.candidate(values))
+        self._extend(begun)
         return begun
+
+    def _extend(self, begun: _Begun) -> None:
+        """Run the first packings of a design to the end of the next part, or with all cycles if no part is left."""
+        search, candidate = self._search, begun.candidate
+        candidate.room = MOST_PAUSED - sum(each.candidate.memory for each in self._begun.values())
+        parts = [] if any(each.missing for each in candidate.short) else search.parts[len(candidate.short) :]
+        found = (parts[0] if parts else search).evaluate(candidate, search.stages[0])
+        if parts:
+            candidate.short.append(found)
+        else:
+            begun.found = found
 
     def _continue(self, begun: _Begun) -> Evaluation:
         """Return the result of the first packings of a design: with all cycles, unless few of them exclude it."""
-        if begun.found is None:
+        while begun.found is None:
             begun.found = self._dropped_after_few_cycles(begun.candidate)
-        if begun.found is None:
-            begun.found = self._search.evaluate(begun.candidate, self._search.stages[0])
+            if begun.found is None:
+                self._extend(begun)
         return begun.found
 
     def _order(self, *, short: bool) -> Callable[[Values], float]:
@@ -299,7 +321,7 @@ class Trials:
         found |= {key: (each.candidate, each.found) for key, each in self._begun.items()}
         parts = []
         for candidate, own in found.values():
-            each = instance(candidate.short if short or own is None else own, Evaluation)
+            each = candidate.short[0] if short else instance(own, Evaluation)
             values = np.mean(each.packings[:, :first], axis=1)
             parts.append(self._search.objective_values(candidate.mass, replace(each, values=values))[0])
         signs = np.array([each.sign for each in self._search.objectives])
@@ -345,32 +367,32 @@ class Trials:
         return self._rival(mass, found.widened(scatter), rivals, scatter)
 
     def _dropped_after_few_cycles(self, candidate: Candidate) -> Evaluation | None:
-        """Return the result of the shortened runs of a design if a complete trial excludes it; otherwise None."""
-        search, found = self._search, candidate.short
+        """Return the result of a design after the latest parts of its runs if a complete trial excludes it; else None."""
+        search, level = self._search, len(candidate.short) - 1
         rivals = self._complete()
         if self._all:  # later ones may be complete or not after a stop
             rivals = dict(list(rivals.items())[:1])
-        if search.shortened is None or found is None or found.missing or not rivals:
+        if level < 0 or candidate.short[level].missing or not rivals:
             return None
+        found, cycles = candidate.short[level], search.parts[level].cycles
         known = {number: _stored(search, trial) for number, trial in enumerate(self._stored)}
         candidates = [each for each, _ in known.values()] + [each.candidate for each in self._begun.values()]
-        scatter = pooled([each.short for each in candidates if each.short is not None and not each.short.missing])
-        of_rivals = [known[number] for number in rivals]
+        scatter = pooled([part for each in candidates for part in each.short[level : level + 1] if not part.missing])
         changes = [
-            result.packings[:, : search.stages[0]].mean(axis=1) / before.values
-            for each, result in of_rivals
-            if (before := each.short) is not None and not before.missing
+            result.packings[:, : search.stages[0]].mean(axis=1) / part.values
+            for each, result in (known[number] for number in rivals)
+            for part in each.short[level : level + 1]
+            if not part.missing
         ]
         if not changes or np.any(np.array(changes) <= 0):
             return None
-        bias = search.transient(found, changes)
+        bias = search.transient(found, cycles, changes)
         wide = found.widened(scatter)
         rival = self._rival(candidate.mass, replace(wide, intervals=wide.intervals + bias), rivals, scatter)
         if rival is None:
             return None
-        runs = f"{candidate.ran} of {search.count} packings and {search.shortened.cycles} of {search.cycles} cycles"
+        runs = f"{candidate.ran} of {search.count} packings and {cycles} of {search.cycles} cycles"
         reason = f"dropped after {runs}: worse than trial {rival}"
-        cycles = search.shortened.cycles
         return replace(found, intervals=found.intervals + bias, dropped=True, cycles=cycles, reason=reason)
 
     def _rival(self, mass: float, found: Evaluation, rivals: Mapping[int, Any], scatter: Any) -> int | None:
@@ -393,7 +415,8 @@ class _Begun:
     """A design after its first packings."""
 
     candidate: Candidate
-    found: Evaluation | None  # Their result with all cycles; None as long as only shortened runs are known
+    found: Evaluation | None = None  # Their result with all cycles, or that with which it is dropped
+    compared: int = 0  # Number of parts of its runs after which it was compared
 
 
 def _key(values: Values) -> str:
@@ -422,11 +445,11 @@ def _result(search: DesignSearch, trial: Any) -> tuple[float, Evaluation]:
 def _stored(search: DesignSearch, trial: Any) -> tuple[Candidate, Evaluation]:
     """Return the design of a finished trial, which needs no time, and its result."""
     mass, found = _result(search, trial)
-    short = trial.user_attrs["short"]
-    if short is not None:
-        packings = np.array(short, float)
+    short = []
+    for packings in (np.array(each, float) for each in trial.user_attrs["short"]):
         values = packings.mean(axis=1)
-        short = Evaluation(values, np.full(values.shape, np.nan), packings, float(not np.isfinite(values).all()))
+        nothing = np.full(values.shape, np.nan)
+        short.append(Evaluation(values, nothing, packings, float(not np.isfinite(values).all())))
     return Candidate(None, mass, ran=trial.user_attrs["ran"], short=short), found
 
 

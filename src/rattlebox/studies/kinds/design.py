@@ -158,17 +158,18 @@ class Design(Study):
     are those of all packings, and the least time is stated, too.
 
     With `drop`, if damping ratios by "shaking" are the only objectives beside the mass and there are at least 16 cycles, the
-    first packings run with a quarter of the cycles, at least 8, before they run with all. If all combinations are tried, the
-    best one of them is completed; each of the others is dropped if that one (otherwise any complete trial) excludes it as
-    above, although its half width is increased by
+    first packings stop after a quarter of the cycles, at least 8, and with particles after each doubling of them, as long as
+    half of the cycles are left. If all combinations are tried, the best one after the first part is completed; after each
+    part, each of the others is dropped if that one (otherwise any complete trial) excludes it as above, although its half
+    width is increased by
 
         abs(d) log2(N / n) + abs(f) (r - 1)
 
     with its objective f after n cycles, the change d of f from the first to the second half of the evaluated cycles, the
     largest number N of cycles, and the ratio r, above one, by which the objective of the complete trial changed from then
     on. The first term bounds the change of a motion that relaxes, or compacts with the logarithm of time; the second one
-    is for changes that begin later. The runs of trials that are left start again, so that complete trials have the bits of a
-    search without `drop`.
+    is for changes that begin later. Runs of particles that are left continue from there, up to 500 MB of their states in
+    memory; others, and those of balls, start again. In both ways complete trials have the bits of a search without `drop`.
 
     `bare_decides`: at the amplitude with the least damping ratio the damper adds less than a tenth of the ratio of the
     structure alone, or less than the half width of the interval. A warning is issued if this holds for the best trial.
@@ -253,7 +254,7 @@ class Design(Study):
                 "point": self.point,
             },
         )
-        if (self.drop or self.precision is not None) and count < FIRST + (search.shortened is None):
+        if (self.drop or self.precision is not None) and count < FIRST + (not search.parts):
             name = "drop" if self.drop else "precision"
             raise Hint(
                 f"{name} decides after {FIRST} packings, and packings = {count} has no more of them",

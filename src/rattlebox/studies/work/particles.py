@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from rattlebox.analysis.cycle_loss import UNSTEADY, cycle_loss
 from rattlebox.analysis.shaken import MIN_SAMPLES
 from rattlebox.core._core import Status
 from rattlebox.engines.continued import checked_end
-from rattlebox.engines.dem import continue_dem, simulate_dem
+from rattlebox.engines.dem import PausedRun, continue_dem, run_part, simulate_dem
 from rattlebox.engines.dem_continued import pack_continued
 from rattlebox.engines.end_state import EndState
 from rattlebox.engines.simulate import continue_run, simulate_many
@@ -379,27 +379,56 @@ def _check_samples(case: Case, name: str) -> None:
         )
 
 
+class SteadyRun(NamedTuple):
+    """A run of a shaken case, and the state from which its later parts continue; None if they start anew."""
+
+    run: Run
+    paused: PausedRun | None
+
+
 def steady_run(
     case: Case,
     *,
     frequency: float,
     kept: int,
     extensions: int,
+    part: float = 1.0,
+    before: PausedRun | None = None,
+    room: float = 0.0,
     threads: int | None = None,
     progress: Callable[..., bool] | None = None,
-) -> Run:
-    """Run a shaken case until the motion in its last cycles is steady.
+) -> SteadyRun:
+    """Run a shaken case until the motion in its last cycles is steady, or only a part of it.
 
-    `frequency`: frequency of the motion [Hz].
+    `frequency`: frequency of the motion [Hz]. `part`: share of the duration; with less than all, the motion need not be
+    steady. `before`: an earlier part of the run. `room`: largest state that is returned [bytes].
     """
-    more = case.model_copy(update={"duration": kept / frequency})
-    end = None
-    for number in range(extensions + 1):
-        if case.particle_dampers:
-            run, end = continue_dem(more if number else case, end, threads=threads, progress=progress)
-        else:
-            longer = case.model_copy(update={"duration": case.duration + number * kept / frequency})
-            (run,) = simulate_many([longer], threads=threads, progress=progress or False)
+    if not case.particle_dampers:
+        return SteadyRun(_steady_impact_run(case, frequency, kept, extensions, part, threads, progress), None)
+    run, paused = run_part(case, part, before, threads=threads, progress=progress)
+    if part < 1:
+        return SteadyRun(run, paused if run.ok and paused.memory <= room else None)
+    more, end = case.model_copy(update={"duration": kept / frequency}), paused.state
+    for _ in range(extensions):
+        if not run.ok or cycle_loss(run, frequency, kept).is_steady:
+            break
+        run, end = continue_dem(more, end, threads=threads, progress=progress)
+    return SteadyRun(run, None)
+
+
+def _steady_impact_run(
+    case: Case,
+    frequency: float,
+    kept: int,
+    extensions: int,
+    part: float,
+    threads: int | None,
+    progress: Callable[..., bool] | None,
+) -> Run:
+    """Run a shaken 1-D case, ever longer until its motion is steady, or only a part of it."""
+    for number in range(extensions + 1 if part == 1 else 1):
+        longer = case.model_copy(update={"duration": part * case.duration + number * kept / frequency})
+        (run,) = simulate_many([longer], threads=threads, progress=progress or False)
         if not run.ok or cycle_loss(run, frequency, kept).is_steady:
             break
     return run
