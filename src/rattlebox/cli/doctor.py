@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 import re
+from collections import Counter
 from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, requires, version
 
@@ -45,8 +46,15 @@ def print_environment() -> None:
 
 
 def _libraries() -> Iterator[tuple[str, str]]:
-    """Yield the name of each required and optional library, and the extra that installs it, "" if it is required."""
+    """Yield the name of each required and optional library, and the extra that installs it, "" if it is required.
+
+    If several extras install a library, that with the fewest libraries is named.
+    """
+    extras: dict[str, list[str]] = {}
     for line in requires("rattlebox") or ():
         name, extra = re.match(r"[\w.-]+", line), re.search(r"extra == [\"'](.+?)[\"']", line)
         if name and not (extra and extra[1] in _FOR_DEVELOPERS):
-            yield name[0], extra[1] if extra else ""
+            extras.setdefault(name[0], []).append(extra[1] if extra else "")
+    sizes = Counter(extra for names in extras.values() for extra in names)
+    for library, names in extras.items():
+        yield library, "" if "" in names else min(names, key=lambda extra: sizes[extra])

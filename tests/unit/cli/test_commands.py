@@ -176,6 +176,9 @@ def test_doctor_and_materials(monkeypatch: pytest.MonkeyPatch, run_cli: RunCli) 
     shown = run_cli("doctor")[1]
     assert "core" in shown and "numpy" in shown and "pytest" not in shown
     assert all(name in shown for name in ("distributed", "optuna", "pyvista", "nicegui"))
+    # A library of two extras had two lines, since no test counted them.
+    names = [line.split()[0] for line in shown.splitlines() if "optional, " in line or "not installed" in line]
+    assert len(set(names)) == len(names) > 5 and "trimesh" in names
     monkeypatch.setenv("COLUMNS", "80")
     shown = run_cli("materials")[1]
     assert "tungsten_carbide" in shown
