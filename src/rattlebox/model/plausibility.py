@@ -13,6 +13,7 @@ from .dampers import ImpactDamper
 from .elementwise import Vector
 from .harmonics import Harmonic, SineSweep
 from .materials import Material
+from .random_vibration import Random
 from .recorded import Record
 from .shocks import Shock
 from .signals import Sampled, Signal
@@ -40,6 +41,10 @@ _LARGEST_CHANGE = 0.02  # of the response of a mode
 _LONGEST_RECORD = 100.0  # in durations of the run
 _PEAKS = {"m/s^2": (1e-5, 1e5, 100.0), "m": (1e-9, 10.0, 1.0)}
 """Least and largest plausible peak of a motion of the base, the latter also if the unit of a record is assumed."""
+_LARGEST_DENSITY = 1.0
+"""Largest density of usual random vibration [g^2/Hz]."""
+_USUAL_RANDOM = 0.1, 50.0
+"""Least and largest root mean square of usual random vibration [g]."""
 _FASTEST_SHAKER = 10.0  # m/s; shakers reach 3 m/s
 _ROUNDING = 1 + 1e-9  # of an amplitude that is exactly at a limit
 _PERPENDICULAR = 1e-6
@@ -90,8 +95,10 @@ def _note_assumptions(case: Case) -> Iterator[str]:
 
 
 def _check_amplitudes(case: Case) -> Iterator[str]:
-    """Yield a warning for each motion of the base or of a shaker whose amplitude suggests another unit."""
+    """Yield a warning for each motion of the base or of a shaker whose amplitude or density suggests another unit."""
     for name, signal in _named_signals(case):
+        if isinstance(signal, Random) and signal.unit_is_assumed and signal.unit in _PEAKS:
+            yield from _check_density(name, signal)
         amplitude = getattr(signal, "amplitude", None)
         if amplitude is None or signal.unit not in _PEAKS:
             continue
@@ -104,6 +111,19 @@ def _check_amplitudes(case: Case) -> Iterator[str]:
             example = '"15 mm" or "15 g"' if isinstance(case.structure, Shaker) else '"15 g"'
             # With its unit, a large amplitude may be meant, such as that of a gun launch.
             yield f"{name} is {signal.words()}{what}; try: check the amplitude, and give it with its unit, such as {example}"
+
+
+def _check_density(name: str, signal: Random) -> Iterator[str]:
+    """Yield a warning if the numbers of a density without a unit are usual ones in g^2/Hz."""
+    density, (least, most) = signal.corners[:, 1], _USUAL_RANDOM
+    if density.max() <= _LARGEST_DENSITY and least <= signal.rms <= most:
+        squared = "(m/s^2)^2" if signal.unit == "m/s^2" else "m^2"
+        number = f"{density.max():.3g}"
+        yield (
+            f"{name} is {signal.words()} of {amount(signal.rms, str(signal.unit), 3)} RMS, since densities without a unit "
+            f"are in {squared}/Hz here; in g^2/Hz it would be {signal.rms:.3g} g RMS; try: densities with their unit, "
+            f'"{number} g^2/Hz" or "{number} {squared}/Hz"'
+        )
 
 
 def unusual_motion(amplitude: float, frequency: float) -> str:

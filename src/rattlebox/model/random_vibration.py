@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, WithJsonSchema, model_validator
+from pydantic import Field, PrivateAttr, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import ResourceError
 from rattlebox._util.frozen import complete
@@ -22,7 +22,7 @@ from .errors import Hint, at, nearest, one_of
 from .file_signals import FileSignal
 from .files import absolute
 from .records import Column, as_columns
-from .signals import UNIT_NAMES, UNITS, Points
+from .signals import UNIT_NAMES, UNITS, Points, Signal, Unit
 from .units import (
     MOST_MEMORY,
     STANDARD_GRAVITY,
@@ -156,6 +156,7 @@ class Random(FileSignal):
     seed: Annotated[Whole, Field(ge=0)] = 0
     file: str | None = None
     columns: tuple[Column, Column] | tuple[Column] | str | None = None
+    _unit_is_assumed: bool = PrivateAttr(default=False)
 
     @model_validator(mode="wrap")
     @classmethod
@@ -253,6 +254,18 @@ class Random(FileSignal):
                 ["duration"],
             )
         return self
+
+    def placed(self, allowed: Sequence[Unit], place: str) -> Signal:
+        """Return the signal with the unit of the field in which it is used; see `Signal.placed`."""
+        placed = super().placed(allowed, place)
+        if self.unit is None:
+            complete(placed, _unit_is_assumed=True)
+        return placed
+
+    @property
+    def unit_is_assumed(self) -> bool:
+        """Whether the densities have no unit, and that of the field in which they are used is assumed."""
+        return self._unit_is_assumed
 
     @property
     def corners(self) -> NDArray[np.float64]:

@@ -1,5 +1,7 @@
 """A run warns of valid values that are likely slips."""
 
+import re
+
 import pytest
 
 import rattlebox as rb
@@ -70,6 +72,40 @@ def test_accelerations_of_the_base_that_are_too_large_are_noted(kind):
     for amplitude in (3e3, -1e5 * (1 + 1e-12)):  # the limit itself is allowed, whatever the rounding
         usual = rb.Case(structure=beam, base=motion.model_copy(update={"amplitude": amplitude}), duration=9)
         assert not any("usual" in each for each in plausibility_notes(usual))
+
+
+@pytest.mark.parametrize(
+    ("psd", "options", "noted"),
+    [
+        ([(20, 0.05), (1500, 0.05)], {}, True),
+        ([("30 Hz", 0.002), (400, 0.9)], {}, True),
+        ([(20, "0.05 g^2/Hz"), (1500, "0.05 g^2/Hz")], {}, False),
+        ([(20, "0.05 (m/s^2)^2/Hz"), (1500, "0.05 (m/s^2)^2/Hz")], {}, False),
+        ([(20, 0.05), (1500, 0.05)], {"unit": "m/s^2"}, False),
+        ([(20, 0.05), (1500, 0.05)], {"unit": "g"}, False),
+        ([(20, 4.8), (1500, 4.8)], {}, False),  # too much in g^2/Hz
+        ([(0.1, 1e-4), (20, 1e-4)], {}, False),  # as of a floor: too little in g^2/Hz
+        ("minimum_integrity", {}, False),
+    ],
+)
+def test_densities_without_a_unit_are_noted(psd, options, noted):
+    """A density without a unit whose numbers are usual in g^2/Hz has a warning, whose advice ends it.
+
+    Bare amplitudes had a warning, but densities have another field, which no check read.
+    """
+    beam, motion = rb.SDOF(mass=20, stiffness=8e4), rb.Random(psd, "0.4 s", **options)
+    case = rb.Case(structure=beam, base=motion, duration="0.3 s")
+    for again in (case, case.replaced({"duration": "0.2 s"}), case.model_copy()):
+        found = [each for each in plausibility_notes(again) if "RMS" in each]
+        assert len(found) == noted
+    for note in found:
+        assert note.startswith("warning: base is random acceleration of ") and "it would be " in note
+        for advised in re.findall(r'"([^"]+)"', note):
+            stated = rb.Random([(20, advised), (1500, advised)], "0.4 s")
+            assert not plausibility_notes(rb.Case(structure=beam, base=stated, duration="0.3 s"))
+    assert not plausibility_notes(
+        rb.Case(structure=beam, load=rb.Random([(20, 0.05), (90, 0.05)], "1 s"), duration=0.1)
+    )
 
 
 def test_sizes_in_metres_are_noted():
