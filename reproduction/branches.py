@@ -29,7 +29,7 @@ PLACES = (0.0, 1.0)  # start of the ball in its cavity over the gap
 SEEDS = 5  # motions are sought from the runs at each fifth frequency
 MOST = 8  # contacts in a cycle of the motions that are followed
 MANY = 6.0  # mean contacts in a cycle from which the ball chatters
-LOWEST = 0.3  # approach speed at the lower edge of the figure [mm/s]
+LOWEST = 0.3e-3  # approach speed at the lower edge of the figure [m/s]
 MODEL = "constant restitution"
 MARKS = {"pitchfork": "D", "flip": "s", "fold": "o", "torus": "^", "grazing": "x", "impact lost": "x"}
 """Markers of the special points."""
@@ -48,7 +48,7 @@ def _case(frequency: float, place: float = 1.0) -> Case:
     duration = (ceil(SETTLING * frequency) + ceil(COUNTED * frequency)) / frequency
     # The ball rides along at first, so that a start in the centre can lead to another motion than one at a wall.
     state = riding(AMPLITUDE, frequency, place * GAP)
-    options: dict[str, Any] = {"method": Newton(), "duration": duration, "times": (0.0, duration)}
+    options: dict[str, Any] = {"method": Newton(), "duration": duration, "times": (0.0,)}
     return harmonic_case(MODELS[MODEL], amplitude=AMPLITUDE, frequency=frequency, state=state, **options)
 
 
@@ -113,11 +113,12 @@ def _table(branches: Sequence[Branch]) -> dict[str, Any]:
         return np.concatenate([np.asarray(branch.data[name].values) for branch in branches])
 
     cycles = np.concatenate([np.full(len(branch), int(branch.data.attrs["cycles"])) for branch in branches])
-    over = "point"
+    over, slowest = "point", joined("slowest_impact")
     return {
         "branch": (over, np.repeat(np.arange(len(branches)), [len(branch) for branch in branches])),
         "at": (over, joined("value")),
-        "slowest": (over, joined("slowest_impact")),
+        "slowest": (over, slowest),
+        "drawn": (over, np.maximum(slowest, LOWEST)),
         "contacts": (over, joined("impacts") / cycles),
         "repeats": (over, cycles),
         "stable": (over, joined("stable").astype(float)),
@@ -173,7 +174,7 @@ def draw(figure: StyledFigure, data: xr.Dataset) -> None:
         some = named.isel(point=named.special.values == kind)
         if some.point.size:
             style: dict[str, Any] = {"ms": 3, "mew": 0.6, "clip_on": False, "color": INK, "mfc": "none"}
-            top.plot(some.located, np.maximum(1e3 * some["slowest"], LOWEST), mark, **style, label=MEANING[kind])
+            top.plot(some.located, 1e3 * some["drawn"], mark, **style, label=MEANING[kind])
             bottom.plot(some.located, some["contacts"], mark, **style)
     bottom.plot(data.frequency, data["mean"], ".", color="0.55", ms=2.5, zorder=0)
     bottom.axhspan(MANY, float(data["mean"].max()) + 1, color="0.93", zorder=-1, lw=0)
@@ -186,7 +187,7 @@ def draw(figure: StyledFigure, data: xr.Dataset) -> None:
     unique = dict(zip([*labels, *words], [*handles, *more], strict=True))
     figure.legend(unique.values(), unique.keys(), loc="outside upper left", ncols=4)
     top.set_yscale("log")
-    top.set_ylim(bottom=LOWEST)
+    top.set_ylim(bottom=1e3 * LOWEST)
     top.set_ylabel("Speed of the slowest impact (mm/s)")
     bottom.set_ylabel("Contacts in a cycle (uneven scale)")
     bottom.set_yscale("function", functions=(lambda y: np.sqrt(np.maximum(y, 0)), lambda y: y**2))

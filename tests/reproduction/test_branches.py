@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from tests.reproduction.test_drawn import unknown_marks
 
 from reproduction import branches
+from reproduction.files import grouped, record_cases
 from reproduction.harmonic import paper_two_impacts
 from reproduction.judge import verdict
 
-FEW = np.array([14.0, 22.0])
+FEW = np.array([14.0, 16.6])
 
 
 @pytest.fixture(scope="module")
@@ -16,7 +18,9 @@ def data():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(branches, "FREQUENCIES", FEW)
         patch.setattr(branches, "SEEDS", 1)
-        yield branches.FIGURE.data()
+        with record_cases() as runs:
+            found = branches.FIGURE.data()
+        yield found.assign_attrs(runs=runs)
 
 
 def test_branch_of_two_impacts_is_the_closed_form(data):
@@ -47,10 +51,16 @@ def test_symmetry_is_lost_at_13_6_hertz(data):
             assert (below - 1) * (above - 1) < 0
 
 
+def test_runs_are_variants_of_the_case(data):
+    """The runs of the figure differ from its case in numbers only; the files of its runs were written in slow tests only."""
+    grouped(branches.FIGURE.cases(), data.attrs["runs"])
+
+
 def test_drawn_and_judged(data):
-    """The figure can be drawn, and the claim depends on the data."""
+    """The figure draws numbers of its dataset only, and the claim depends on the data."""
     figure = branches.FIGURE
-    assert len(figure.draw(data).axes) == 2
+    drawn = figure.draw(data)
+    assert len(drawn.axes) == 2 and not unknown_marks(drawn, data)
     assert "followed by continuation" in figure.caption(data)
     changing = data.assign(contacts=data.contacts.where(data["at"] > 15, 3))
     assert verdict(figure.claims(changing)[0]) == "reproduced"
