@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from tests.support import impact_cases
-from tests.support.exact import impact_oscillator, masri_caughey, shaken
+from tests.support.exact import impact_oscillator, masri_caughey, riding_ball, shaken
 
 import rattlebox as rb
 
@@ -306,6 +306,53 @@ def test_sticking_and_lost_impacts_of_a_ball():
     curve = rb.continue_point(located["impact lost"], axes, limits, step=0.2, points=6, progress=False)
     assert curve.point.size > 8
     np.testing.assert_allclose(curve[axes[0]].values, curve[axes[1]].values, rtol=1e-9)
+
+
+def damped_by_a_plastic_ball(exact):
+    """Return the case of a plastic ball in an oscillator."""
+    return rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio=exact.zeta),
+        damper=rb.ImpactDamper(
+            ball=impact_cases.ball(exact.mass_ratio), gap=exact.gap, contact=rb.Tsuji(restitution=0.5)
+        ),
+        load=rb.Harmonic(amplitude=1.0, frequency=f"{exact.omega!r} rad/s"),
+        method=rb.Newton(restitution=0.0),
+        duration=400.0,
+    )
+
+
+@pytest.mark.parametrize(
+    ("mass_ratio", "gap", "zeta", "omega"),
+    [(0.1, 1.0, 0.02, 0.9), (0.1, 2.0, 0.02, 0.9), (0.05, 0.5, 0.05, 1.3), (0.2, 1.0, 0.05, 1.1), (0.2, 0.5, 0.1, 0.7)],
+)
+def test_ball_that_rides_on_the_walls(mass_ratio, gap, zeta, omega):
+    """Impacts and multipliers of a plastic ball in an oscillator are those of the motion of both bodies, by its equations.
+
+    A map that began while the ball rests had one impact more, of some nm/s; sticking was compared for an oscillator that
+    rests at a stop and for a ball on a prescribed motion.
+    """
+    exact = riding_ball.motion(mass_ratio, gap, zeta, omega)
+    orbit = rb.find_orbit(damped_by_a_plastic_ball(exact))
+    assert orbit.sticks and orbit.is_symmetric
+    assert len(orbit.impacts) == 2
+    for impact in orbit.impacts:
+        assert impact.approach_speed == pytest.approx(exact.approach, rel=1e-10)
+    sizes = np.sort(np.abs(orbit.multipliers))
+    np.testing.assert_allclose(sizes[:2], 0, atol=1e-12)
+    np.testing.assert_allclose(sizes[2:], np.sort(np.abs(exact.multipliers())), rtol=1e-7)
+
+
+def test_ball_ceases_to_ride_on_the_walls():
+    """The ball ceases to ride at the gap at which no force would press it on the wall directly after the impact."""
+
+    def pressing(gap):
+        return riding_ball.motion(0.1, gap, 0.02, 1.1).pressing
+
+    limit = brentq(pressing, 2.0, 6.0, xtol=1e-12)
+    orbit = rb.find_orbit(damped_by_a_plastic_ball(riding_ball.motion(0.1, 0.8 * limit, 0.02, 1.1)))
+    branch = rb.continue_orbit(orbit, "damper.gap", (0.7 * limit, 1.1 * limit), progress=False)
+    (point,) = (each for each in branch.specials if each.kind == "sticking")
+    assert point.value == pytest.approx(limit, rel=1e-9)
 
 
 def test_three_hundred_points():

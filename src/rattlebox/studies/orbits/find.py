@@ -36,6 +36,8 @@ _OBSERVED = 200
 """Number of cycles in which close returns are sought."""
 _TRIED = 6
 """Number of close returns from which a search begins."""
+_RESTING = 1e-7
+"""Gap over its largest value in the motion, below which bodies may rest on each other."""
 _MARGIN = 0.02
 """Smallest time from the beginning to an impact, over the period of the loads."""
 
@@ -292,13 +294,20 @@ def away_from_impacts(returns: ReturnMap, state: Vector) -> tuple[ReturnMap, Vec
     length = returns.cycles * period
     near = np.minimum(begins, length - ends).min() < _MARGIN * period
     gap, _ = motion.gaps()
-    if not near and (gap[0] > 0).all():
+    # Bodies that rest on each other have a gap of the size of rounding errors.
+    is_open = (gap > _RESTING * np.abs(gap).max(axis=0) * motion.sticks).all(axis=1)
+    if not near and is_open[0]:
         return returns, state
     # The middle of the longest flight of all bodies.
     edges = np.concatenate([[0.0], ends, [length]]), np.concatenate([begins, [length]])
     free = edges[1] - edges[0][:-1]
     k = int(np.argmax(free))
     middle = 0.5 * (edges[0][k] + edges[1][k])
+    if motion.sticks and is_open.any():  # a rest follows the last impact
+        changes = np.flatnonzero(np.diff(np.concatenate([[False], is_open, [False]]).astype(int)))
+        first, last = changes[::2], changes[1::2] - 1
+        k = int(np.argmax(motion.time[last] - motion.time[first]))
+        middle = 0.5 * (motion.time[first[k]] + motion.time[last[k]])
     there = motion_of(returns.forcing.shifted(returns.phase), state, middle)
     if there is None or there.state[-1].shape != state.shape:
         return returns, state

@@ -23,6 +23,7 @@ from rattlebox.studies.orbits.grazing import (
     Indicator,
     Passage,
     approach,
+    begins,
     beyond,
     is_pressed,
     passage_words,
@@ -169,6 +170,8 @@ class Follower:
         if _sequence(point) == _sequence(after):
             return False
         low, high = self.corrector.change(point, after, _sequence)
+        if point.contacts != after.contacts and not any(map(begins, (low, high))):
+            return True  # no impact begins or ends here
         return bool(np.abs((high.orbit.state - low.orbit.state) / point.scale).max() > _JUMP)
 
     def _proceeds(self, proceed: Callable[[], bool], loop: tuple[float, int, int, bool]) -> bool:

@@ -221,6 +221,12 @@ def _limit(corrector: Corrector, point: Point, contact: int) -> float:
     return located
 
 
+def begins(point: Point) -> bool:
+    """Return whether the slowest impact of a motion is so slow that it has just begun."""
+    slow = point.orbit.slowest_impact
+    return slow is not None and slow.approach_speed < _ENOUGH["slow"] * _size(point, Indicator("slow", slow.contact))
+
+
 def is_pressed(point: Point) -> bool:
     """Return whether bodies are pressed together at the slowest impact of a motion, as in chatter."""
     touch = touch_at(point.returns, point.orbit.state, [point.value], impact=True)

@@ -34,6 +34,8 @@ _FOLLOWED = (1e-3, 1e-4, 1e-5, 1e-6)
 impact, at which there is a motion without the impact."""
 _LEVELS = ((2e-5, 1e-8), (3e-4, 5e-5, 8e-6, 8e-7, 1e-8))
 """Smallest gaps that lead from there to the grazing; the last one is extrapolated to zero."""
+_ALONG = 1e-3
+"""Smallest part of a parameter in the direction of the curve with which the plane normal to it is used."""
 _SAME_TIME = 0.1
 """Largest change of the time of the near miss between two points, over that of the map."""
 
@@ -137,6 +139,8 @@ class GrazingCurve(SmoothCurve):
     def row(self, returns: ReturnMap, state: Vector, values: Vector, scale: Vector, normal: Vector) -> Row | None:
         """Return the motion that grazes, reached from one with a small gap, and the values of the parameters there."""
         n = state.size
+        if np.abs(normal[n:]).max() > _ALONG:  # across the curve in the plane of the parameters
+            normal = np.concatenate([np.zeros(n), normal[n:]])
         try:
             for levels in _LEVELS:
                 at = state, values
