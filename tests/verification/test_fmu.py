@@ -197,6 +197,25 @@ def test_both_input_times_have_second_order(by: str, input_time: int, tmp_path: 
     assert errors[1] < 2e-4
 
 
+@pytest.mark.parametrize("input_time", [1, 2])
+def test_loads_of_a_structure_have_second_order(input_time: int, tmp_path: Path) -> None:
+    """Loads of the start and of the end of each step approach the run in second order; only dampers alone were tested."""
+    load = rb.Harmonic(amplitude="20 N", frequency="7 Hz")
+    case = structure(load=load, damper=ball(gap="1 m"))
+    expected = float(rb.simulate(case, progress=False).motion.displacement.values[-1].item())
+    errors = []
+    for steps in (300, 1200):
+        with unit(tmp_path / f"{steps}", case, 3) as own:
+            own.initialize(input_time=input_time)
+            h = 0.3 / steps
+            for k in range(steps):
+                time = (k if input_time == 1 else k + 1) * h
+                own.step(k * h, h, load_1=20 * np.sin(2 * np.pi * 7 * time))
+            errors.append(abs(own.get("displacement_mass")[0] / expected - 1))
+    assert errors[1] < errors[0] / 12
+    assert errors[1] < 1e-3
+
+
 @pytest.mark.parametrize("fmi", VERSIONS)
 def test_coupled_to_a_mass_on_a_spring_it_approaches_the_whole_run(fmi: int, tmp_path: Path) -> None:
     """Two FMUs, a mass on a spring and a ball, exchange velocity and force and approach the coupled run."""

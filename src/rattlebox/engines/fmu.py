@@ -167,7 +167,8 @@ def fmu_and_notes(
         "modelDescription.xml": _filled(f"fmi{fmi}.xml", words),
         **{f"binaries/{folder}/{model}{file.suffix}": file.read_bytes() for folder, file in libraries.items()},
         "resources/case.bin": packed.data,
-        "resources/input": input.encode(),
+        # A structure is driven by means of its loads over a step, whatever drives a damper alone.
+        "resources/input": (input if alone else "acceleration").encode(),
         "resources/limits": _limits(case, packed).encode(),
         "documentation/index.html": _filled("fmu.html", words),
     }
