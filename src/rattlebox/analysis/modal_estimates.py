@@ -35,6 +35,7 @@ _PER_RATIO = {"damping_ratio": 1.0, "loss_factor": 2.0, "specific_damping_capaci
 """Measures of damping over the damping ratio, of those that are proportional to it."""
 _SHARE = 0.5  # of the largest mobility, from which on samples belong to the circle of a resonance
 _FEWEST = 5  # samples of a resonance
+_JUMP = 0.3  # share of 1 / |H|^2 by which samples may leave a parabola through three others
 
 
 class Resonance(NamedTuple):
@@ -202,7 +203,8 @@ def half_power(response: xarray.Dataset | xarray.DataArray) -> Resonance:
     Raises
     ------
     ValueError
-        If the receptance is not known on both sides of its peak down to 0.71 of it, or there are fewer than 5 samples.
+        If the receptance is not known on both sides of its peak down to 0.71 of it, jumps there from one motion to another, or
+        there are fewer than 5 samples.
 
     Notes
     -----
@@ -236,6 +238,7 @@ def half_power(response: xarray.Dataset | xarray.DataArray) -> Resonance:
     below, above = np.flatnonzero(y[:k] >= level), np.flatnonzero(y[k:] >= level)
     if not below.size or not above.size:
         raise ValueError("the receptance does not fall to 0.71 of its peak on both sides; a wider range is needed")
+    _require_no_jump(x, y, int(below[-1]), k + max(int(above[0]), 1))
     first, second = (_crossing(x, y, side, level) for side in (below[-1], k + above[0] - 1))
     angle = 0.5 * math.atan2(second - first, second + first)
     return Resonance(math.sqrt((first + second) / (2 * math.cos(2 * angle))), math.sin(angle), math.nan)
@@ -257,7 +260,8 @@ def circle_fit(response: xarray.Dataset | xarray.DataArray) -> Resonance:
     Raises
     ------
     ValueError
-        If fewer than 5 samples have at least half of the largest mobility.
+        If fewer than 5 samples have at least half of the largest mobility, or they are of one flank of the resonance only, as
+        next to a jump.
 
     Notes
     -----
@@ -317,6 +321,11 @@ def circle_fit(response: xarray.Dataset | xarray.DataArray) -> Resonance:
 
     scales, least = [1.0, guess[1], guess[2]], 1e-15
     found = least_squares(error, guess, x_scale=scales, xtol=least, ftol=least, gtol=least).x
+    if not f[0] <= found[1] <= f[-1]:
+        raise ValueError(
+            f"the samples used, from {f[0]:g} to {f[-1]:g} Hz, are of one flank of the resonance, as next to a jump from one "
+            "motion to another; try: rb.backbone or rb.damping_curve"
+        )
     fitted = centre + radius * np.exp(1j * angles(found))
     misfit = float(np.abs(fitted - y / scale).max())
     return Resonance(float(found[1]), float(abs(found[2])), misfit)
@@ -339,6 +348,21 @@ def _samples(response: Any) -> tuple[FloatArray, NDArray[np.complex128]]:
 def _parabola(x: FloatArray, y: FloatArray) -> FloatArray:
     """Return the coefficients of the parabola through three points."""
     return np.asarray(np.polyfit(x, y, 2))
+
+
+def _require_no_jump(x: FloatArray, y: FloatArray, first: int, last: int) -> None:
+    """Raise if 1 / |H|^2 changes from one sample to the next in another way than along a parabola, as of one motion."""
+    for i in range(first, last):
+        if max(y[i : i + 2]) <= 2 * min(y[i : i + 2]):
+            continue
+        low = min(max(i - 1, 0), y.size - 4)
+        near, values = x[low : low + 4] - x[i], y[low : low + 4]
+        expected = np.polyval(_parabola(near[:3], values[:3]), near[3])
+        if abs(expected - values[3]) > _JUMP * values.max():
+            raise ValueError(
+                f"the response jumps from one motion to another between {x[i] ** 0.5:g} and {x[i + 1] ** 0.5:g} Hz, where it has "
+                "no half-power bandwidth, or the steps of the frequency are too long; try: rb.backbone or rb.damping_curve"
+            )
 
 
 def _crossing(x: FloatArray, y: FloatArray, k: int, level: float) -> float:

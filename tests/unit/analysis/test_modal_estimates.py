@@ -146,3 +146,21 @@ def test_wrong_arguments_are_refused(call: Any, message: str) -> None:
     """Unknown names, units of other quantities and too few samples are errors with what is allowed."""
     with pytest.raises(ValueError, match=message):
         call()
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("drop", [0.1, 0.25, 0.5])
+@pytest.mark.parametrize("gone", [2, 5])
+def test_a_jump_beside_the_peak_has_no_estimate(side: int, drop: float, gone: int) -> None:
+    """A response that jumps beside its largest value is refused; all functions had resonances with both flanks before."""
+    frequency = 60 + 0.1 * np.arange(-40, 41)
+    r = frequency / 60
+    values = 1e-4 / (1 - r**2 + 0.02j * r)
+    beyond = side * np.arange(-40, 41) > -gone  # the peak itself is not reached: the motion changes before it
+    values[beyond] = drop * values[40 - side * gone]
+    response = xr.DataArray(values, {"frequency": frequency}, attrs={"units": "m/N"})
+    with pytest.raises(ValueError, match="jumps from one motion"):
+        analysis.half_power(response)
+    if drop < 0.5:
+        with pytest.raises(ValueError, match=r"one flank|samples have half"):
+            analysis.circle_fit(response)
