@@ -24,6 +24,7 @@ from .files import BINARY, Array, check_finite, existing, read_arrays
 from .text_rows import (
     Row,
     Rows,
+    empty_at_end,
     is_number,
     is_of_numbers,
     numbers_by_rows,
@@ -533,7 +534,10 @@ def _column_indices(
     available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in listed)
     if columns is None:
         if len(names) != needed:
+            is_time = bool(_TIMES.fullmatch(_without_unit(names[0]))) if names else False
             advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
+            if advice and is_time:
+                advice = "a column of values beside that of the times"
             if len(names) > needed:
                 advice = f"columns = {[2] if rises and needed == 1 else list(range(1, needed + 1))}"
             if len(names) > needed == 1 and rises:
@@ -627,9 +631,17 @@ def _layout(
     if start is None:
         return None
     head = [row for row in lines[start:] if not row.is_comment]
-    if all(not row.cells[0] for row in head):  # a delimiter at the beginning of each line
+    leading = int(all(not row.cells[0] for row in head))  # a delimiter at the beginning of each line
+    if leading:
         lines = [row._replace(cells=row.cells[1:] if not row.cells[0] else row.cells) for row in lines]
         head = [row._replace(cells=row.cells[1:]) for row in head]
+    # A heading above a column without any value is not that of a column beside it.
+    width = max((len(row.cells) for row in head[:_PROBED]), default=0)
+    trailing = min((empty_at_end(row, dialect) for row in head[:_PROBED]), default=0)
+    for k, row in enumerate(lines[:start] if leading or trailing else ()):
+        first = leading * (len(row.cells) == leading + width + trailing)
+        if len(row.cells) == first + width + trailing:
+            lines[k] = row._replace(cells=row.cells[first : first + width])
     if dialect.delimiter == "," and comma_is_both(
         [row.cells for row in head[:_PROBED]], [r.cells for r in lines[:start]]
     ):

@@ -7,7 +7,7 @@ import io
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, takewhile
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -249,6 +249,13 @@ def _as_rows(file: Path, text: Sequence[str], dialect: Dialect) -> list[Row]:
         if cells:
             lines.append(Row(number, cells, is_comment, content))
     return lines
+
+
+def empty_at_end(row: Row, dialect: Dialect) -> int:
+    """Return the number of empty cells at the end of a line, which are not among its cells."""
+    if dialect.delimiter is None:
+        return 0
+    return sum(1 for _ in takewhile(lambda cell: not cell.strip(), reversed(row.content.split(dialect.delimiter))))
 
 
 def is_number(cell: str) -> bool:

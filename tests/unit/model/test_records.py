@@ -515,3 +515,37 @@ def test_a_file_in_place_of_numbers(tmp_path: Path) -> None:
         else:
             assert signal.peak == pytest.approx(peak, rel=1e-12)
         assert rb.Case.from_toml(case.to_toml()) == case and "gal" not in case.to_toml()
+
+
+@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+@pytest.mark.parametrize(
+    ("heading", "row", "options", "unit", "step"),
+    [
+        (["time (ms)", "acc (g)", "force (N)"], "{t},{y},", {}, "g", 0.005),
+        (["no", "time (ms)", "acc (cm/s^2)"], ",{t},{y}", {}, "cm/s^2", 0.005),
+        (["no", "time (ms)", "acc (mg)", "force (N)"], ",{t},{y},", {}, "mg", 0.005),
+        (["time (ms)", "acc (g)", "a", "b"], "{t},{y},,", {"columns": "acc (g)"}, "g", 0.005),
+        (["acc (g)", "remark (mm)"], "{y},", {"dt": "2 ms"}, "g", 0.002),
+    ],
+)
+def test_headings_above_empty_columns_are_left_out(
+    delimiter: str, heading: Any, row: str, options: Any, unit: str, step: float, tmp_path: Path
+) -> None:
+    """Headings stay above their columns if a column at the edge is empty; only full columns, or cells, were tested."""
+    lines = [",".join(heading), *(row.format(t=5 * k, y=0.25 * (k % 3)) for k in range(40))]
+    (tmp_path / "log.csv").write_text("\n".join(lines).replace(",", delimiter) + "\n")
+    record = rb.Record.from_file(tmp_path / "log.csv", **options)
+    factor = {"g": 9.80665, "mg": 9.80665e-3, "cm/s^2": 0.01}[unit]
+    assert max(record.values) == pytest.approx(0.5 * factor, rel=1e-12)
+    assert record.times[1] == pytest.approx(step, rel=1e-12)
+    assert not list(record.notes())
+
+
+@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+@pytest.mark.parametrize("options", [{}, {"dt": "2 ms"}])
+def test_times_without_values_are_refused(delimiter: str, options: Any, tmp_path: Path) -> None:
+    """Times beside an empty column are refused, also with a step; their units were joined with those of the empty column."""
+    lines = ["time (s),acc (g)", *(f"{0.01 * k:.2f}," for k in range(40))]
+    (tmp_path / "log.csv").write_text("\n".join(lines).replace(",", delimiter) + "\n")
+    with pytest.raises(rb.DataError, match=r"column of values|'s', written above"):
+        rb.Record.from_file(tmp_path / "log.csv", **options)
