@@ -129,6 +129,8 @@ def _kind(part: object) -> str:
 
 def _text(value: Any, unit: str | None = None) -> str:
     """Return the value of a field as text; "" for values that are not set."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
     if value is None or value == ():
         return ""
     if isinstance(value, bool):

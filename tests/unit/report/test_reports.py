@@ -677,3 +677,14 @@ def test_files_are_named_without_the_folders_of_the_author(
 
         assert np.array_equal(read_study("study.toml").run(progress=False).peak, result.peak)
     assert "into the same folder" in page.text
+
+
+@pytest.mark.parametrize("times", [{"dt": "10 ms"}, {"times": np.arange(250) * 0.01}])
+def test_records_of_numbers_are_summarised(times: Any, tmp_path: Path) -> None:
+    """Records that are given by numbers have a report of runs and studies; those of all other cases were read from files."""
+    record = rb.Record(values=np.cos(np.arange(250) * 0.2), unit="m/s^2", **times)
+    case = rb.Case(structure=rb.SDOF(mass="2 kg", frequency="3 Hz", damping_ratio=0.03), base=record, duration="2 s")
+    page = Page(rb.simulate(case, progress=False).report(tmp_path / "run.html"))
+    assert "250 numbers" in page.text
+    study = rb.sweep(case, {"base.scale": [1, 3]}, ["peak"], progress=False)
+    assert "250 numbers" in Page(rb.write_report(study, tmp_path / "study.html")).text
