@@ -23,6 +23,8 @@ ACCELERATION = "m/s^2"
 """Unit of accelerations, which engineers also read in g."""
 _LEAST_IN_G = 0.01
 """Smallest acceleration that is also written in g [g]."""
+_REPEATS = 1e-4
+"""Half width of an interval over its value, below which it does not change the four digits that are written."""
 
 
 def _exponent(value: float, significant: int) -> int:
@@ -157,6 +159,21 @@ def span(lower: float, upper: float, unit: str = "", significant: int = 4) -> st
         divisor, written = in_unit(max(abs(lower), abs(upper)), unit)
     ends = (amount(end / divisor, significant=significant) for end in (lower, upper))
     return f"{' to '.join(ends)} {written}".rstrip()
+
+
+def with_interval(value: float, half: float, unit: str = "") -> str:
+    """Return a value with half of the width of its 95 % interval, in one unit: "0.41 ± 0.02 mm"."""
+    if not (math.isfinite(value) and math.isfinite(half)) or abs(half) < _REPEATS * abs(value):
+        return amount(value, unit)
+    divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
+    if unit in PREFIXED_UNITS:
+        divisor, written = in_unit(value, unit)
+    value, half = value / divisor, abs(half) / divisor
+    # Two digits of the interval, and as many decimals of the value.
+    decimals = max(0, 1 - math.floor(math.log10(half))) if half > 0 else 4
+    if decimals > 6 or half >= 1e6:
+        return f"{digits(value)} ± {digits(half, 2)} {written}".rstrip()
+    return f"{value:.{decimals}f} ± {half:.{decimals}f} {written}".rstrip()
 
 
 def without_zeros(text: str) -> str:

@@ -203,8 +203,8 @@ def half_power(response: xarray.Dataset | xarray.DataArray) -> Resonance:
     Raises
     ------
     ValueError
-        If the receptance is not known on both sides of its peak down to 0.71 of it, jumps there from one motion to another, or
-        there are fewer than 5 samples.
+        If the receptance is not known on both sides of its peak down to 0.71 of it, or jumps there from one motion to
+        another, or there are fewer than 5 samples.
 
     Notes
     -----
@@ -260,8 +260,8 @@ def circle_fit(response: xarray.Dataset | xarray.DataArray) -> Resonance:
     Raises
     ------
     ValueError
-        If fewer than 5 samples have at least half of the largest mobility, or they are of one flank of the resonance only, as
-        next to a jump.
+        If fewer than 5 samples have at least half of the largest mobility, or they are of one flank of the resonance
+        only, as next to a jump.
 
     Notes
     -----
@@ -323,8 +323,8 @@ def circle_fit(response: xarray.Dataset | xarray.DataArray) -> Resonance:
     found = least_squares(error, guess, x_scale=scales, xtol=least, ftol=least, gtol=least).x
     if not f[0] <= found[1] <= f[-1]:
         raise ValueError(
-            f"the samples used, from {f[0]:g} to {f[-1]:g} Hz, are of one flank of the resonance, as next to a jump from one "
-            "motion to another; try: rb.backbone or rb.damping_curve"
+            f"the samples used, from {f[0]:g} to {f[-1]:g} Hz, are of one flank of the resonance, as next to a jump from "
+            "one motion to another; try: rb.backbone or rb.damping_curve"
         )
     fitted = centre + radius * np.exp(1j * angles(found))
     misfit = float(np.abs(fitted - y / scale).max())
@@ -360,8 +360,9 @@ def _require_no_jump(x: FloatArray, y: FloatArray, first: int, last: int) -> Non
         expected = np.polyval(_parabola(near[:3], values[:3]), near[3])
         if abs(expected - values[3]) > _JUMP * values.max():
             raise ValueError(
-                f"the response jumps from one motion to another between {x[i] ** 0.5:g} and {x[i + 1] ** 0.5:g} Hz, where it has "
-                "no half-power bandwidth, or the steps of the frequency are too long; try: rb.backbone or rb.damping_curve"
+                f"the response jumps from one motion to another between {x[i] ** 0.5:g} and {x[i + 1] ** 0.5:g} Hz, where "
+                "it has no half-power bandwidth, or the steps of the frequency are too long; try: rb.backbone or "
+                "rb.damping_curve"
             )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox._util.quantities import amount
 
 from .labels import log_ticks
@@ -40,13 +41,16 @@ def plot_stability_lobes(study: xr.Dataset, *, size: Size = "page") -> Figure:
 
     Raises
     ------
+    CaseError
+        If the study has neither speeds nor amplitudes.
     ValueError
         If the size is unknown.
     """
     panels = [
         draw for draw, is_there in ((_draw_lobes, "depth" in study), (_draw_limit, _has_amplitudes(study))) if is_there
     ]
-    panels = panels or [_draw_limit]
+    if not panels:
+        raise CaseError("the limit of a linear tool at all speeds is one number", "speeds = ..., for the lobes")
     with figure_style(size):
         across = len(panels) == 2 and size != "column"
         figure = StyledFigure(size, 0.42 if across else 0.62 * len(panels))

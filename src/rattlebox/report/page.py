@@ -126,7 +126,8 @@ def describe(name: str, case: Case, first: Described | None = None) -> Described
             table._replace(rows=[row for row in table.rows if (table.title, tuple(row)) not in known])
             for table in tables
         ]
-    return Described(name, drawing, tuple(table for table in tables if table.rows), first.name if first else None)
+    other = None if first is None else first.name or "the first case"
+    return Described(name, drawing, tuple(table for table in tables if table.rows), other)
 
 
 def _drawing_caption(case: Case) -> str:

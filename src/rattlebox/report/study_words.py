@@ -13,13 +13,12 @@ import numpy as np
 
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.phrases import counted, joined
-from rattlebox._util.quantities import MISSING, amount
+from rattlebox._util.quantities import MISSING, amount, with_interval
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.plots.labels import REPLICA, capitalised, name_of, unit_of
 from rattlebox.prepare.softening import MAX_CHANGE
 from rattlebox.report.limits import ENERGY_BOUNDS, limit, mode_limits
-from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 from rattlebox.results.case_words import dampers_words
 from rattlebox.results.schema import OUTCOMES

@@ -20,6 +20,7 @@ import xarray as xr
 import rattlebox as rb
 from rattlebox._util.quantities import amount
 from rattlebox.report.page import typeset
+from rattlebox.studies.kinds.stability_lobes import answer
 
 HOSTILE = '<script>alert("1")</script> & <b>'
 """A name that would run or change the page if it were not escaped."""
@@ -436,6 +437,34 @@ def test_a_stable_depth_has_its_interval_in_the_same_unit() -> None:
         page_of("stability_lobes").text.partition("stable depth at all speeds")[2].partition("Warnings and notes")[0]
     )
     assert " pm" not in table and "0 m" not in table.replace("0 mm", "")
+
+
+def test_inputs_of_a_cut_are_in_its_report(tmp_path: Path) -> None:
+    """Factor, teeth and tuned mass stand in the report, and an empty figure does not; only lobes with a map were tested."""
+    bar = rb.SDOF(mass="4 kg", frequency="150 Hz", damping_ratio=0.02)
+    cut = rb.stability_lobes(
+        bar,
+        rb.TunedMass.den_hartog(bar, mass="0.3 kg"),
+        "1500 N/mm^2",
+        0.45,
+        teeth=4,
+        teeth_in_cut=1.5,
+        progress=False,
+    )
+    page = Page(rb.write_report(cut, tmp_path / "cut.html"))
+    assert "1500 N/mm² and a directional factor of 0.45, with 1.5 of 4 teeth in cut" in page.text
+    assert re.search(r"Tuned mass: tuned mass\s*mass\s*300 g", page.text)
+    assert "Not drawn: the limit of a linear tool" in page.text
+    assert "differ from those" not in page.text and "differ from the first case" in page_of("stability_lobes").text
+
+
+def test_intervals_of_depths_have_one_unit() -> None:
+    """A depth and its interval have one unit in the answer; only the table was read, and there was 0.126 mm ± 3 µm."""
+    cut = result_of("stability_lobes")
+    cut = cut.assign(limit_interval=0.012 * cut.limit)
+    text = "\n".join(answer(cut))
+    assert text.count("±") == 2
+    assert not re.search(r"[µmn]m ± ", text)
 
 
 def test_a_curve_names_accelerations_and_motions_that_are_not_steady() -> None:

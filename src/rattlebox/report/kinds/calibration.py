@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.phrases import counted, joined
-from rattlebox._util.quantities import MISSING, amount
+from rattlebox._util.quantities import MISSING, amount, span
 from rattlebox.plots.calibration import plot_calibration
 from rattlebox.plots.labels import capitalised
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
-from rattlebox.report.numbers import between
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 
 if TYPE_CHECKING:
@@ -51,7 +50,7 @@ def _answer(result: xr.Dataset) -> Iterator[str]:
     for k, parameter in enumerate(_names(result)):
         unit = str(result.unit.values[k])
         value, lower, upper = (float(result[name][k]) for name in ("value", "lower", "upper"))
-        yield f"The {parameter} is {amount(value, unit, 3)} (95 % interval {between(lower, upper, unit)})."
+        yield f"The {parameter} is {amount(value, unit, 3)} (95 % interval {span(lower, upper, unit, 3)})."
     if not _by_simulation(result):
         slow, fast = float(result.approach_speed.min()), float(result.approach_speed.max())
         ends = amount(slow, "m/s", 3) + (f" to {amount(fast, 'm/s', 3)}" if fast > 1.001 * slow else "")
@@ -96,7 +95,7 @@ def _tables(result: xr.Dataset) -> Iterator[Table]:
         one = result.isel(parameter=k)
         unit = str(one.unit.item())
         is_bounded = bool(one.is_lower_bounded & one.is_upper_bounded)
-        intervals = [between(float(one[low]), float(one[high]), unit) for low, high in _INTERVALS]
+        intervals = [span(float(one[low]), float(one[high]), unit, 3) for low, high in _INTERVALS]
         value = amount(float(one.value), unit, 3)
         rows.append((str(one.parameter.item()), value, *intervals, "yes" if is_bounded else "no"))
     header: tuple[str, ...] = ("parameter", "value", "95 % interval", "range", "bounded by the data")

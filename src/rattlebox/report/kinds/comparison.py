@@ -8,11 +8,10 @@ from functools import partial
 from typing import TYPE_CHECKING, cast
 
 from rattlebox._util.phrases import joined
-from rattlebox._util.quantities import amount
+from rattlebox._util.quantities import amount, with_interval
 from rattlebox.plots.compare import plot_comparison
 from rattlebox.report.kinds.run import attached_points, result_sentences
 from rattlebox.report.limits import readable_case, run_limits
-from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 from rattlebox.results.case_words import loads_words
 from rattlebox.results.summary import error_of

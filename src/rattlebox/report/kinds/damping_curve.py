@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox._util.phrases import joined
-from rattlebox._util.quantities import MISSING, amount, digits
+from rattlebox._util.quantities import MISSING, amount, digits, span
 from rattlebox.model.units import STANDARD_GRAVITY
 from rattlebox.plots.damping_curve import plot_damping_curve
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
-from rattlebox.report.numbers import between
 from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ def _answer(curves: Curves) -> Iterator[str]:
 
 def _at(curve: xr.Dataset, k: int) -> str:
     ratio, lower, upper = (float(curve[name][k]) for name in ("damping_ratio", "lower", "upper"))
-    interval = "" if not np.isfinite(lower) else f" (95 % interval {between(lower, upper, '%')})"
+    interval = "" if not np.isfinite(lower) else f" (95 % interval {span(lower, upper, '%', 3)})"
     return f"{amount(ratio, '%', 3)}{interval} at {amount(float(curve.amplitude[k]), 'm')}"
 
 
@@ -106,7 +105,7 @@ def _interval(curve: xr.Dataset, k: int) -> str:
     """Return the interval at an amplitude, or the reason why it has none."""
     if "steady" in curve and not bool(curve.steady[:, k].all()):
         return "not steady"
-    return between(float(curve.lower[k]), float(curve.upper[k]), "%")
+    return span(float(curve.lower[k]), float(curve.upper[k]), "%", 3)
 
 
 def _warnings(curves: Curves) -> Iterator[str]:

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.phrases import counted, joined
-from rattlebox._util.quantities import amount
+from rattlebox._util.quantities import amount, with_interval
 from rattlebox.model.case import Case
 from rattlebox.plots.damping_curve import plot_damping_curve
 from rattlebox.plots.design import goals_of, parameters_of, plot_design
 from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
-from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Limit, Picture, Table
 from rattlebox.studies.design.evidence import CURVE, CYCLES_RUN, DROPPED, LEVEL, PACKINGS_RUN, curves_of
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO

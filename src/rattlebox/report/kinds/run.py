@@ -8,10 +8,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rattlebox._util.phrases import counted, joined
-from rattlebox._util.quantities import amount
+from rattlebox._util.quantities import amount, with_interval
 from rattlebox.analysis.signals import is_even
 from rattlebox.report.limits import readable_case, run_limits
-from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Call, Kind, Picture, Table
 from rattlebox.results.case_words import dampers_words, loads_words
 from rattlebox.results.summary import Value

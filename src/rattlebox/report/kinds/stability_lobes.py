@@ -12,8 +12,8 @@ from rattlebox.model.case import Case
 from rattlebox.plots.stability_lobes import plot_stability_lobes
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
-from rattlebox.report.numbers import with_interval
 from rattlebox.report.parts import Limit, Table
+from rattlebox.studies.kinds.stability_lobes import depth_with_interval
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +31,12 @@ def _question(study: xr.Dataset) -> str:
     case = words.known_case(study)
     tool = case.structure.words() if case is not None else "the tool"
     coefficient = amount(float(study.attrs["cutting_coefficient"]) / 1e6)
-    return f"Up to which depth of cut does {tool} not chatter, at a cutting coefficient of {coefficient} N/mm²?"
+    factor, teeth = float(study.attrs["directional_factor"]), float(study.attrs["teeth_in_cut"])
+    several = f", with {amount(teeth)} of {study.attrs['teeth']} teeth in cut" if study.attrs["teeth"] > 1 else ""
+    return (
+        f"Up to which depth of cut does {tool} not chatter, at a cutting coefficient of {coefficient} N/mm² and a "
+        f"directional factor of {amount(factor)}{several}?"
+    )
 
 
 def _answer(study: xr.Dataset) -> Iterator[str]:
@@ -47,19 +52,13 @@ def _tables(study: xr.Dataset) -> Iterator[Table]:
         rows.append(
             (
                 amount(size, "m", 3) if size else "any",
-                _limit(one),
+                depth_with_interval(one),
                 _known(one.limit_frequency, "Hz"),
                 _known(one.dynamic_stiffness, "N/m"),
             )
         )
     header = ("amplitude", "stable depth at all speeds", "chatter frequency", "dynamic stiffness")
     yield Table("Limits", header, rows, numbers=True)
-
-
-def _limit(one: xr.Dataset) -> str:
-    """Return the stable depth at an amplitude with its 95 % interval."""
-    half = float(one.limit_interval)
-    return with_interval(float(one.limit), half, "m") if half > 0 else _known(one.limit, "m")
 
 
 def _known(value: xr.DataArray, unit: str) -> str:

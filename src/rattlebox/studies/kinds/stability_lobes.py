@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, Field, InstanceOf
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.phrases import counted, joined
-from rattlebox._util.quantities import amount
+from rattlebox._util.quantities import amount, with_interval
 from rattlebox.analysis.chatter import SampledResponse
 from rattlebox.analysis.chatter import stability_lobes as lobes_of
 from rattlebox.analysis.describing_function import MassTable, damping_of_modes, solve
@@ -576,7 +576,7 @@ class StabilityLobes(Study):
         attrs = {
             "title": "Stability lobes",
             "study": self.kind,
-            "case": self.case.to_toml(),
+            "case": self.case.model_copy(update={"tuned_masses": (*self.case.tuned_masses, *self._tuned)}).to_toml(),
             "system": self._system(),
             "point": self._tool.point,
             "cutting_coefficient": self._coefficient / (self.teeth_in_cut or self.teeth),
@@ -812,15 +812,19 @@ def answer(result: xarray.Dataset) -> Iterator[str]:
         yield f"The deepest stable cut at the given speeds is {amount(float(depth[k]), 'm')}, at {speed}{where}."
 
 
+def depth_with_interval(one: xarray.Dataset) -> str:
+    """Return the stable depth at an amplitude, with its 95 % interval where that is above a thousandth of it."""
+    depth, half = float(one.limit), float(one.limit_interval)
+    return with_interval(depth, half, "m") if half > 1e-3 * depth else amount(depth, "m", 3)
+
+
 def _contained(result: xarray.Dataset, best: int) -> Iterator[str]:
     """Yield sentences about the amplitudes at which chatter is contained."""
     limit, sizes = result.limit.values, result.amplitude.values
     known = np.flatnonzero(np.isfinite(limit))
 
     def at(k: int) -> str:
-        half = float(result.limit_interval[k])
-        interval = f" ± {amount(half, 'm', 2)}" if half > 1e-3 * limit[k] else ""
-        return f"at {amount(float(sizes[k]), 'm', 3)} up to {amount(float(limit[k]), 'm', 3)}{interval}"
+        return f"at {amount(float(sizes[k]), 'm', 3)} up to {depth_with_interval(result.isel(amplitude=k))}"
 
     others = [int(k) for k in (known[0], known[-1]) if k != best]
     more = f"; {joined([at(k) for k in others])}" if others else ""
