@@ -45,12 +45,16 @@ def existing(path: str | os.PathLike[str]) -> Path:
         return file
     if file.is_dir():
         names = sorted(other.name for other in file.iterdir() if other.is_file())[:2]
-        raise DataError(f"{file} is a folder, not a file", " or ".join(str(file / name) for name in names))
+        advice = " or ".join(str(file / name) for name in names) or "a file; the folder contains none"
+        raise DataError(f"{file} is a folder, not a file", advice)
     folder = file.parent
     if not folder.is_dir():
-        raise DataError(f"there is no file {file}: there is no folder {folder}")
+        raise DataError(
+            f"there is no file {file}: there is no folder {folder}", f"a path from {Path.cwd()}, or a full one"
+        )
     like = get_close_matches(file.name, [other.name for other in folder.iterdir() if other.is_file()], n=2)
-    raise DataError(f"there is no file {file}", " or ".join(str(folder / name) for name in like))
+    advice = " or ".join(str(folder / name) for name in like) or f"another name; no file in {folder} has a similar one"
+    raise DataError(f"there is no file {file}", advice)
 
 
 def read_text(path: str | os.PathLike[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +22,7 @@ from .density_files import density_names, states_density
 from .effective_masses import effective_masses
 from .elementwise import Vector
 from .errors import several
-from .files import BINARY, existing, read_arrays
+from .files import BINARY, existing, read_arrays, read_text
 from .matrices import Matrices
 from .modal_files import MOST_POINTS, export_instead, read_modes
 from .random_vibration import Random
@@ -102,6 +103,7 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
     path, given = existing(file), os.fspath(file)
     if instead := export_instead(path):
         raise DataError(f"{path}: files with the ending {path.suffix.lower()!r} are not read", instead)
+    _refuse_own_files(path)
     if found := _matrices(path, given):
         return found
     problem: RattleboxError | None = None
@@ -123,6 +125,23 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
         f"{path}: files with the ending {path.suffix.lower()!r} have neither records nor modes that are read",
         ", ".join(sorted({*record_reader.endings, *modes_reader.endings})),
     )
+
+
+def _refuse_own_files(path: Path) -> None:
+    """Raise if a file is a case, a study or a result."""
+    if path.suffix.lower() == ".nc":
+        raise DataError(f"{path} is a result, not a file of another program", f"rattlebox show {path}")
+    if path.suffix.lower() != ".toml":
+        return
+    try:
+        fields = tomllib.loads(read_text(path))
+    except tomllib.TOMLDecodeError:
+        return  # the reader of modes has the place
+    for field, what, command in (("structure", "case", "run"), ("kind", "study", "sweep")):
+        if field in fields:
+            raise DataError(
+                f"{path} is a {what} file of Rattlebox, not a file of another program", f"rattlebox {command} {path}"
+            )
 
 
 def _records(path: Path, given: str) -> FileContents | None:
@@ -245,7 +264,9 @@ def _responses(path: Path, given: str) -> FileContents | None:
     functions = frequency_responses(path)
     lines = []
     for number, each in enumerate(functions[:_LISTED], start=1):
-        unit = f"({each.unit})/({each.source_unit})" if each.unit and each.source_unit else each.unit
+        is_plain = "/" not in f"{each.unit}{each.source_unit}"
+        ratio = f"{each.unit}/{each.source_unit}" if is_plain else f"({each.unit})/({each.source_unit})"
+        unit = ratio if each.unit and each.source_unit else each.unit
         lines.append(
             f"{each.name or f'number {number}'}: {several(each.abscissa.size, 'line')} from {each.abscissa[0]:.6g} to "
             f"{each.abscissa[-1]:.6g} {each.abscissa_unit or 'Hz'}, largest magnitude {np.abs(each.values).max():.4g} "

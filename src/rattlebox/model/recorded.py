@@ -37,6 +37,8 @@ from .units_in_text import unit_above, units_in_lines
 _SHOWN = 60  # characters of a line in a message
 _NO_UNIT = "unit left out; scale is a factor of the record apart from its unit"
 _UNIT_ADVICE = 'unit = "m/s^2", and scale = ..., the factor from the numbers to that unit'
+_PER_FORCE = re.compile(r"/\s*\(?[mk]?(?:N|lbf|kgf)\)?\s*[)\]]?\s*$")
+_RESPONSE_ADVICE = "rb.analysis.read_frequency_response, if the file has a frequency response"
 _VELOCITY = re.compile(r"\bveloc|\bgeschw|\bvitesse|\bsnelheid|\bскорост|(?<!加)速度", re.I)
 _DERIVATIVE = (
     'the acceleration, its derivative: rb.Record(times=t, values=numpy.gradient(v, t), unit="m/s^2"), with v in m/s'
@@ -66,7 +68,8 @@ def _stated_unit(columns: Columns, wanted: str | None, name: str) -> tuple[tuple
             raise DataError(hint.complaint, _DERIVATIVE, ["file"]) from None
         if own is not None:
             return None, []  # an unknown heading does not contradict the user
-        raise DataError(hint.complaint, _UNIT_ADVICE, ["file"]) from None
+        is_response = any(_PER_FORCE.search(head) for head in columns.headings[1])
+        raise DataError(hint.complaint, _RESPONSE_ADVICE if is_response else _UNIT_ADVICE, ["file"]) from None
     if stated is not None and own not in (None, stated):
         heading = columns.headings[1][-1]
         if own is not None and own[1] != stated[1]:
@@ -384,7 +387,7 @@ class Record(FileSignal):
             raise Hint(
                 f"times must increase, but point {int(steps[0]) + 2} is not later than the one before",
                 "columns = [2, 1], if times and values are swapped"
-                if self.file
+                if self.file and np.all(np.diff(self.values) > 0)
                 else "times in their order, each one once",
                 self.where,
             )

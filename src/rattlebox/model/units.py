@@ -170,7 +170,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
             return _finite(float(value)), None
         except OverflowError:
             raise Hint("a finite number is needed") from None
-    if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
+    if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str) and _is_number(value[0]):
         value = f"{value[0]} {value[1]}"
     if isinstance(value, str):
         # Text: the table of common units first, which says that g is gravity where an acceleration is needed.
@@ -204,6 +204,12 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         return _finite(float(value)), None
     except (TypeError, ValueError):
         raise Hint(_wanted(units), _example(units)) from None
+
+
+def _is_number(value: object) -> bool:
+    """Return whether a value is a number, or a text without a unit."""
+    match = _NUMBER.match(value) if isinstance(value, str) else None
+    return not match[2] if match else not isinstance(value, str)
 
 
 def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
@@ -332,7 +338,7 @@ def _check_comma(text: str) -> None:
 
 def as_written(value: object) -> tuple[float, str] | None:
     """Return the number and the unit of a quantity as written, "" without unit; None for values of other types."""
-    if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
+    if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str) and _is_number(value[0]):
         value = f"{value[0]} {value[1]}"
     if isinstance(value, (int, float)):
         return float(value), ""

@@ -429,3 +429,29 @@ def test_a_case_from_files_runs_like_one_from_numbers(tmp_path: Path) -> None:
     first, second = rb.simulate_many(cases)
     np.testing.assert_array_equal(first.arrays.displacement, second.arrays.displacement)
     assert first.energy_residual < 1e-12
+
+
+@pytest.mark.parametrize("name", ["gone.csv", "nowhere/gone.csv", "empty"])
+def test_every_absent_file_has_advice(name: str, tmp_path: Path) -> None:
+    """A name without a similar file, an absent folder and an empty folder have advice; only similar names were tested."""
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(rb.DataError) as caught:
+        rb.Record.from_file(tmp_path / name)
+    assert "\n  try: " in str(caught.value)
+
+
+def test_times_are_said_to_be_swapped_only_if_values_rise(tmp_path: Path) -> None:
+    """Two equal times have no advice to swap the columns, which cannot help; the advice was always the same."""
+    (tmp_path / "twice.csv").write_text("time (s),acc (g)\n0,0\n1,2\n1,3\n2,-1\n")
+    (tmp_path / "swapped.csv").write_text("a,b\n5,0\n7,1\n3,2\n4,3\n")
+    with pytest.raises(rb.RattleboxError, match="try: times in their order"):
+        rb.Record.from_file(tmp_path / "twice.csv")
+    with pytest.raises(rb.RattleboxError, match=r"try: columns = \[2, 1\]"):
+        rb.Record.from_file(tmp_path / "swapped.csv")
+
+
+@pytest.mark.parametrize("value", [["2 mm", "3 mm"], ["2 mm", "3"], ("1 mm", "mm")])
+def test_a_list_is_no_quantity(value: Any) -> None:
+    """Lists of quantities are not multiplied; only pairs of a number and a unit were tested."""
+    with pytest.raises(rb.CaseError, match=r"a length \(m\) is needed\n"):
+        rb.Stop(gap=value, contact=rb.Linear(stiffness="1 MN/m", restitution=0.5))

@@ -115,3 +115,24 @@ def test_frequency_responses(tmp_path: Path) -> None:
     assert content.lines[0].startswith("Head: 3 lines from 0 to 8 Hz, largest magnitude 3.905 g/N")
     read = eval(content.python, {"rb": rb})
     assert read.transfer.size == 3 and content.python in str(content) and "case file" not in str(content)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "advice"),
+    [
+        ("a.toml", '[structure]\nkind = "sdof"\n', "rattlebox run"),
+        ("a.toml", 'kind = "sweep"\ncase = "b.toml"\n', "rattlebox sweep"),
+        ("a.nc", "\x89HDF", "rattlebox show"),
+        (
+            "a.csv",
+            "frequency (Hz), real (g/N), imaginary (g/N)\n4, 0.1, 0\n5, 0.2, -3\n6, -0.1, -1\n",
+            "read_frequency",
+        ),
+        ("a.txt", "f (Hz);H (mm/s^2/N);phase (deg)\n4;1;0\n5;2;-30\n6;1;-170\n", "read_frequency"),
+    ],
+)
+def test_files_for_other_functions_are_named(name: str, content: str, advice: str, tmp_path: Path) -> None:
+    """Cases, studies, results and tables of frequency responses name what reads them; they were refused as tables."""
+    (tmp_path / name).write_text(content, encoding="latin-1")
+    with pytest.raises(rb.DataError, match=rf"(?s)try: .*{advice}"):
+        rb.inspect(tmp_path / name)

@@ -193,7 +193,8 @@ def test_study_file(tmp_path: Path) -> None:
 REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"cutting_coefficient": None}, "a cutting coefficient is needed"),
     ({"cutting_coefficient": ("2200", "Pa")}, '"2200 N/mm^2"'),
-    ({"cutting_coefficient": "2200 N"}, "modulus"),
+    ({"cutting_coefficient": "2200 N"}, "cutting_coefficient = '2200 N': a force over an area is needed"),
+    ({"cutting_coefficient": "2200 N/mm"}, 'cutting_coefficient = "2000 N/mm^2"'),
     ({"directional_factor": 0}, "does not feel the force"),
     ({"speeds": [1000, 2000]}, "rpm and 1/s differ by 60"),
     ({"speeds": ["2000 rpm", "1000 rpm"]}, "rising"),

@@ -224,7 +224,10 @@ class StabilityLobes(Study):
         given, advice = self.cutting_coefficient, 'cutting_coefficient = "2000 N/mm^2"'
         if given is None:
             raise Hint("a cutting coefficient is needed, the cutting force over the area of the chip", advice)
-        value, _ = parse(given, ("Pa",))
+        try:
+            value, _ = parse(given, ("Pa",))
+        except Hint:
+            raise Hint(f"cutting_coefficient = {given!r}: a force over an area is needed", advice) from None
         if not _LEAST_COEFFICIENT <= value <= _MOST_COEFFICIENT:
             raise Hint(
                 f"cutting_coefficient = {given!r} is {value:g} N/m^2; materials have 1e8 to 1e10 N/m^2",
