@@ -173,7 +173,7 @@ def _run_in_folder(
             "move your files; then the same command writes the results with their usual names",
         )
     if not run.ok:
-        sys.exit(1)
+        sys.exit(STOPPED if run.status == "interrupted" else 1)
 
 
 def _result_names(case: Case, *, csv: bool, mat: bool, figures: bool) -> list[str]:

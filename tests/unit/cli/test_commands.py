@@ -1,9 +1,13 @@
 """Tests of the commands."""
 
 import json
+import os
+import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
+from typing import Any
 from unittest.mock import Mock
 
 import numpy as np
@@ -11,7 +15,9 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.cli import commands
+from rattlebox.cli import run as rattlebox_run
 from rattlebox.cli.demo import BARE, DAMPED, demo_cases
+from rattlebox.cli.main import main
 
 from .conftest import RunCli
 
@@ -276,3 +282,30 @@ def test_advice_on_a_lack_of_memory_fits_the_command(
     code, _, errors = run_cli(*arguments)
     assert code == 2
     assert f"not enough memory for 'rattlebox {arguments[0]}'" in errors and advice in errors
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_stopped_run_of_a_ball_has_the_exit_code_of_the_signal(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run of a ball that is stopped ends with 130 or 143 and writes its results; it ended with 1, as a failed one.
+
+    Only runs of particles were stopped on the command line.
+    """
+    monkeypatch.chdir(tmp_path)
+    case = rb.Case.from_file(EXAMPLES / "steel_ball.toml")
+    shaken = rb.Harmonic(amplitude="300 N", frequency="9 Hz")
+    case.model_copy(update={"loads": (shaken,), "duration": 1e6}).to_file("long.toml")
+    monkeypatch.setattr(sys, "argv", ["rattlebox", "run", "long.toml", "-o", "out", "--no-figures"])
+    simulate = rattlebox_run._simulate
+
+    def stopped(*arguments: Any) -> rb.Run:
+        """Simulate, and send the signal a second later."""
+        threading.Timer(1.0, os.kill, (os.getpid(), number)).start()
+        return simulate(*arguments)
+
+    monkeypatch.setattr(rattlebox_run, "_simulate", stopped)
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 128 + number
+    assert rb.load("out/run.nc").status == "interrupted"
