@@ -214,11 +214,14 @@ public:
         for (int n = 1; n <= Series::order; ++n)
             scale = std::max(scale, std::fabs(g.c[n]) * (power *= horizon_));
         power = horizon_;
+        real terms = 0;
         for (int n = 2; n <= Series::order; ++n) {
             power *= horizon_;
+            // What rounds in one order rounds in all that follow from it, which a held point leaves alone.
+            terms = contact.above == ground ? std::fmax(terms, sizes[n] * power) : sizes[n] * power;
             // Rounding errors of the forces, and of the time at which loads are evaluated.
             const real turned = n < Series::order ? (n + 1) * std::fabs(g.c[n + 1]) * start_->t : 0;
-            const real limit = tendency_of_gap * scale + tendency_of_terms * (sizes[n] + turned) * power;
+            const real limit = tendency_of_gap * scale + tendency_of_terms * (terms + turned * power);
             if (std::fabs(g.c[n]) * power <= epsilon * limit) continue;
             if (g.c[n] < 0) return -1;
             // The sum from each term on has a lower bound over the horizon. A small first term with a
@@ -233,6 +236,8 @@ public:
         }
         return 0;
     }
+
+    const std::vector<int>& held() const { return series_motion_.held(); }
 
     // Returns the force of the i-th held contact after time s.
     real held_force(std::size_t i, real s) const { return series_motion_.forces()[i].value(s); }
@@ -304,8 +309,11 @@ public:
                     const Contact& contact = problem_.contacts[c];
                     const Gap g = gap(problem_, contact, out.y.data());
                     const real rounding = gap_rounding(contact, out);
-                    if (g.value < -rounding &&
-                        g.rate > 0) { // released and still recovering: latest time at which it opens
+                    // A hard stop never recovers: what it overlaps by is rounding.
+                    const bool recovers =
+                        contact.above != ground || problem_.settings.method != Method::newton;
+                    if (g.value < -rounding && g.rate > 0 &&
+                        recovers) { // released and still recovering: latest time at which it opens
                         const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
                         safe_[c] = s - 2 * g.value / (g.rate + std::sqrt(std::max(room, 0.0)));
                     } else {

@@ -34,6 +34,9 @@ class HardContacts {
     const Problem& problem_;
     TaylorMotion motion_;           // accelerations after an impact
     real largest_impact_speed_ = 0; // largest of largest_speed() at any impact so far
+    // Speed of a stop by the largest loads, and whether these are inputs that vary from step to step.
+    real held_speed_;
+    bool varies_;
     std::vector<Closing> closing_;
     // Of the complementarity problem: contacts, whether impulses of both signs are allowed, and the arrays.
     std::vector<int> taking_part_;
@@ -84,6 +87,24 @@ class HardContacts {
         }
         for (std::size_t d = problem_.first_stop(); d < problem_.dampers.size(); ++d)
             largest = std::max(largest, std::fabs(cavity(problem_.dampers[d], run_.state.y.data()).p));
+        return largest;
+    }
+
+    // Returns the largest speed of a stop that the largest values of the loads would cause without it. While
+    // they press its point against it, speeds are rounding errors of forces, and no other speed may exist.
+    static real speed_by_loads(const Problem& problem) {
+        real largest = 0;
+        for (std::size_t d = problem.first_stop(); d < problem.dampers.size(); ++d) {
+            real speed = 0;
+            for (const Load& load : problem.loads)
+                for (std::size_t k = 0; k < problem.modes.size(); ++k) {
+                    const real rate = std::fmax(load.signal.frequency, std::sqrt(problem.modes[k].stiffness));
+                    if (rate > 0)
+                        speed += std::fabs(problem.dampers[d].shape[k] * load.shape[k]) *
+                                 load.signal.largest() / rate;
+                }
+            largest = std::fmax(largest, speed);
+        }
         return largest;
     }
 
@@ -148,16 +169,23 @@ class HardContacts {
     }
 
 public:
-    explicit HardContacts(RunState& run) : run_(run), problem_(run.problem), motion_(run.problem) {}
+    explicit HardContacts(RunState& run)
+        : run_(run), problem_(run.problem), motion_(run.problem), held_speed_(speed_by_loads(run.problem)),
+          varies_(std::any_of(problem_.loads.begin(), problem_.loads.end(),
+                              [](const Load& load) { return load.signal.kind == Signal::Kind::constant; })) {}
 
     // Returns the rounding error of the difference of two equal velocities.
     real velocity_rounding() const {
         const real* v = velocities(problem_, run_.state.y.data());
-        real largest = largest_impact_speed_;
+        real largest = std::fmax(largest_impact_speed_, varies_ ? speed_by_loads(problem_) : held_speed_);
         for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
             largest = std::fmax(largest, std::fabs(v[i]));
-        for (const Damper& damper : problem_.dampers)
-            largest = std::fmax(largest, std::fabs(cavity(damper, run_.state.y.data()).p));
+        for (const Damper& damper : problem_.dampers) {
+            real terms = 0; // which cancel where a point is held
+            for (std::size_t m = 0; m < damper.shape.size(); ++m)
+                terms += std::fabs(damper.shape[m] * run_.state.y[2 * m + 1]);
+            largest = std::fmax(largest, terms);
+        }
         return speed_rounding * largest;
     }
 
@@ -236,12 +264,27 @@ public:
             run_.phase(each.contact) = Phase::closed;
         }
         release_moving();
+        gather_touching();
     }
 
     // The force of a stuck contact became attractive: it touches, and the forces decide whether it opens.
     void release(int which) {
         run_.phase(run_.stuck[static_cast<std::size_t>(which)]) = Phase::touching;
         run_.stuck.erase(run_.stuck.begin() + which);
+        gather_touching();
+    }
+
+    // Open contacts that are closed and at rest to rounding touch, so that the forces decide about all
+    // contacts at one place together: one that opens before the others would have a gap and a rate of
+    // rounding, far below the resolution of the time.
+    void gather_touching() {
+        const real speed = velocity_rounding();
+        for (int c = 0; c < problem_.contact_count(); ++c) {
+            if (run_.phase(c) != Phase::open) continue;
+            const Gap g = gap(problem_, run_.contact(c), run_.state.y.data());
+            const real length = instant_rounding * run_.gap_terms(c) + speed * shortest_period();
+            if (std::fabs(g.rate) <= speed && std::fabs(g.value) <= length) run_.phase(c) = Phase::touching;
+        }
     }
 
     template <class Archive> void serialize(Archive& a) { a(largest_impact_speed_); }

@@ -210,6 +210,8 @@ public:
         for (real mass : problem_.ball_mass) floor += mass * square(speed_at_rest);
         for (const Contact& contact : problem_.contacts)
             if (contact.above == ground) floor += contact.mass * square(speed_at_rest);
+        // Hard contacts permit no error but the rounding of the work of held stops.
+        if (problem_.settings.method == Method::newton) floor += run_.permitted_error;
         const real permitted =
             std::fmin(bound * b.supplied + run_.permitted_error, worst_energy_residual * b.supplied);
         const bool open = b.residual > permitted && b.residual > floor;

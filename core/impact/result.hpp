@@ -69,7 +69,9 @@ struct Result {
     real stopped_at = 0;
     int stopped_contact = -1; // contact whose law left its range of validity
     real stopped_value = 0;   // its approach speed
-    real permitted_error = 0; // of the energy [J], by the tolerance of all steps of contacts
+    // Error of the energy [J] by the tolerance of all steps of contacts; of hard ones, rounding of held
+    // stops.
+    real permitted_error = 0;
 
     // Reserves memory for the requested samples, and as many for those at contacts.
     explicit Result(const Problem& problem) {

@@ -49,6 +49,11 @@ class TaylorMotion {
     std::vector<int> held_;
     std::vector<Follower> followers_;
     std::vector<Series> forces_; // by held contact
+    // By held contact: the first one that acts on the motion alike, how strongly over that one, and for a
+    // first one the sum of the squares. Several stops at one point, or at points that move in proportion,
+    // share a force.
+    std::vector<std::size_t> first_alike_;
+    std::vector<real> part_, squares_;
     std::vector<real> response_, matrix_, right_, cavity_force_, ball_force_;
     std::vector<real> impulses_; // of the stops, at the start
 
@@ -87,6 +92,34 @@ class TaylorMotion {
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = 0; j < n; ++j)
                 response_[i * n + j] = contact_coupling(problem_, contact(held_[i]), contact(held_[j]));
+        find_alike();
+    }
+
+    void find_alike() {
+        const std::size_t n = held_.size();
+        first_alike_.resize(n), part_.assign(n, 1.0), squares_.assign(n, 1.0);
+        for (std::size_t i = 0; i < n; ++i) {
+            std::size_t first = 0;
+            for (; first < i; ++first) {
+                const real both = response_[i * n + first], own = response_[first * n + first];
+                if (first_alike_[first] == first && both * own > 0 &&
+                    std::fabs(both * both - own * response_[i * n + i]) <= smallest_pivot * both * both)
+                    break;
+            }
+            first_alike_[i] = first;
+            if (first == i) continue;
+            part_[i] = response_[i * n + first] / response_[first * n + first];
+            squares_[first] += square(part_[i]);
+        }
+    }
+
+    // Of all solutions the one with the smallest sum of squares within each group: elimination gives all of
+    // the force to the first one.
+    void share_forces(int n) {
+        for (std::size_t i = 0; i < held_.size(); ++i) {
+            const std::size_t first = first_alike_[i];
+            forces_[i].c[n] = right_[first] / squares_[first] * part_[i];
+        }
     }
 
     // Half of the clearance, with the sign of the wall that a contact is at.
@@ -152,7 +185,6 @@ class TaylorMotion {
             std::fill(cavity_force_.begin(), cavity_force_.end(), 0.0);
             std::fill(ball_force_.begin(), ball_force_.end(), 0.0);
             for (std::size_t i = 0; i < held; ++i) {
-                forces_[i].c[n] = right_[i];
                 const Contact& c = contact(held_[i]);
                 const auto on = [&](int body) -> real& {
                     return body == wall ? cavity_force_[static_cast<std::size_t>(c.damper)]
@@ -161,6 +193,7 @@ class TaylorMotion {
                 on(c.below) -= right_[i];
                 if (c.above != ground) on(c.above) += right_[i];
             }
+            share_forces(n);
             // What they add, and the next coefficients of the motion.
             for (std::size_t k = 0; k < m; ++k) {
                 real force = 0;

@@ -35,8 +35,11 @@ class Trajectory {
         flight_.add_to_ledger(t - run_.state.t, output_.ledger);
         flight_.at(t - run_.state.t, sample_);
         output_.clear();
-        for (std::size_t i = 0; i < run_.stuck.size(); ++i)
-            output_.add_wall_force(run_.stuck[i], flight_.held_force(i, t - run_.state.t));
+        // A stop that only touches shares the force of a stuck one.
+        const std::vector<int>& held = flight_.held();
+        for (std::size_t i = 0; i < held.size(); ++i)
+            if (i < run_.stuck.size() || run_.contact(held[i]).above == ground)
+                output_.add_wall_force(held[i], flight_.held_force(i, t - run_.state.t));
         output_.record(t, sample_, given);
     }
 
@@ -96,6 +99,11 @@ class Trajectory {
         sample_flight(end, at_touch);
         if (run_.listener) run_.listener->flight(flight_, length);
         flight_.add_to_ledger(length, run_.ledger);
+        // The work of the force of a held stop, whose point moves by rounding.
+        for (std::size_t i = 0; i < flight_.held().size(); ++i)
+            if (run_.contact(flight_.held()[i]).above == ground)
+                run_.result.permitted_error +=
+                    std::fabs(flight_.held_force(i, 0.5 * length)) * hard_.velocity_rounding() * length;
         std::swap(flight_end_.y, run_.state.y);
         run_.state.t = end;
     }
@@ -139,6 +147,8 @@ class Trajectory {
             starter_.start_at(touch.contact);
         else if (release.contact >= 0 && length == release.time)
             hard_.release(release.contact);
+        else if (run_.hard() && length < release.time) // the search gave up: gaps and rates of rounding
+            hard_.gather_touching();
         else
             goes_on_ = !run_.stuck.empty();
         run_.last_jump = pressing && !touches ? take_off : run_.state.t;

@@ -91,6 +91,14 @@ struct Signal {
 
     real value(real t) const { return piece(t).value(t); }
 
+    // Returns the largest magnitude of the values at any time.
+    real largest() const {
+        real most = std::fabs(amplitude);
+        for (int i = 0; kind == Kind::record && i < values.size; ++i)
+            most = std::fmax(most, std::fabs(values[i]));
+        return most;
+    }
+
     // Returns the mean over an interval.
     real mean(real from, real to) const {
         real sum = 0;

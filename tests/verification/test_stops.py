@@ -363,24 +363,6 @@ def test_two_hard_stops_let_go_of_a_point_when_the_load_turns(contact: Any) -> N
     assert np.abs(same - single.arrays.displacement[:, 0])[early].max() < 1e-9
 
 
-@pytest.mark.parametrize("method", [rb.Newton(max_events=40), rb.EventDriven(max_events=40)])
-def test_equal_hard_stops_are_named_at_the_limit_of_events(method: Any) -> None:
-    """A run that reaches the limit of events names hard stops at one place; without one of them, it does so no more.
-
-    The message of chattering balls was given, whatever chattered: no test read it for stops.
-    """
-    one = rb.Stop(point="a", gap="0.4 mm", contact=rb.Linear(stiffness="3 MN/m", restitution=0.5), name="left bumper")
-    far = one.model_copy(update={"name": "far", "gap": 0.9})
-    other = one.model_copy(update={"name": "right bumper"})
-    many = driven([far, one, other], method=method)
-    assert many.status == "too_many_events"
-    named = "left bumper and right bumper have the same point and gap"
-    assert (named in many.message) == isinstance(method, rb.Newton)
-    for stops in ([far, one], [far, other]):
-        assert "same point" not in driven(stops, method=method).message
-        assert driven(stops, method=type(method)()).ok
-
-
 def test_equal_stops_of_different_restitution_rebound_with_the_larger() -> None:
     """Of two hard stops that a point meets at one time, the one with the larger restitution acts."""
     stops = [rb.Stop(gap="1 mm", contact=rb.Tsuji(restitution=e), name=f"e {e}") for e in (0.3, 0.8)]

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox._util.interrupts import raise_if_pressed
-from rattlebox._util.phrases import joined
 from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
@@ -289,8 +288,14 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
         ledger = Ledger(arrays)
         mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
         mass += sum(float(stop.pair(case.modes).mass) for stop in case.each_stop)
+        held = raw.permitted_error if case.method.is_exact else 0.0
         end = final_status(
-            ledger, raw.energy_residual_limit, mass, permitted=raw.permitted_error, rounding=raw.energy_rounding
+            ledger,
+            raw.energy_residual_limit,
+            mass,
+            permitted=raw.permitted_error,
+            rounding=raw.energy_rounding,
+            held=held,
         )
         # A speed at which a law ends, of a motion that has gained energy, says nothing about the law.
         if raw.status == Status.finished or end != Status.finished:
@@ -298,12 +303,7 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
             return describe(end, time, "", ledger.energy_residual if end else 0.0, case.method.kind)
     counts = [*(len(damper.balls) for damper in case.impact_dampers), *(0 for _ in case.each_stop)]
     contact = contact_name(arrays.dampers, counts, raw.stopped_contact)
-    status, message = describe(raw.status, raw.stopped_at, contact, raw.stopped_value, case.method.kind)
-    if raw.status == Status.too_many_events and (names := case.equal_stops):
-        message += (
-            f" The hard stops {joined(names)} have the same point and gap, and may release and press in turn: give one."
-        )
-    return status, message
+    return describe(raw.status, raw.stopped_at, contact, raw.stopped_value, case.method.kind)
 
 
 def _arrays(case: Case, raw: _core.Result) -> RunArrays:

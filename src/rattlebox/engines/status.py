@@ -76,17 +76,18 @@ ADVICE: dict[Status, dict[str, str]] = {
 
 
 def final_status(
-    ledger: Ledger, limit: float, mass: float, *, permitted: float = 0.0, rounding: float = 1e-10
+    ledger: Ledger, limit: float, mass: float, *, permitted: float = 0.0, rounding: float = 1e-10, held: float = 0.0
 ) -> Status:
     """Return the status of a run that reached its end.
 
     `mass`: mass of all balls or particles [kg]. A residual below their kinetic energy at 1 nm/s counts as rounding.
     `permitted`: energy error that the tolerance permits in all steps [J], allowed in addition to the limit, up to 1 %.
     `rounding`: residual that counts as rounding, as part of the largest energy of the run.
+    `held`: work of the forces of hard stops that counts as rounding, because the points that they hold do not move [J].
     """
     if not np.isfinite(ledger.residual).all():
         return Status.not_finite
-    floor = mass * _core.speed_at_rest**2
+    floor = mass * _core.speed_at_rest**2 + held
     balanced = ledger.is_balanced(limit, permitted=permitted, floor=floor, rounding=rounding)
     return Status.finished if balanced else Status.energy_error
 

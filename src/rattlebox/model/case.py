@@ -440,16 +440,6 @@ class Case(Part):
         """The stops, those on both sides (`Stop.side`) one by one."""
         return tuple(each for index, stop in enumerate(self.stops) for each in stop.each(index))
 
-    @property
-    def equal_stops(self) -> list[str]:
-        """Names of the first hard stops that a point meets at the same place as another one; empty if there are none."""
-        groups: dict[tuple[object, ...], list[str]] = {}
-        for stop in self.each_stop:
-            if self.method.hard_restitution(stop.contact, stop.pair(self.modes)) is not None:
-                motion = (stop.sign * stop.shape(self.modes)).tobytes()
-                groups.setdefault((motion, float(stop.gap)), []).append(stop.name)
-        return next((names for names in groups.values() if len(names) > 1), [])
-
     def cavity_displacement(self, damper: ImpactDamper) -> Any:
         """Return the displacement of the cavity of an impact damper at the start [m], an array in a batch of variants."""
         shape, displacement = self.modes.shape(damper.point), self.modes.q0

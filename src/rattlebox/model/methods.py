@@ -24,6 +24,8 @@ class Method(Part):
 
     field_names: ClassVar[tuple[str, ...]] = ("method",)
     kinds: ClassVar[dict[str, type[Part]]] = {}
+    # Whether all errors of the energy are rounding errors, because no contact is integrated.
+    is_exact: ClassVar[bool] = False
     kind: str
 
     @property
@@ -169,6 +171,7 @@ class Newton(ImpactMethod):
     True
     """
 
+    is_exact: ClassVar[bool] = True
     kind: Literal["newton"] = "newton"
     restitution: AnyRestitution | None = None
     stick: Annotated[Number, Field(ge=0, le=0.1)] = 1e-6
