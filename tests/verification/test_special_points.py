@@ -248,3 +248,30 @@ def test_amplitude_of_a_subharmonic_load_to_zero():
         rb.continue_orbit(orbit, "loads[1].amplitude", (0, 0.4), progress=False)
     branch = rb.continue_orbit(orbit, "loads[1].amplitude", (0.01, 0.4), points=20, step=0.1, progress=False)
     assert branch.data.value.values[[0, -1]] == pytest.approx([0.01, 0.4])
+
+
+def test_route_of_period_doublings():
+    """Each doubled branch of a ball in a shaken box is stable at first, and doubles again.
+
+    The first point of a new branch was so far from its beginning that a stable part shorter than this was missed.
+    """
+    case = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1.2 mm", frequency="25 Hz")),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="8 mm", material="steel"), gap="0.6 mm", contact=rb.Tsuji(restitution=0.75)
+        ),
+        method=rb.Newton(),
+        duration="6 s",
+    )
+    axis, limits, values = "structure.motion.amplitude", ("0.3 mm", "3 mm"), []
+    branch = rb.continue_orbit(rb.find_orbit(case, period=1), axis, limits, progress=False)
+    for _ in range(3):
+        flips = [point for point in branch.specials if point.kind == "flip"]
+        point = min(
+            (each for each in flips if not values or each.value > values[-1] * (1 + 1e-9)), key=lambda p: p.value
+        )
+        values.append(point.value)
+        branch = branch.switch(point, points=15, progress=False)
+        assert branch.data.stable.values[1]
+    ratio = (values[1] - values[0]) / (values[2] - values[1])
+    assert 3 < ratio < 8  # towards the constant of Feigenbaum, 4.67

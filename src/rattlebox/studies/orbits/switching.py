@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from rattlebox.studies.orbits.orbit import Orbit
 
-_DISTANCES = (0.5, 0.1, 1.0, 0.02, 0.004)
+_DISTANCES = (0.02, 0.1, 0.5, 0.004, 1.0)
 """Distances from the old branch, in longest steps, at which the new one is sought."""
 _SAME = 0.2
 """Part of the distance from the old branch that the new motion must have in the direction of its multiplier."""
