@@ -109,7 +109,7 @@ def damping_curve(
     mode
         Number of the mode of the structure, counted from 1.
     point
-        Point to which the amplitudes refer; required if there are several.
+        Point to which the amplitudes refer; default that of the first damper on the structure, as in `rb.sweep`.
     packings
         Number of random initial states.
     cycles
@@ -326,7 +326,8 @@ def mode_of(case: Case, number: int, point: str | None) -> CurveMode:
     if index >= modes.stiffness.size or modes.stiffness[index] <= 0:
         known = ", ".join(str(k + 1) for k in np.flatnonzero(modes.stiffness > 0))
         raise Hint(f"mode = {number} is not a mode with a natural frequency", f"one of these: {known or 'none'}")
-    name = modes.point(point)
+    own = next((damper.point for damper in case.dampers if damper.point in modes.shapes), None)
+    name = modes.point(point or own)
     shape = np.atleast_1d(modes.shapes[name][index])
     size = float(np.linalg.norm(shape))
     if size == 0:

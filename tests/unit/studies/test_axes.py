@@ -588,3 +588,12 @@ def test_kinds_vary_as_whole_parts_only(boxed: rb.Case) -> None:
     """An axis of kinds advises to list whole parts, which works; it said that the second kind must be the first."""
     with pytest.raises(rb.CaseError, match=r'whole parts, \{"damper.cavity": \[...\]\}'):
         read_axes(boxed, {"damper.cavity.kind": ["box", "cylinder"]})
+
+
+def test_labels_of_long_lists_are_short() -> None:
+    """A list of many numbers is named by its first and last one, so that legends can be read; short ones were tested."""
+    tower = rb.ShearBuilding(masses=["30 t"] * 9, stiffnesses=["50 MN/m"] * 9, damping_ratio=0.02)
+    case = rb.Case(structure=tower, base=rb.HalfSine(amplitude="1 m/s^2", duration="0.2 s"), duration="1 s")
+    lists = [[factor * 50e6] * 8 + [40e6] for factor in (0.9, 1.1)]
+    study = rb.sweep(case, {"structure.stiffnesses": lists}, ["peak"], point="storey 9", progress=False)
+    assert study["structure.stiffnesses"].values.tolist() == ["[4.5e+07, ..., 4e+07]", "[5.5e+07, ..., 4e+07]"]

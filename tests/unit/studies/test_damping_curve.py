@@ -371,3 +371,26 @@ def test_equal_starts_are_run_once(study: Any) -> None:
         found, one = (rb.damping_curve(case, levels, way=study, packings=number, **seen) for number in (4, 1))
         assert np.array_equal(found.damping_ratios, np.repeat(one.damping_ratios, 4, axis=0))
     assert max(counts) == (2 if study == "backbone" else 1)
+
+
+@pytest.mark.parametrize("way", ["decay", "shaking"])
+def test_amplitudes_are_those_of_the_damper(way: Any) -> None:
+    """Without a point the amplitudes are those of the damper's one; on structures with several it had to be named.
+
+    All tests of them named it.
+    """
+    case = rb.Case(
+        structure=rb.Beam(length="0.3 m", diameter="20 mm", material="steel", damping_ratio=0.01, mode_count=1),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(diameter="12 mm", material="steel"),
+            gap="0.3 mm",
+            contact=rb.Tsuji(restitution=0.6),
+            point="middle",
+        ),
+        duration="0.5 s",
+    )
+    options = {"way": way, "packings": 2, "progress": False}
+    given = rb.damping_curve(case, ["0.1 mm", "0.2 mm"], point="middle", **options)
+    assert rb.damping_curve(case, ["0.1 mm", "0.2 mm"], **options).equals(given)
+    with pytest.raises(rb.CaseError, match="a point must be named"):
+        rb.damping_curve(case.replaced({"dampers": ()}), ["0.1 mm", "0.2 mm"], **options)

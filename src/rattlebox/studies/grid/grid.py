@@ -146,6 +146,10 @@ def labels(items: Column) -> Column:
     return np.array([texts[id(item)] for item in items])
 
 
+_LONGEST_LIST = 6
+"""Number of numbers of a list that its label shows; of a longer one the first and the last."""
+
+
 def _label(value: object) -> str:
     """Return a short text for a value."""
     if isinstance(value, float):
@@ -153,7 +157,10 @@ def _label(value: object) -> str:
     if isinstance(value, tuple) and len(value) == 1 and isinstance(value[0], Part):  # of a field for several
         (value,) = value
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_label, value))}]" if value else "none"
+        items = [_label(item) for item in value]
+        if len(items) > _LONGEST_LIST and all(isinstance(item, (int, float)) for item in value):
+            items = [items[0], "...", items[-1]]
+        return f"[{', '.join(items)}]" if items else "none"
     if not isinstance(value, Part):
         return str(value)
     if getattr(value, "name", ""):
