@@ -427,7 +427,8 @@ def run_command() -> None:
         sys.exit(2)
     except OSError as error:
         file = f"{error.filename}: " if error.filename else ""
-        typer.echo(printable(f"error: {file}{error.strerror or error}"), err=True)
+        advice = "\n  try: a folder in which you may write" if isinstance(error, PermissionError) else ""
+        typer.echo(printable(f"error: {file}{error.strerror or error}{advice}"), err=True)
         sys.exit(2)
     except typer.Abort:
         typer.echo("stopped", err=True)

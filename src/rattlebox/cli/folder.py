@@ -48,7 +48,9 @@ def make_folder(out: Path) -> None:
     except FileExistsError:
         raise DataError(f"{out} is a file; results need a folder", "--out results") from None
     except OSError as error:
-        raise DataError(f"the folder {out} cannot be created: {error.strerror}", "--out results") from None
+        # A folder beside it would be refused, too.
+        advice = "--out with a folder in which you may write, such as --out ~/results"
+        raise DataError(f"the folder {out} cannot be created: {error.strerror}", advice) from None
 
 
 @dataclass(frozen=True)

@@ -309,3 +309,10 @@ def test_a_stopped_run_of_a_ball_has_the_exit_code_of_the_signal(
         main()
     assert stop.value.code == 128 + number
     assert rb.load("out/run.nc").status == "interrupted"
+
+
+def test_a_folder_that_cannot_be_created_has_another_place_as_advice(tmp_path: Path) -> None:
+    """The advice for a folder that cannot be created is no other name in the same folder, which is refused, too."""
+    (tmp_path / "taken").write_text("a file")
+    done = rattlebox("run", EXAMPLES / "steel_ball.toml", "-o", tmp_path / "taken" / "out")
+    assert done.returncode == 2 and "in which you may write" in done.stderr
