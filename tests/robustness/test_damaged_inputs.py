@@ -108,6 +108,16 @@ def stl(size: tuple[float, float, float]) -> bytes:
     return bytes(trimesh.creation.box(size).export(file_type="stl"))
 
 
+def obj() -> bytes:
+    """Return the surface of a box as an OBJ file with two groups."""
+    import trimesh
+
+    box = trimesh.creation.box((0.02, 0.02, 0.02))
+    rows = [f"f {a} {b} {c}\n" for a, b, c in (box.faces + 1).tolist()]
+    corners = "".join(f"v {x} {y} {z}\n" for x, y, z in box.vertices.tolist())
+    return f"{corners}g floor\n{''.join(rows[:6])}g side\n{''.join(rows[6:])}".encode()
+
+
 def record(options: str = "") -> str:
     """Return a case with the file as the motion of the base."""
     return SDOF + f'[base]\nkind = "record"\nfile = "FILE"\n{options}'
@@ -175,6 +185,7 @@ GOOD: dict[str, Sample] = {
                          swapped=(b"IM", b"MI")),
     "positions": Sample("a.csv", PLACES.encode(), BEADS, counted=False),
     "surface": Sample("a.stl", stl((0.02, 0.02, 0.02)), IN_SURFACE),
+    "groups": Sample("a.obj", obj(), IN_SURFACE.replace('unit = "m"', 'unit = "m", groups = "file"'), counted=False),
     "UFF response function": Sample("a.uff", (UFF / "frf_58.uff").read_bytes()),
     "response function": Sample(
         "a.csv", table("f (Hz),real (m/s^2/N),imag (m/s^2/N)", 1 + TIMES, VALUES, VALUES), counted=False
