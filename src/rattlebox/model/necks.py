@@ -25,7 +25,7 @@ _SMALLEST = 0.01  # share of a part that is mentioned
 
 @lru_cache(maxsize=16)
 def widest_sphere(cavity: Cavity) -> float:
-    """Return the radius of the largest sphere that fits into a cavity, to about 1 % [m]."""
+    """Return the radius of the largest sphere that fits into a cavity, to rounding if a local search finds it [m]."""
     points = cavity.spread(_SEEDS)
     if not len(points):
         return 0.0
@@ -34,7 +34,7 @@ def widest_sphere(cavity: Cavity) -> float:
     generator = np.random.default_rng(1)
     step = float(cavity.lengths.max()) / 20
     deepest = cavity.depth(best)
-    while step > 1e-3 * float(depth.max()):
+    while step > 1e-10 * float(depth.max()):
         tries = best[:, None] + step * generator.standard_normal((len(best), 20, 3))
         depths = cavity.depth(tries.reshape(-1, 3)).reshape(len(best), 20)
         k = depths.argmax(axis=1)

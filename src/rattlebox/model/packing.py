@@ -677,7 +677,7 @@ def lattice_is_full(cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> Hint:
     return Hint(
         f"{crowd.count} particles do not fit: a lattice of spheres of {2e3 * crowd.largest:.4g} mm holds {most} "
         "in this cavity",
-        f"{settled}{most} of them, smaller ones, or a larger cavity",
+        f"{settled}{f'{most} of them, ' if most else ''}smaller ones, or a larger cavity",
         ["particles"],
     )
 
@@ -692,7 +692,9 @@ def holds_at_random(cavity: AnyCavity, crowd: Crowd) -> str:
 def fewer_at_random(cavity: AnyCavity, crowd: Crowd) -> str:
     """Return suggestions for more particles than can be inserted at random."""
     lattice = 'packing = { kind = "lattice" }, or ' if crowd.on_lattice(cavity) >= crowd.count else ""
-    most = min(crowd.at_random(cavity), max(1, crowd.count - 1))
+    most = crowd.at_random(cavity)
+    if most >= crowd.count:  # It should have been possible: no number is known that is.
+        return f"{lattice}another seed, fewer particles, or a larger cavity"
     return f"{lattice}at most {most} of them (a fill ratio of {_filled(cavity, crowd, most)}), or a larger cavity"
 
 
@@ -703,7 +705,7 @@ def _filled(cavity: AnyCavity, crowd: Crowd, count: int) -> str:
 
 def check_size(cavity: AnyCavity, radius: float) -> None:
     """Raise if a sphere is as large as the cavity or larger."""
-    widest = cavity.widest
+    widest = cavity.widest * (1 + TOUCHING)  # A slot exactly as wide as the sphere may be narrower by rounding.
     if 2 * radius > widest or 4 / 3 * math.pi * radius**3 >= cavity.volume:
         large = "larger than" if 2 * radius > widest else "as large as"
         raise Hint(

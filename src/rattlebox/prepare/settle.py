@@ -220,6 +220,8 @@ def push_apart(
     doi:10.1103/PhysRevLett.97.170201.
     """
     places, grown = places.copy(), radii * (1 + enlargement)
+    # In a slot as wide as the spheres there is no room for larger ones.
+    at_walls = np.minimum(grown, np.maximum(radii, 0.5 * cavity.widest))
     walls = cavity.walls() if walls is None else walls
     # Candidate pairs hold until something has moved by half of the margin; a search costs as much as many iterations.
     margin = 0.3 * float(grown.min())
@@ -236,11 +238,13 @@ def push_apart(
         apart = length - grown[near[0]] - grown[near[1]]
         deep = apart < 0
         first, second, apart = near[0][deep], near[1][deep], apart[deep]
-        depth = walls.distances(places) - grown[:, None]
-        solids = _off_solids(walls, places, grown, depth)
+        distance = walls.distances(places)
+        depth = distance - at_walls[:, None]
+        solids = _off_solids(walls, places, at_walls, depth)
         small = np.minimum(grown[first], grown[second])
         # Spheres were enlarged, so that the end may leave half of the enlargement: true sizes then have no overlap.
-        if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * enlargement:
+        deepest = max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max())
+        if deepest <= 0.5 * enlargement and (distance - radii[:, None]).min() >= -0.5 * TOUCHING * radii.min():
             return cavity.wrapped(places)
         between, length = between[deep], length[deep][:, None]
         # Two centres at the same place have no direction; any one separates them.
@@ -289,11 +293,25 @@ def _off_walls(walls: Walls, places: Array, depth: Array) -> Array:
 
 def _off_solids(walls: Walls, places: Array, radii: Array, depth: Array) -> tuple[NDArray[np.int64], Array]:
     """Return spheres that overlap solids, once for each contact, and displacements that move them out, (k, 3) [m]."""
-    near = np.flatnonzero((depth[:, walls.offset.size :] < 0).any(axis=1))
+    depth = depth[:, walls.offset.size :]
+    near = np.flatnonzero((depth < 0).any(axis=1))
     if not near.size:
         return near, np.zeros((0, 3))
     number, normal, distance = walls.solids.contacts(places[near], radii[near])
-    return near[number], (distance - radii[near[number]])[:, None] * normal
+    who, moves = [near[number]], [(distance - radii[near[number]])[:, None] * normal]
+    # A centre beyond a surface of triangles has no contact with it: the sphere moves back up the gradient of the distance.
+    for k, solid in enumerate(walls.solids.each):
+        beyond = np.flatnonzero(depth[:, k] < -radii) if solid.form == "mesh" else near[:0]
+        if beyond.size:
+            steps = 1e-4 * radii[beyond, None, None] * np.eye(3)
+            ahead, back = (
+                walls.solids.distances((places[beyond, None] + side * steps).reshape(-1, 3))[:, k].reshape(-1, 3)
+                for side in (1, -1)
+            )
+            uphill = (ahead - back) / np.maximum(np.linalg.norm(ahead - back, axis=1), 1e-300)[:, None]
+            who.append(beyond)
+            moves.append(-depth[beyond, k, None] * uphill)
+    return np.concatenate(who), np.concatenate(moves)
 
 
 class _SettlingBed:

@@ -11,7 +11,7 @@ from support import triangle_meshes
 
 import rattlebox as rb
 from rattlebox.model.plausibility import plausibility_notes
-from rattlebox.prepare.settle import start_positions
+from rattlebox.prepare.settle import ENLARGEMENT, push_apart, start_positions
 
 BOX = triangle_meshes.box((30, 20, 25), 2)
 
@@ -232,6 +232,16 @@ def test_packings_avoid_walls_and_bodies(packing):
     ):
         positions = start_positions(one)
         assert one.interior.room(positions, one.contents.radius).min() > -1e-9 * 1.5e-3
+
+
+def test_spheres_pushed_through_a_surface_return():
+    """A centre beyond faces, edges and corners of triangles moves back; beds were so loose that none was pushed through."""
+    radii = np.full(3, 1.5e-3)
+    beyond = np.array([[0.0, 10.9e-3, 1e-3], [15.4e-3, 10.3e-3, 2e-3], [15.2e-3, 10.5e-3, 12.8e-3]])
+    interior = damper(box()).interior
+    inside = push_apart(interior, beyond, radii, ENLARGEMENT)
+    assert interior.room(inside, radii).min() >= 0
+    assert np.linalg.norm(inside - beyond, axis=1).max() < 5e-3  # through the nearest face
 
 
 def test_wall_of_body_has_its_own_results():

@@ -14,6 +14,7 @@ from support.particle_dampers import CAVITIES, balls, case, damper
 import rattlebox as rb
 from rattlebox.model.packing import check_packing
 from rattlebox.model.units import registry
+from rattlebox.prepare.settle import start_positions
 
 
 @pytest.mark.parametrize("name", CAVITIES)
@@ -213,3 +214,38 @@ def test_the_number_in_the_message_about_a_lattice_is_possible() -> None:
             damper(particles=balls(2000), cavity=cavity)
         most = int(str(caught.value).rpartition("try: ")[2].split()[0])
         assert damper(particles=balls(most), cavity=cavity).start.position.shape == (most, 3)
+
+
+@pytest.mark.parametrize("packing", [rb.Settled(seed=2), rb.Compacted(seed=2), rb.Lattice(seed=2)])
+@pytest.mark.parametrize(
+    ("cavity", "count"),
+    [
+        (rb.Box(size=("35 mm", "5 mm", "35 mm")), 15),
+        (rb.Cylinder(diameter="5 mm", length="60 mm"), 9),
+        (rb.Cylinder(diameter="35 mm", length="5 mm", axis="y"), 15),
+        (rb.Box(size=("5 mm", "5 mm", "5.5 mm")), 1),
+    ],
+)
+def test_particles_as_wide_as_their_slot(cavity: Any, count: int, packing: Any) -> None:
+    """Balls fit into a slot of exactly their diameter; insertion enlarged them, and all slots in tests were wider."""
+    balls_of_5 = rb.Particles(material="steel", diameter="5 mm", count=count)
+    for gravity in ((0, 0, -9.81), (0, 0, 0)):
+        if gravity[2] or not isinstance(packing, rb.Settled):
+            one = damper(cavity=cavity, particles=balls_of_5, packing=packing, gravity=gravity, friction=0.3)
+            places = start_positions(one)
+            assert one.interior.room(places, one.contents.radius).min() > -1e-9 * 2.5e-3
+
+
+def test_number_in_the_message_about_an_insertion_is_not_a_guess() -> None:
+    """Where fewer particles are known to fit as little, no number is advised: each refusal advised one particle less."""
+    deep = rb.PlateBody(size=("40 mm", "5 mm", "20 mm"), position=(0, "4.5 mm", 0))
+    slot = [deep, deep.model_copy(update={"position": (0.0, -0.0045, 0.0)})]
+    one = damper(
+        cavity=rb.Box(size=("40 mm", "14 mm", "20 mm")),
+        bodies=slot,
+        particles=rb.Particles(material="steel", diameter="4 mm", count=3),
+        packing=rb.Settled(seed=1),
+    )
+    with pytest.raises(rb.CaseError, match="cannot be inserted") as refusal:
+        start_positions(one)
+    assert "at most" not in str(refusal.value) and "try: " in str(refusal.value)
