@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.narrow import present
 from rattlebox.model.space import unit_vector
 
 from .signals import FloatArray
@@ -23,6 +24,9 @@ FLOOR = 0.02
 bed is smaller, and a share of it would never be reached."""
 DRIFT = 0.2
 """Change of the loss from the first to the second half of the cycles, over the loss, above which a motion is not steady."""
+_TURNS = {"gravity": 0.05, "vibration": 0.01}
+"""Gravity across the axis over the centrifugal acceleration, and share of the vibration across it, from which the loss of a
+turning cavity depends on its angle."""
 _ALWAYS = 10.0
 """Factor on these limits above which a change counts without a trend, as in a few cycles."""
 _TREND = 2.576
@@ -52,16 +56,27 @@ class CycleLoss:
     is_settled: bool
     is_balanced: bool
     is_constant: bool
+    turns: float = math.inf  # of the cavity in these cycles, if its loss depends on its angle
 
     @property
     def is_steady(self) -> bool:
         """Whether the motion is steady."""
-        return self.is_settled and self.is_balanced and self.is_constant
+        return self.is_settled and self.is_balanced and self.is_constant and self.is_whole_turn
+
+    @property
+    def is_whole_turn(self) -> bool:
+        """Whether the cycles are at least a turn, or a period of the rocking motion, to rounding."""
+        return self.turns > 1 - 1e-6
 
     def warning(self) -> str:
         """Return the warning about a motion that is not steady; "" for a steady one."""
         if self.is_steady:
             return ""
+        if not self.is_whole_turn:
+            return (
+                f"warning: the {self.cycles} cycles evaluated are {self.turns:.2g} turns of the cavity, whose loss depends "
+                f"on its angle; try: a mean over whole turns, {math.ceil(self.cycles / self.turns)} cycles"
+            )
         part = self.scale or 1.0
         work = f"{self.work / part:.2g} m V^2"
         if not self.is_settled or not self.is_balanced:
@@ -92,7 +107,8 @@ def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] |
     Between samples the energy relative to that of rigid masses in the cavities is interpolated linearly, and the velocities
     of the cavities by cubic splines. A motion is not steady if the potential or the stored energy changes by more than 5 %
     of the work or 2 % of m V^2 in a cycle, or the work by more than 20 % of itself from the first to the second half; if it
-    has a trend (Mann-Kendall, 1 %) or is ten times larger.
+    has a trend (Mann-Kendall, 1 %) or is ten times larger; or if the cycles are less than a turn of a cavity in which the
+    vibration or gravity changes its direction.
 
     References
     ----------
@@ -130,6 +146,7 @@ def cycle_loss(run: Run, frequency: float, cycles: int, dampers: Sequence[int] |
         is_settled=not _matters(sunk, limit, raised),
         is_balanced=not _matters(stored, limit, energy),
         is_constant=not _matters(drift, max(DRIFT * abs(work), FLOOR * scale), work_of_cycle),
+        turns=_turns(run, numbers, float(ends[0])) if arrays.engine == "dem" else math.inf,
     )
 
 
@@ -143,6 +160,31 @@ def _trend_score(x: FloatArray) -> float:
     n = x.size
     total = float(sum(np.sign(x[k + 1 :] - x[k]).sum() for k in range(n - 1)))
     return math.copysign(max(0.0, abs(total) - 1), total) / math.sqrt(max(1, n * (n - 1) * (2 * n + 5)) / 18)
+
+
+def _turns(run: Run, dampers: list[int], start: float) -> float:
+    """Return the least number of turns since a time of the cavities whose loss depends on their angle."""
+    arrays, turns = run.arrays, [math.inf]
+    late = arrays.time >= start
+    for number in dampers:
+        damper = run.case.particle_dampers[number]
+        rotation = damper.rotation
+        if rotation is None:
+            continue
+        axis, field = unit_vector(rotation.axis), np.max(np.abs(arrays.cavity_speed[late, number])) ** 2
+        across = float(np.linalg.norm(np.cross(damper.gravity, axis)))
+        varies = across > _TURNS["gravity"] * field * float(np.linalg.norm(rotation.radial))
+        if rotation.vibration == "machine":
+            velocity = (arrays.cavity_velocity[:, number] + arrays.base_velocity)[late]
+            part = np.abs(np.cross(velocity, axis)).max()
+            varies |= bool(part > _TURNS["vibration"] * np.abs(velocity).max())
+        angle = np.interp([start, arrays.time[-1]], arrays.time, arrays.cavity_angle[:, number])
+        turned = abs(float(angle[1] - angle[0])) / (2 * math.pi)
+        if rotation.is_rocking:
+            turned = (arrays.time[-1] - start) * present(rotation.frequency)
+        if varies and turned * 360 > 1:  # less than a degree is a cavity at rest
+            turns.append(turned)
+    return min(turns)
 
 
 def _turning_velocity(run: Run, dampers: list[int]) -> FloatArray:

@@ -270,16 +270,8 @@ class Case(Part):
                         "the same gravity",
                         ["gravity"],
                     )
-                if (
-                    damper.rotation is not None
-                    and damper.rotation.vibration == "cavity"
-                    and (self.base or self.shaker_motion)
-                ):
-                    raise Hint(
-                        "a motion of the base is along axes of the machine, but this vibration along those of the cavity",
-                        'vibration = "machine", or a load in place of the base motion',
-                        ["rotation", "vibration"],
-                    )
+                if self.base or self.shaker_motion:
+                    damper.check_base("a load in place of the base motion")
                 for number, point in enumerate(damper.points or (damper.point,)):
                     with at(*(("points", number) if damper.points else ("point",))):
                         self.modes.space_shape(point, damper.direction)

@@ -487,6 +487,15 @@ class ParticleDamper(Damper):
                 ["rotation", "axis"],
             )
 
+    def check_base(self, advice: str) -> None:
+        """Raise if the vibration is along axes of a turning cavity, which no motion of the base is."""
+        if self.rotation is not None and self.rotation.vibration == "cavity":
+            raise Hint(
+                "a motion of the base is along axes of the machine, but this vibration along those of the cavity",
+                f'vibration = "machine", or {advice}',
+                ["rotation", "vibration"],
+            )
+
     def _check_room(self) -> None:
         """Raise, before arrays are allocated, if the particles exceed the volume of the cavity or the memory."""
         if self.packing.stated_count is not None:

@@ -163,6 +163,11 @@ class Rotation(Part):
         """Angular frequency of the rocking motion [rad/s]; 0 without one."""
         return 2 * math.pi * (self.frequency or 0.0)
 
+    @property
+    def is_rocking(self) -> bool:
+        """Whether the cavity rocks without turning."""
+        return bool(self.amplitude) and not self.speed and not self.times
+
     def at(self, times: Any) -> AngleAt:
         """Return the angle, the angular velocity and the angular acceleration at times [s]."""
         times = np.asarray(times, dtype=float)

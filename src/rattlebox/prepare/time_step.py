@@ -41,7 +41,8 @@ WARNINGS = {
     "deep_overlap": f"overlaps above {100 * MAX_OVERLAP:g} % of the radius",
     "soft_bed": "softening that lowers the resonance of the bed too close to the excitation",
     "enduring_contacts": f"over {100 * MAX_ENDURING_SHARE:g} % of the loss in enduring contacts, which grows with softening",
-    "unsteady": "motion that is not steady, as of a bed that still sinks; try: more cycles to skip",
+    "unsteady": "motion that is not steady, as of a bed that still sinks, or evaluated in less than a turn of the cavity; "
+    "try: more cycles to skip, or to evaluate",
 }
 """Validity limits that a run can exceed: name and description. Studies test whether a motion is steady, as they know its
 cycles; the others follow from the diagnostics of the run."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rattlebox._util.quantities import quantity
 from rattlebox.analysis.cycle_loss import UNSTEADY, cycle_loss
 from rattlebox.analysis.damping_curve import band_edges, damping_over_amplitude, mean_over_period, smooth_decay
-from rattlebox.model.errors import Hint, nearest
+from rattlebox.model.errors import Hint, at, nearest
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
 from rattlebox.model.plausibility import unusual_motion
@@ -260,6 +260,9 @@ def _prepared(
             f"way = 'shaking' moves each cavity as the mode of the structure does, and {hung[0]!r} moves otherwise",
             "way = 'decay'",
         )
+    for index, damper in enumerate(case.particle_dampers if way == "shaking" else ()):
+        with at("dampers", index):
+            damper.check_base("way = 'decay'")
     count, about = whole_number(packings, "packings", 1), mode_of(case, mode, point)
     return read_amplitudes(amplitudes, about.omega), about, different_starts(case, count)
 

@@ -121,3 +121,52 @@ def test_loss_is_what_the_structure_loses(changes: dict[str, Any], drives: bool)
     # What the drive gives and takes back, since the rest over some cycles may be small by chance.
     exchanged = np.abs(np.diff(arrays.drive_work.sum(axis=1)[arrays.time >= ends[0]])).sum() / cycles
     assert (exchanged > 20e-3 * abs(given)) == drives
+
+
+def turning(rotation: rb.Rotation, structure: Any, duration: Any = "50 ms", **changes: Any) -> rb.Case:
+    """Return a small bed in a can that turns about y, moved along z."""
+    bed = {"packing": rb.Settled(seed=1), "rotation": rotation, "direction": "z"}
+    return rough(**(bed | changes)).model_copy(
+        update={
+            "structure": structure,
+            "duration": rb.Case(structure=rb.Fixed(), duration=duration).duration,
+            "loads": (),
+            "output": rb.Output(rate=24 * FREQUENCY),
+        }
+    )
+
+
+def test_shaking_along_axes_that_turn_is_refused() -> None:
+    """A shaker moves along axes of the machine; the check of cases was skipped where a study puts the damper on one."""
+    blade = rb.Rotation(speed="600 rpm", axis="y", arm=("60 mm", 0, 0), vibration="cavity")
+    case = turning(blade, rb.SDOF(mass="1 kg", frequency="60 Hz", damping_ratio=0.01))
+    with pytest.raises(
+        rb.CaseError, match=r"along those of the cavity\n  try: vibration = \"machine\", or way = 'decay'"
+    ):
+        rb.damping_curve(case, ["0.1 mm", "0.2 mm"], way="shaking", progress=False)
+    data = rb.ShakerLoss(amplitude=["20 m/s^2"], frequency=["60 Hz"], loss_factor=[0.5], error="5 %", cycles=(2, 2))
+    with pytest.raises(rb.CaseError, match="along those of the cavity"):
+        rb.calibrate(data, case, {"damper.friction": (0.1, 0.5)}, progress=False)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "gravity", "turns"),
+    [
+        (rb.Rotation(speed="360 rpm", axis="y", arm=("60 mm", 0, 0)), 0, 0.6),
+        (rb.Rotation(speed="600 rpm", axis="y", arm=("60 mm", 0, 0)), 0, None),
+        (rb.Rotation(speed="360 rpm", axis="z", arm=("60 mm", 0, 0)), 0, None),
+        (rb.Rotation(speed="360 rpm", axis="z", arm=(0, 0, 0)), -9.81, 0.6),
+        (rb.Rotation(amplitude="10 deg", frequency="4 Hz", axis="y", arm=("60 mm", 0, 0)), 0, 0.4),
+        (rb.Rotation(amplitude="10 deg", frequency="20 Hz", axis="y", arm=("60 mm", 0, 0)), 0, None),
+    ],
+)
+def test_part_of_a_turn_is_not_a_steady_loss(rotation: rb.Rotation, gravity: float, turns: float | None) -> None:
+    """The mean loss over a part of a turn depends on the angle of its start, and had an interval as a steady one."""
+    shaker = rb.Shaker(motion=rb.Harmonic(amplitude="30 m/s^2", frequency="60 Hz", direction="z"))
+    case = turning(rotation, shaker, "0.15 s", packing=rb.Lattice(seed=1), gravity=(gravity, 0, 0))
+    loss = cycle_loss(rb.simulate(case), FREQUENCY, 6)
+    assert loss.is_whole_turn == (turns is None)
+    if turns:
+        assert (
+            not loss.is_steady and f"try: a mean over whole turns, {int(np.ceil(6 / turns))} cycles" in loss.warning()
+        )

@@ -171,6 +171,8 @@ def _on_shaker(case: Case, data: ShakerLoss, direction: object) -> Case:
     }
     if direction is not None:
         motion["direction"] = direction
+    for damper in case.particle_dampers:
+        damper.check_base("rb.RingDown, free decays, as data")
     dampers = tuple(damper.model_copy(update={"point": None}) for damper in case.dampers)
     parts = {
         "structure": Shaker(motion=Harmonic(**motion)),
