@@ -324,6 +324,11 @@ class ParticleDamper(Damper):
             ("particles", counted(len(radii), "particle")),
             ("mass of the particles", amount(self.mass, "kg")),
             ("share of the volume of the cavity", amount(share, "%", 3)),
+            *(
+                [("centrifugal acceleration at the centre", f"{self.rotation.centrifugal_ratio():.3g} g")]
+                if self.rotation
+                else []
+            ),
         ]
 
     def words(self) -> str:

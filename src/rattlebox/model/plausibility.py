@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .particle_damper import ParticleDamper
 
 _LARGEST_BODY = 1.0  # m
+_FARTHEST = 10.0  # m, of a cavity from its axis or point
 _LARGEST_FRICTION = 3.0
 _LEAST_PARTICIPATION = 1e-3
 """Participation times shape, from which a base excites a mode: the response of a rigid structure is 1."""
@@ -66,8 +67,9 @@ def plausibility_notes(case: Case, *, signals: bool = True) -> tuple[str, ...]:
         for note in damper.interior.notes(float(damper.contents.radius.min()))
         if note.startswith("warning: ")
     )
+    distant = (warning for damper, places in case.cell_groups for warning in _check_places(damper, places))
     loads = (*_check_amplitudes(case), *(_check_signals(case) if signals else ()))
-    warnings = (*_check_structure(case), *loads, *dampers, *room)
+    warnings = (*_check_structure(case), *loads, *dampers, *distant, *room)
     about_structure = (*case.structure.notes(), *(case.structure.base_notes() if case.base else ()))
     notes = (*(f"note: {note}" for note in about_structure), *_note_assumptions(case))
     return (*notes, *(f"warning: {warning}" for warning in warnings))
@@ -314,6 +316,15 @@ def _check_directions(case: Case) -> Iterator[str]:
 
 def _format(direction: Direction) -> str:
     return direction if isinstance(direction, str) else "({:g}, {:g}, {:g})".format(*direction)
+
+
+def _check_places(damper: ParticleDamper, places: Vector) -> Iterator[str]:
+    """Yield a warning about cells that are far from their point, or from the axis about which they turn."""
+    turns = damper.rotation is not None
+    away = float(np.linalg.norm(places + (damper.rotation.arm if damper.rotation else 0.0), axis=1).max(initial=0.0))
+    if away > _FARTHEST * _ROUNDING:
+        what = "axis, more than usual; check arm" if turns else "point, more than usual; check offsets"
+        yield f"a cavity is {away:.4g} m from its {what} and {'offsets and their units' if turns else 'their unit'}"
 
 
 def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:

@@ -9,6 +9,8 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from rattlebox._util.quantities import amount
+
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint
@@ -163,6 +165,14 @@ class Rotation(Part):
         """Angular frequency of the rocking motion [rad/s]; 0 without one."""
         return 2 * math.pi * (self.frequency or 0.0)
 
+    def words(self) -> str:
+        """Return a phrase about the motion, without the place of the cavity."""
+        about = f"about {self.axis if isinstance(self.axis, str) else ', '.join(f'{part:.3g}' for part in self.axis)}"
+        if self.is_rocking:
+            return f"rocks by {math.degrees(self.amplitude):.4g} deg at {amount(self.rocking / (2 * math.pi), 'Hz')} {about}"
+        speed = f"{self.largest(max((0.0, *self.times))).speed * 30 / math.pi:.4g} rpm"
+        return f"turns at {'up to ' if self.times else ''}{speed} {about}"
+
     @property
     def is_rocking(self) -> bool:
         """Whether the cavity rocks without turning."""
@@ -222,6 +232,9 @@ class Rotation(Part):
     def centrifugal_ratio(self, gravity: float = 9.81) -> float:
         r"""Return the largest centrifugal acceleration at the centre of the cavity over gravity, at the stated speeds.
 
+        It is zero for a cavity on the axis, such as a drum, whose particles stay at the wall above :math:`\Omega^2 R = g`
+        with the radius R of their path.
+
         Parameters
         ----------
         gravity
@@ -230,7 +243,7 @@ class Rotation(Part):
         Returns
         -------
         float
-            :math:`\Omega^2 R / g`; a bed in a drum stays at the wall where it exceeds 1.
+            :math:`\Omega^2 R / g`, with the distance R of the centre from the axis.
         """
         last = max((0.0, *self.times))
         return float(self.largest(last).speed ** 2 * np.linalg.norm(self.radial)) / gravity

@@ -358,7 +358,7 @@ def _oriented(vertices: Vector, faces: Faces, shell: Faces, notes: list[str]) ->
         if _side(inside[outer], points) < 0:
             raise Hint(
                 f"the surface has {len(volumes)} shells; one near {_place(points[0])} is outside of the largest one",
-                "one file for each cavity; bodies inside are shells of the same file, or `bodies`",
+                "one cell in a file, and offsets for equal cells; bodies inside are shells of the same file, or `bodies`",
             )
         for other in numbers:
             if other not in (k, outer) and _side(inside[other], points) > 0:

@@ -78,7 +78,7 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
         figure = StyledFigure(size, (0.72 if narrow else 0.4) * shape[0])
         panels: list[Axes] = list(figure.subplots(*shape, squeeze=False).ravel())
         marks = {number: str(k + 1) for k, group in enumerate(groups) for number in group.numbers}
-        draw_structure(panels[0], case, marks if len(marks) > 1 else dict.fromkeys(marks, ""))
+        draw_structure(panels[0], case, marks if len(groups) > 1 else dict.fromkeys(marks, ""))
         panels[0].set_title(_loads(case), parse_math=False)
         for k, (panel, group) in enumerate(zip(panels[1:], shown, strict=False)):
             draw_damper(group.damper, panel, group.cells)
@@ -90,6 +90,7 @@ def plot_case(case: Case, *, size: Size = "page") -> Figure:
             panel.set_axis_off()
         if len(groups) > len(shown):
             panels[0].set_xlabel(f"{len(groups) - len(shown)} further dampers are not drawn")
+        figure.draw_without_rendering()  # Equal scales change the room for titles, which only a second layout takes in.
     return figure
 
 
@@ -108,8 +109,10 @@ def _groups(case: Case) -> list[_Group]:
         together += [cells] * len(places)
     groups: dict[str, _Group] = {}
     for number, (damper, drawn) in enumerate(zip(each_damper(case), together, strict=True)):
-        # Dampers that differ in name, point, start and random seed only have equal drawings, which show no rotation.
+        # Dampers that differ in name, point, start, random seed and place on the rotor only have equal drawings.
+        rotation = getattr(damper, "rotation", None)
         key = damper.alike().model_copy(update={"name": "", "point": None}).model_dump_json()
+        key += rotation.words() if rotation else ""
         groups.setdefault(key, _Group(damper, [], drawn)).numbers.append(number)
     return list(groups.values())
 

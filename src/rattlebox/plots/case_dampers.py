@@ -160,11 +160,14 @@ def _draw_particle_damper(damper: ParticleDamper, axes: Axes, cells: Cells) -> N
         *_contents(damper),
         damper.cavity.words().removeprefix("a "),
         *(f"with {each}" for each in inside),
+        *([damper.rotation.words()] if damper.rotation else []),
     ]
     _draw_directions(axes, damper, left - 5.2 * unit, bottom, unit)
     text(axes, (0.5 * (left + right), bottom - 3.4 * unit), "\n".join(words), va="top")
     axes.set_xlim(left - 7 * unit, right + 4 * unit)
-    axes.set_ylim(bottom - (9 + bool(several)) * unit, max(top + unit, bottom + 7 * unit))  # the latter for gravity
+    axes.set_ylim(
+        bottom - (9 + bool(several) + bool(damper.rotation)) * unit, max(top + unit, bottom + 7 * unit)
+    )  # the latter for gravity
 
 
 def _contents(damper: ParticleDamper) -> list[str]:

@@ -62,7 +62,8 @@ def _attached(case: Case, marks: Marks) -> dict[str, _Attached]:
     points: defaultdict[str, _Attached] = defaultdict(_Attached)
     modes = case.structure.modes()
     for number, damper in enumerate(each_damper(case)):
-        points[modes.point(damper.point)].marks.append(marks[number])
+        there = points[modes.point(damper.point)].marks
+        there += [marks[number]] if marks[number] not in there else []  # cells and equal dampers share a mark
     for load in case.loads:
         points[modes.point(load.point)].loads += 1
     for part in case.tuned_masses:
@@ -176,9 +177,10 @@ def _draw_beam(beam: Beam, axes: Axes, case: Case, marks: Marks) -> None:
     above: dict[str, Point] = {name: (x, shown / 2) for name, x in places.items()}
     _draw_points(axes, case, marks, above, shown, unit)
     dimension(axes, (0.0, -shown / 2), (length, -shown / 2), amount(length, "m"), -3.0 * unit)
-    _draw_section(axes, beam, length * 1.15, unit, thick)
+    beside = length * 1.15 + (3 * unit if beam.tip_mass else 0.0)  # the tip mass has its value there
+    _draw_section(axes, beam, beside, unit, thick)
     top = 4.5 * unit + _draw_tuned_masses(axes, case, above, 2.2 * unit)
-    axes.set_xlim(-3 * unit, length * 1.15 + max(thick, unit) + 6 * unit)
+    axes.set_xlim(-3 * unit, beside + max(thick, unit) + 6 * unit)
     axes.set_ylim(-0.5 * shown - 5.5 * unit, 0.5 * shown + top)
 
 

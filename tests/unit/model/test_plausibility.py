@@ -257,6 +257,19 @@ def test_a_cavity_in_metres_is_noted():
     assert note.startswith("warning: the fill ratio of damper is 9.8e-11") and "their units" in note
 
 
+def test_cavities_in_metres_from_their_axis_or_point_are_noted():
+    """An arm or an offset of 45 m is noted, one of 0.4 m is not; the motion of a cell at rest showed nothing unusual."""
+    cells = [[0, 0, 0], [45, 0, 0]]
+    slow = {"speed": 0.1, "axis": "y"}
+    (note,) = of(grains(rotation=rb.Rotation(arm=(45, 0, 0), **slow)))
+    assert note.startswith("warning: a cavity is 45 m from its axis") and "arm and offsets" in note
+    (note,) = of(grains(offsets=cells))
+    assert note.startswith("warning: a cavity is 45 m from its point") and "offsets" in note
+    (note,) = of(grains(offsets=cells, rotation=rb.Rotation(arm=(0.4, 0, 0), **slow)))
+    assert note.startswith("warning: a cavity is 45.4 m from its axis")
+    assert not of(grains(offsets=[[0, 0, 0], [0.4, 0, 0]], rotation=rb.Rotation(arm=(0.4, 0, 0), **slow)))
+
+
 def test_a_record_in_milliseconds_is_noted():
     """A record that is more than a hundred times as long as the run is noted, a shorter one is not."""
     for length, count in ((0.2, 0), (10.0, 0), (600.0, 1)):

@@ -164,6 +164,31 @@ def test_equal_dampers_are_drawn_once() -> None:
     assert len([axes for axes in rb.plot_case(on(beam(), tip, again, other)).axes if axes.get_title(loc="left")]) == 2
 
 
+@pytest.mark.parametrize("size", ["page", "column"])
+def test_cells_share_a_mark_and_titles_are_on_the_page(size: rb.plots.style.Size) -> None:
+    """Seven cells at the tip of a beam: one mark without a number, and a title that the first layout cut off."""
+    cells = [["0 mm", 0, 0], *([f"{23 * i} mm", 0, f"{12 * k} mm"] for i in (-1, 1) for k in (-2, 0, 2))]
+    beam = rb.Beam(length="160 mm", material="aluminium", width="40 mm", height="12 mm", tip_mass="0.4 kg")
+    box = damper(rb.Box(size=("20 mm", "20 mm", "22 mm")), point="tip", offsets=cells)
+    figure = rb.plot_case(
+        rb.Case(structure=beam, damper=box, load=FORCE.model_copy(update={"point": "tip"}), duration=1), size=size
+    )
+    assert is_within_page(figure)
+    assert "7 cells, in each:" in texts(figure) and "\n1\n" not in texts(figure)
+
+
+def test_rotation_is_stated() -> None:
+    """A cavity that turns says so; its drawing looked like one at rest, and another speed is another damper."""
+    holes = [
+        damper(rotation=rb.Rotation(speed=speed, axis="y", arm=("60 mm", 0, 0), angle=angle))
+        for speed, angle in (("300 rpm", 0), ("300 rpm", "90 deg"), ("450 rpm", 0))
+    ]
+    rocking = damper(rotation=rb.Rotation(amplitude="5 deg", frequency="2 Hz", arm=(0, 0, 0)))
+    drawn = texts(rb.plot_case(rb.Case(structure=rb.SDOF(mass=1, frequency=50), dampers=[*holes, rocking], duration=1)))
+    for words in ("turns at 300 rpm about y", "turns at 450 rpm about y", "rocks by 5 deg at 2 Hz about z"):
+        assert drawn.count(words) == 1
+
+
 def test_names_are_not_read_as_mathematics() -> None:
     """Dollar signs and braces in names are drawn as they are."""
     odd = "$\\frac{$ {x} 100 %"
