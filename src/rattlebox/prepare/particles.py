@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox._util.exceptions import RattleboxError
+from rattlebox._util.quantities import amount
 from rattlebox.core import _core
 from rattlebox.model.errors import at
 from rattlebox.model.methods import EventDriven, Output
@@ -80,7 +81,20 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
         for index, (damper, shape) in enumerate(zip(case.particle_dampers, shapes, strict=True))
         for note in periodic_notes(case, damper, shape, damper.label(index))
     ]
-    return Prepared(case, (*notes, *more, *pressed, *periodic), step, tables, starts, fills)
+    return Prepared(case, (*notes, *more, *pressed, *periodic, *_turning_notes(case)), step, tables, starts, fills)
+
+
+def _turning_notes(case: Case) -> list[str]:
+    """Return a note on the energy of particles that turn with their cavities at the start."""
+    energy = sum(
+        0.5 * damper.mass * float(damper.rotation.at(0.0).speed) ** 2 * float(np.sum(damper.rotation.radial**2))
+        for damper in case.particle_dampers
+        if damper.rotation is not None
+    )
+    note = (
+        f"the energy supplied contains {amount(energy, 'J')} of particles that turn with their cavities at the start, "
+    )
+    return [note + "so that shares of it are small: compare losses in joules or in a cycle"] if energy > 0 else []
 
 
 def count_steps(case: Case) -> int:

@@ -170,3 +170,13 @@ def test_part_of_a_turn_is_not_a_steady_loss(rotation: rb.Rotation, gravity: flo
         assert (
             not loss.is_steady and f"try: a mean over whole turns, {int(np.ceil(6 / turns))} cycles" in loss.warning()
         )
+
+
+def test_energy_of_turning_at_the_start_is_noted() -> None:
+    """A note states m (W R)^2 / 2 at the start, which made shares of the energy supplied small without a word."""
+    blade = rb.Rotation(speed=60.0, axis="y", arm=("70 mm", "10 mm", 0))
+    case = turning(blade, rb.Fixed(), "1 ms", packing=rb.Lattice(seed=1))
+    energy = 0.5 * case.particle_dampers[0].mass * (60 * 0.07) ** 2
+    (note,) = [note for note in rb.simulate(case).notes if note.startswith("the energy supplied contains")]
+    assert float(note.split()[4]) == pytest.approx(1e3 * energy, rel=1e-3) and note.split()[5] == "mJ"
+    assert not any("energy supplied" in note for note in rb.simulate(turning(None, rb.Fixed(), "1 ms")).notes)
