@@ -300,17 +300,20 @@ def _off_solids(walls: Walls, places: Array, radii: Array, depth: Array) -> tupl
     number, normal, distance = walls.solids.contacts(places[near], radii[near])
     who, moves = [near[number]], [(distance - radii[near[number]])[:, None] * normal]
     # A centre beyond a surface of triangles has no contact with it: the sphere moves back up the gradient of the distance.
-    for k, solid in enumerate(walls.solids.each):
-        beyond = np.flatnonzero(depth[:, k] < -radii) if solid.form == "mesh" else near[:0]
+    end = 0
+    for solid in walls.solids.each:
+        own = slice(end, end := end + len(solid.walls))
+        nearest = depth[:, own].min(axis=1)
+        beyond = np.flatnonzero(nearest < -radii) if solid.form == "mesh" else near[:0]
         if beyond.size:
             steps = 1e-4 * radii[beyond, None, None] * np.eye(3)
             ahead, back = (
-                walls.solids.distances((places[beyond, None] + side * steps).reshape(-1, 3))[:, k].reshape(-1, 3)
+                walls.solids.distances((places[beyond, None] + side * steps).reshape(-1, 3))[:, own].min(axis=1)
                 for side in (1, -1)
             )
-            uphill = (ahead - back) / np.maximum(np.linalg.norm(ahead - back, axis=1), 1e-300)[:, None]
+            slope = (ahead - back).reshape(-1, 3)
             who.append(beyond)
-            moves.append(-depth[beyond, k, None] * uphill)
+            moves.append((-nearest[beyond] / np.maximum(np.linalg.norm(slope, axis=1), 1e-300))[:, None] * slope)
     return np.concatenate(who), np.concatenate(moves)
 
 

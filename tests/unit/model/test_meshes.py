@@ -234,11 +234,12 @@ def test_packings_avoid_walls_and_bodies(packing):
         assert one.interior.room(positions, one.contents.radius).min() > -1e-9 * 1.5e-3
 
 
-def test_spheres_pushed_through_a_surface_return():
+@pytest.mark.parametrize("groups", [{}, {"floor": "-z", "lid": "+z", "side": "rest"}])
+def test_spheres_pushed_through_a_surface_return(groups):
     """A centre beyond faces, edges and corners of triangles moves back; beds were so loose that none was pushed through."""
     radii = np.full(3, 1.5e-3)
     beyond = np.array([[0.0, 10.9e-3, 1e-3], [15.4e-3, 10.3e-3, 2e-3], [15.2e-3, 10.5e-3, 12.8e-3]])
-    interior = damper(box()).interior
+    interior = damper(box(groups=groups)).interior
     inside = push_apart(interior, beyond, radii, ENLARGEMENT)
     assert interior.room(inside, radii).min() >= 0
     assert np.linalg.norm(inside - beyond, axis=1).max() < 5e-3  # through the nearest face
