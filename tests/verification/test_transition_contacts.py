@@ -50,7 +50,7 @@ def check_whole(seeds: range, law: str) -> None:
         apart = float(np.max(np.abs(end.state - right.state) / np.abs(right.state)))
         assert errors(end, right, sizes) < 4e-9 + 1e3 * apart
     assert 3 * collocated >= len(seeds)
-    assert 2 * collocated >= wanted  # the others are nearly elastic, with a restitution that changes with the speed
+    assert collocated >= 0.95 * wanted
 
 
 LAWS = ("tsuji", "alpha", "jackson-green")
@@ -70,6 +70,37 @@ def test_contacts_solved_as_a_whole(law: str) -> None:
 def test_many_contacts_solved_as_a_whole(law: str) -> None:
     """The same in 900 runs."""
     check_whole(range(100, 400), law)
+
+
+@pytest.mark.parametrize("lost", [1e-2, 3e-3, 1e-3, 1e-4, 1e-6])
+def test_nearly_elastic_contacts_are_solved_as_a_whole(lost: float) -> None:
+    """Contacts with little damping, whose restitution changes with the speed, are solved as a whole for any damping.
+
+    Below a damping ratio of 0.004 they were integrated, at several times the cost; the test of random runs let half of the
+    contacts be integrated.
+    """
+    case = rb.Case(
+        structure=rb.SDOF(mass=0.8, frequency=9.0, damping_ratio=0.02, velocity=0.23),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(**STEEL),
+            gap="1.2 mm",
+            contact=rb.Tsuji(restitution=rb.Tabulated(speeds=[1e-3, 3.0], values=[1 - lost, 1 - 3 * lost])),
+            velocity=0.12,
+        ),
+        load=rb.Harmonic(amplitude=7.0, frequency=8.0, phase=0.4),
+        duration=1.0,
+    )
+    paths = ["dampers[0].gap", "load.amplitude", "structure.mass"]
+    quick = Flow.of(case.replaced({"method": rb.EventDriven(tolerance=1e-13)}), paths)
+    steps = Flow.of(case.replaced({"method": rb.EventDriven(tolerance=2e-14, collocation=False)}), paths)
+    start = quick.start().state
+    end, right = quick.over(start, 0.0, 0.09), steps.over(start, 0.0, 0.09)
+    assert end.ok and right.ok
+    assert end.raw.counts.collocated == len(end.contacts) > 3
+    assert right.raw.counts.collocated == 0
+    sizes = np.r_[np.where(np.arange(start.size) % 2, 0.1, 1e-3), np.abs(quick.values)]
+    apart = float(np.max(np.abs(end.state - right.state) / np.abs(right.state)))
+    assert errors(end, right, sizes) < 4e-9 + 1e3 * apart
 
 
 def resting(gravity: float = 9.81) -> rb.Case:
