@@ -12,20 +12,20 @@ import numpy as np
 import pytest
 from tests.support.quad.closed_forms import CLOSED_FORMS
 from tests.support.quad.compare import deviation
-from tests.support.quad.draw import FAMILIES
+from tests.support.quad.draw import FAMILIES, STOPS
 from tests.support.quad.runs import answers, compile_program, digest, question
-from tests.support.quad.store import CLOSED, Stored, read
+from tests.support.quad.store import CLOSED, STOPS_DATA, Stored, read
 
 STATE = 2e-13
-"""Largest error of a state, in units of the largest gap and the largest approach speed and for each unit of growth."""
+"""Largest error of a state over its growth, in units of the largest gap and the largest approach speed."""
 STATE_COLLOCATED = 5e-13
-"""The same with collocated contacts, whose energy balance is tested relative to a part of the energy of all bodies."""
+"""The same with stops, and with collocated contacts: their energy is compared with a part of the energy of all bodies."""
 DERIVATIVES = 1e-9
 """Largest error of a derivative, as a part of the largest term of its component."""
 FLOORS = {"power": 1e-7}
-"""The same of laws with any power of the overlap in the dashpot: its derivative is singular where a contact begins."""
+"""The same of power laws: the derivative of their dashpot is singular where a contact begins."""
 PART = 5
-"""One in so many runs is compared by the fast test."""
+"""The fast test compares every fifth run."""
 
 
 @pytest.fixture(scope="module")
@@ -50,8 +50,8 @@ def check(several: list[Stored]) -> None:
     wrong = []
     for each in several:
         error = deviation(each)
-        floor = FLOORS.get(each.run["family"], DERIVATIVES)
-        state = STATE_COLLOCATED if error.collocated else STATE
+        floor = FLOORS.get(each.run["family"].removesuffix(" stops"), DERIVATIVES)
+        state = STATE_COLLOCATED if error.collocated or each.run.get("stops") else STATE
         if not (error.agrees and error.state < state and error.derivatives < floor):
             wrong.append((each.run["number"], each.run["family"], error))
     assert not wrong
@@ -63,17 +63,39 @@ def test_random_runs(runs: list[Stored], family: str) -> None:
     check([each for each in runs[::PART] if each.run["family"] == family])
 
 
+@pytest.mark.parametrize("family", STOPS)
+def test_random_runs_with_stops(family: str) -> None:
+    """Runs with stops, and runs that end within a contact, equal those of the program.
+
+    The program had no stops, and all of its runs ended in flight: nothing independent computed derivatives of either.
+    """
+    check([each for each in read(STOPS_DATA)[1][::2] if each.run["family"] == family])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("family", STOPS)
+def test_all_random_runs_with_stops(family: str) -> None:
+    """The same of all 230 runs."""
+    check([each for each in read(STOPS_DATA)[1] if each.run["family"] == family])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_all_random_runs(runs: list[Stored], family: str) -> None:
-    """The same of all 1000 runs."""
+    """The same of all 1000 runs without stops."""
     check([each for each in runs if each.run["family"] == family])
 
 
 def test_stored_runs_are_those_of_the_program(runs: list[Stored]) -> None:
-    """The files are of the present program, hold all kinds of runs, and state errors far below those of the comparison."""
+    """The files state the digest of the present program, contain all kinds of runs, and are more exact than the limits."""
     about, _ = read()
-    assert about["program"] == read(CLOSED)[0]["program"] == digest()
+    with_stops, stopped = read(STOPS_DATA)
+    assert about["program"] == with_stops["program"] == read(CLOSED)[0]["program"] == digest()
+    assert max(with_stops["errors"]) < 1e-11
+    assert len(stopped) == 230
+    assert {each.run["family"] for each in stopped} == set(STOPS)
+    assert {stop["other"] >= 0 for each in stopped for stop in each.run["stops"]} == {False, True}
+    assert sum(each.run["fraction"] < 0 for each in stopped) > 50
     assert len(runs) == 1000
     assert {each.run["family"] for each in runs} == set(FAMILIES)
     assert {each.run["structure"]["kind"] for each in runs} == {"sdof", "matrices", "fixed"}
@@ -85,7 +107,7 @@ def test_stored_runs_are_those_of_the_program(runs: list[Stored]) -> None:
 
 @pytest.mark.parametrize("name", CLOSED_FORMS)
 def test_stored_answers_with_closed_forms(name: str) -> None:
-    """What the program answered equals the closed form, of the state and of each derivative."""
+    """The stored answers of the program equal the closed forms of the state and of each derivative."""
     form = CLOSED_FORMS[name]
     stored = read(CLOSED)[1][list(CLOSED_FORMS).index(name)]
     assert (stored.run, stored.paths) == (form.run, form.paths)
@@ -105,7 +127,7 @@ def compare(state: np.ndarray, derivatives: np.ndarray, name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CLOSED_FORMS)
 def test_program_with_closed_forms(program: Path, name: str) -> None:
-    """The program, compiled here, equals the closed form."""
+    """The program compiled on this machine computes the closed forms."""
     form = CLOSED_FORMS[name]
     (answer,) = answers(program, [question(form.run, form.paths)])
     assert not isinstance(answer, str)
@@ -124,7 +146,7 @@ def test_equal_elastic_balls_exchange_derivatives(program: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [0, 7, 19, 45])
 def test_program_repeats_stored_runs(program: Path, runs: list[Stored], number: int) -> None:
-    """The program, compiled here, answers what is stored, also with half of the step in time."""
+    """The program compiled on this machine computes the stored runs again, also with half of the step in time."""
     stored = runs[number]
     for options in ((), ("30", "-32")):
         (answer,) = answers(program, [question(stored.run, stored.paths)], options)

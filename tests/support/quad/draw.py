@@ -29,6 +29,8 @@ SOFT = (
 )
 FAMILIES = tuple(f"hard {name}" for name in HARD) + SOFT
 """Kinds of runs, drawn by turns."""
+STOPS = tuple(f"{name} stops" for name in FAMILIES)
+"""The same with stops, with or without a damper; soft ones may end within a contact."""
 
 SLOW = 0.01
 """Smallest approach speed, as a part of the largest one of the run; below it a contact is close to grazing."""
@@ -40,6 +42,8 @@ TIE = 0.1
 """Smallest difference of the logarithms of the hardness of two bodies in contact."""
 GROWTH = 1e6
 """Largest growth of a small change, in units of the largest values of the motion."""
+GROWTH_WITH_STOPS = 1e3
+"""The same of runs with stops, half of which end within a contact, where derivatives change in microseconds."""
 
 
 def uniform(rng: np.random.Generator, low: float, high: float) -> float:
@@ -247,9 +251,28 @@ def damper(rng: np.random.Generator, family: str, place: int, most: int) -> Run:
     }
 
 
+def stop(rng: np.random.Generator, family: str, places: int) -> Run:
+    """Return a stop between a degree of freedom and the ground or another one."""
+    place = int(rng.integers(places))
+    others = [-1, *(other for other in range(places) if other != place)]
+    return {
+        "place": place,
+        "other": int(rng.choice(others)),
+        "side": str(rng.choice(["leading", "trailing"])),
+        "gap": uniform(rng, 5e-4, 3e-3),
+        "radius": uniform(rng, 5e-3, 3e-2),
+        "material": material(rng, []),
+        "wall": str(rng.choice(["own", "rigid"])),
+        "contact": contact(rng, family),
+    }
+
+
 def draw(rng: np.random.Generator, family: str) -> Run:
     """Return a random run of a family."""
+    has_stops, family = family in STOPS, family.removesuffix(" stops")
     base = structure(rng)
+    while has_stops and base["kind"] == "fixed":
+        base = structure(rng)
     own = {"sdof": 1, "fixed": 0}.get(base["kind"]) if base["kind"] != "matrices" else len(base["M"])
     assert own is not None
     tuned = [
@@ -267,13 +290,13 @@ def draw(rng: np.random.Generator, family: str) -> Run:
     loads = [load(rng, int(rng.integers(own)))] if own and rng.random() < 0.7 else []
     if rng.random() < 0.3 or not own:
         loads.append(load(rng, -1))
-    count = int(rng.choice([1, 2, 3], p=[0.45, 0.35, 0.2]))
+    count = int(rng.integers(2)) if has_stops else int(rng.choice([1, 2, 3], p=[0.45, 0.35, 0.2]))
     dampers = []
     for i in range(count):
         # Balls of a tenth of the mass that carries them: heavy ones belong to the structure, not to a tuned mass.
         place = int(rng.integers(all_places if rng.random() < 0.2 else own)) if own else -1
         dampers.append(damper(rng, family, place, 3 if i == 0 else 1))
-    return {
+    run = {
         "structure": base,
         "tuned": tuned,
         "loads": loads,
@@ -282,6 +305,11 @@ def draw(rng: np.random.Generator, family: str) -> Run:
         "target": int(rng.integers(2, 9)),
         "fraction": uniform(rng, 0.2, 0.8),
     }
+    if has_stops:
+        run["stops"] = [stop(rng, family, all_places) for _ in range(int(rng.integers(1, 3)))]
+        if family in SOFT and rng.random() < 0.5:
+            run["fraction"] *= -1  # ends within a contact
+    return run
 
 
 def parameters(rng: np.random.Generator, run: Run, most: int = 5) -> list[str]:
@@ -305,19 +333,26 @@ def parameters(rng: np.random.Generator, run: Run, most: int = 5) -> list[str]:
             used = {path for path in used if not path.startswith(f"dampers[{i}].ball_contact")}
         if run["hard"] and each["contact"]["kind"] == "tsuji":
             used -= {path for path in laws if path.startswith(f"dampers[{i}].")}
-    gaps = [f"dampers[{i}].gap" for i in range(len(run["dampers"]))]
+    stops = run.get("stops", [])
+    gaps = [f"dampers[{i}].gap" for i in range(len(run["dampers"]))] + [f"stops[{i}].gap" for i in range(len(stops))]
     first = [str(rng.choice(gaps))]
     groups = [
         [path for path in sorted(used) if path.startswith(("loads", "base"))],
         [path for path in sorted(used) if ".contact" in path or ".ball_contact" in path],
         [path for path in sorted(used) if path.startswith(("structure", "tuned"))],
         [path for path in sorted(used) if path.startswith("dampers") and ".balls" in path],
+        [path for path in sorted(used) if path.startswith("stops") and not path.endswith(".gap")],
         [path for path in sorted(used) if path.endswith((".start", ".velocity")) and path.startswith("dampers")],
     ]
     chosen = first + [str(rng.choice(group)) for group in groups if group]
     rest = [path for path in sorted(used) if path not in chosen]
     chosen += [str(path) for path in rng.permutation(rest)]
-    return chosen[:most]
+    return list(dict.fromkeys(chosen))[:most]
+
+
+def gaps_of(run: Run) -> list[float]:
+    """Return the gaps of dampers and stops."""
+    return [each["gap"] for each in [*run["dampers"], *run.get("stops", [])]]
 
 
 def scales(run: Run, touches: Any, paths: list[str]) -> tuple[Any, Any]:
@@ -326,7 +361,7 @@ def scales(run: Run, touches: Any, paths: list[str]) -> tuple[Any, Any]:
     Positions have the largest gap, velocities the largest approach speed, and parameters their own size.
     """
     deck, _ = deck_of(run)
-    length = max(each["gap"] for each in run["dampers"])
+    length = max(gaps_of(run))
     speed = max(touch[3] for touch in touches)
     state = np.array([length] * size(run) + [speed] * size(run))
     values = [abs(deck.numbers[deck.index[path]]) or 1.0 for path in paths]
@@ -339,7 +374,7 @@ def left_out(run: Run, answer: Answer, paths: list[str]) -> str:
     times = [touch[2] for touch in answer.touches]
     if min(speeds) < SLOW * max(speeds):
         return "slow"
-    if answer.miss < MISS * min(each["gap"] for each in run["dampers"]):
+    if answer.miss < MISS * min(gaps_of(run)):
         return "miss"
     if run["hard"] and len(times) > 1 and min(np.diff(times)) < TOGETHER:
         return "together"
@@ -347,4 +382,4 @@ def left_out(run: Run, answer: Answer, paths: list[str]) -> str:
         return ""
     rows, columns = scales(run, answer.touches, paths)
     growth = np.abs(answer.derivatives * columns / rows[:, None]).max()
-    return "growth" if not growth < GROWTH else ""
+    return "growth" if not growth < (GROWTH_WITH_STOPS if run.get("stops") else GROWTH) else ""

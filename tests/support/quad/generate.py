@@ -7,6 +7,7 @@ import collections
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from .closed_forms import CLOSED_FORMS
-from .draw import FAMILIES, draw, left_out, parameters, scales
+from .draw import FAMILIES, STOPS, draw, left_out, parameters, scales
 from .runs import Answer, Run, answers, compile_program, digest, question
-from .store import CLOSED, DATA, Stored, read, write
+from .store import CLOSED, DATA, STOPS_DATA, Stored, read, rounded, write
 
 CHECKED = 20
 """One in so many runs has differences with a second step, too, and is computed again with half of the step in time."""
@@ -24,9 +25,11 @@ FINER = ("30", "-32")
 """Options of the program for half of the step in time, since 2^-30 = 1e-9: a tolerance of 1e-32 in place of 1e-23."""
 
 
-def one(program: Path, seed: int, number: int) -> tuple[Run, list[str], Answer, collections.Counter[str]]:
+def one(
+    program: Path, seed: int, number: int, families: Sequence[str] = FAMILIES
+) -> tuple[Run, list[str], Answer, collections.Counter[str]]:
     """Return the first run of a number that no rule leaves out, and how many were left out by reason."""
-    family = FAMILIES[number % len(FAMILIES)]
+    family = families[number % len(families)]
     reasons: collections.Counter[str] = collections.Counter()
     for trial in range(300):
         rng = np.random.default_rng([seed, number, trial])
@@ -99,6 +102,17 @@ def merge(parts: list[Path], output: Path) -> dict[str, Any]:
     return stated
 
 
+def restate(program: Path, path: Path) -> None:
+    """State the present program in a file, if it answers one stored run in 20 to the last bit as the former one did."""
+    stated, runs = read(path)
+    for each in runs[::CHECKED]:
+        (answer,) = answers(program, [question(each.run, each.paths)])
+        assert not isinstance(answer, str), (each.run["number"], answer)
+        assert np.array_equal(answer.state, each.state), each.run["number"]
+        assert np.array_equal(rounded(answer.derivatives.copy()), each.derivatives), each.run["number"]
+    write(path, stated | {"program": digest()}, runs)
+
+
 def main() -> None:
     """Generate the file, or a part of it, and print what was left out and how exact the runs are."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -107,25 +121,36 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--compiler", default="g++")
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("--output", type=Path, default=DATA)
+    parser.add_argument("--stops", action="store_true", help="runs with stops")
+    parser.add_argument("--output", type=Path, help="default: runs.npz, or stops.npz")
+    parser.add_argument(
+        "--restate",
+        action="store_true",
+        help="compute one run in 20 again, and only state the program if all are the same",
+    )
     parser.add_argument(
         "--merge", type=Path, nargs="+", metavar="PART", help="parts to write as one file, in their order"
     )
     options = parser.parse_args()
+    families, output = (STOPS, STOPS_DATA) if options.stops else (FAMILIES, DATA)
+    output = options.output or output
     if options.merge:
-        print(merge(options.merge, options.output))
+        print(merge(options.merge, output))
         return
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "motion"
         if not compile_program(options.compiler, program):
             sys.exit(f"{options.compiler} cannot compile 113-bit arithmetic; try --compiler=g++ with libquadmath")
         write_closed_forms(program)
+        if options.restate:
+            restate(program, output)
+            return
         began = time.time()
         runs, left, worst = [], collections.Counter[str](), np.zeros(3)
         numbers = range(options.first, options.first + options.count)
         with ThreadPoolExecutor(options.jobs) as pool:
             for number, (run, paths, answer, reasons) in zip(
-                numbers, pool.map(lambda number: one(program, options.seed, number), numbers), strict=True
+                numbers, pool.map(lambda number: one(program, options.seed, number, families), numbers), strict=True
             ):
                 run["number"] = number
                 runs.append(Stored(run, paths, answer.state, answer.derivatives, answer.touches))
@@ -134,7 +159,7 @@ def main() -> None:
                     worst = np.maximum(worst, errors(program, run, paths, answer))
                     print(f"{number} {time.time() - began:.0f} s, errors {worst}", file=sys.stderr, flush=True)
     stated = about(options.seed, left, worst)
-    write(options.output, stated, runs)
+    write(output, stated, runs)
     print(stated)
 
 

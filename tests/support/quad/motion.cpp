@@ -575,7 +575,7 @@ struct Motion {
         read_structure(in);
         const int count = in.whole();
         for (int i = 0; i < count; ++i) read_load(in, loads);
-        read_dampers(in);
+        read_stops(in, read_dampers(in));
         is_hard = in.next() != 0;
         for (Q& x : position) x += in.next();
         for (Q& v : velocity) v += in.next();
@@ -585,8 +585,8 @@ struct Motion {
         if (in.at != numbers.size()) throw Refusal("numbers are left over");
     }
 
-    // Runs to the end, or, if there is none, until contacts are open after the wanted number: then sets the
-    // end.
+    // Runs to the end, or, if there is none, until contacts are open after the wanted number: then sets the end,
+    // in the flight that follows, or with a negative fraction within the last wanted contact.
     void run() {
         const bool plans = end == 0;
         Q opened = -1;
@@ -597,10 +597,15 @@ struct Motion {
             step(last);
             if (touches.size() > 24) throw Refusal("too many contacts");
             if (!plans || static_cast<int>(touches.size()) < target) continue;
+            const Q last_touch = touches[target - 1].time;
             const bool in_flight = std::all_of(contacts.begin(), contacts.end(),
                                                [](const Contact& c) { return c.phase == is_open; });
             if (opened < 0) {
                 if (in_flight) opened = time;
+                if (in_flight && fraction < 0) {
+                    end = static_cast<double>(last_touch - fraction * (opened - last_touch));
+                    return;
+                }
             } else if (touches.size() > before || time >= opened + 0.02Q) {
                 const Q until = touches.size() > before ? touches.back().time : time;
                 if (until - opened < 1e-6Q) throw Refusal("too short a flight");
@@ -610,10 +615,16 @@ struct Motion {
         }
         if (plans) throw Refusal("too few contacts");
         for (const Contact& c : contacts)
-            if (c.phase != is_open) throw Refusal("closed at the end");
+            if (c.phase != is_open && fraction >= 0) throw Refusal("closed at the end");
+        if (fraction < 0 && none_closed()) throw Refusal("open at the end");
     }
 
 private:
+    bool none_closed() const {
+        return std::none_of(contacts.begin(), contacts.end(),
+                            [](const Contact& c) { return c.phase == is_closed; });
+    }
+
     void read_structure(Reader& in) {
         const int own = in.whole();
         std::vector<List> m, c, k;
@@ -697,7 +708,8 @@ private:
         return c;
     }
 
-    void read_dampers(Reader& in) {
+    // Returns the number of dampers.
+    int read_dampers(Reader& in) {
         const int count = in.whole();
         for (int damper = 0; damper < count; ++damper) {
             const int place = in.whole();
@@ -756,6 +768,33 @@ private:
                 contacts.push_back(contact);
             }
             balls += row;
+        }
+        return count;
+    }
+
+    // Stops between a degree of freedom and the ground or another one, numbered after the dampers.
+    void read_stops(Reader& in, int dampers) {
+        const int count = in.whole();
+        for (int stop = 0; stop < count; ++stop) {
+            Contact contact;
+            contact.damper = dampers + stop;
+            const int place = in.whole(), other = in.whole();
+            const Q side = in.next();
+            contact.place = {place, other};
+            contact.sign = {side, -side};
+            contact.offset = -in.next();
+            contact.pair.radius = in.next();
+            const Q young = in.next(), poisson = in.next(), strength = in.next();
+            const Matter own{young, poisson, strength};
+            contact.pair.sides = {own, in.whole() == 2 ? Matter{0, 0, 0} : own};
+            contact.law = Law::read(in);
+            Q yielding = inverse[place][place];
+            if (other >= 0) yielding += inverse[other][other] - 2 * inverse[place][other];
+            contact.pair.mass = 1 / yielding;
+            contact.pair.modulus =
+                1 / (contact.pair.sides[0].compliance() + contact.pair.sides[1].compliance());
+            if (overlap(contact) >= 0) throw Refusal("starts closed");
+            contacts.push_back(contact);
         }
     }
 

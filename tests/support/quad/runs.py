@@ -84,6 +84,10 @@ def deck_of(run: Run) -> tuple[Deck, int]:
     deck.add(len(run["dampers"]))
     for i, damper in enumerate(run["dampers"]):
         _add_damper(deck, damper, f"dampers[{i}]")
+    stops = run.get("stops", [])
+    deck.add(len(stops))
+    for i, stop in enumerate(stops):
+        _add_stop(deck, stop, f"stops[{i}]")
     deck.add(run["hard"])
     offsets = len(deck.numbers)
     deck.extend([0.0] * (2 * size(run)))
@@ -133,6 +137,15 @@ def _add_damper(deck: Deck, damper: Run, path: str) -> None:
         deck.extend([wall["young"], wall["poisson"], wall["yield_stress"]])
     _add_law(deck, damper["contact"], f"{path}.contact")
     _add_law(deck, damper["ball_contact"], f"{path}.ball_contact")
+
+
+def _add_stop(deck: Deck, stop: Run, path: str) -> None:
+    deck.extend([stop["place"], stop["other"], 1 if stop["side"] == "leading" else -1])
+    deck.add(stop["gap"], f"{path}.gap")
+    deck.add(stop["radius"], f"{path}.radius")
+    deck.extend(stop["material"][name] for name in ("young", "poisson", "yield_stress"))
+    deck.add(2 if stop["wall"] == "rigid" else 0)
+    _add_law(deck, stop["contact"], f"{path}.contact")
 
 
 def _add_material(deck: Deck, material: Run, path: str) -> None:
@@ -206,6 +219,7 @@ def case_of(run: Run) -> rb.Case:
             for i, t in enumerate(run["tuned"])
         ],
         dampers=[_damper(damper, names) for damper in run["dampers"]],
+        stops=[_stop(stop, names) for stop in run.get("stops", [])],
         method=rb.Newton() if run["hard"] else rb.EventDriven(tolerance=2e-14),
         duration=1.0,
         **{name: several for name, several in loads.items() if several},
@@ -240,6 +254,19 @@ def _damper(damper: Run, names: list[str]) -> rb.ImpactDamper:
         contact=_law(damper["contact"]),
         ball_contact=_law(damper["ball_contact"]),
         **({} if damper["place"] < 0 else {"point": names[damper["place"]]}),
+    )
+
+
+def _stop(stop: Run, names: list[str]) -> rb.Stop:
+    return rb.Stop(
+        point=names[stop["place"]],
+        other=None if stop["other"] < 0 else names[stop["other"]],
+        side=stop["side"],
+        gap=stop["gap"],
+        radius=stop["radius"],
+        material=_material(stop["material"]),
+        wall="rigid" if stop["wall"] == "rigid" else None,
+        contact=_law(stop["contact"]),
     )
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .runs import Run
 
 DATA = Path(__file__).with_name("runs.npz")
+STOPS_DATA = DATA.with_name("stops.npz")
 CLOSED = DATA.with_name("closed_forms.npz")
 KEPT_BITS = 40
 """Bits of the fraction of a derivative that are stored: a relative error of 5e-13."""
