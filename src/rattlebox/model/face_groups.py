@@ -30,7 +30,16 @@ DIRECTIONS = tuple(sign + axis for sign in ("-", "+", "") for axis in AXES)
 _TOLERANCE = 1e-7  # of a place, over the size of the surface: files in single precision round to half of it
 _IN_PATHS = ".[]"  # characters that have a meaning in paths such as damper.walls.floor.friction
 _EXAMPLE = '{ floor = "-z", side = "rest" }'
-_Range = tuple[Length, Length]
+
+
+def _limits(value: object) -> Any:
+    """Return the lowest and the highest coordinate."""
+    if value is not None and not (isinstance(value, (list, tuple, np.ndarray)) and len(value) == 2):
+        raise Hint("the lowest and the highest coordinate are needed", '["-5 mm", "5 mm"]')
+    return value
+
+
+_Range = Annotated[tuple[Length, Length] | None, BeforeValidator(_limits)]
 
 
 def _outward(value: object) -> Any:
@@ -68,9 +77,9 @@ class FaceGroup(Part):
     elementwise: ClassVar[bool] = False
     facing: Annotated[Direction | None, BeforeValidator(_outward)] = Field(default=None, examples=["-z"])
     within: Angle = float(np.radians(10.0))
-    x: _Range | None = Field(default=None, examples=[["-5 mm", "5 mm"]])
-    y: _Range | None = Field(default=None, examples=[["-5 mm", "5 mm"]])
-    z: _Range | None = Field(default=None, examples=[["-5 mm", "5 mm"]])
+    x: _Range = Field(default=None, examples=[["-5 mm", "5 mm"]])
+    y: _Range = Field(default=None, examples=[["-5 mm", "5 mm"]])
+    z: _Range = Field(default=None, examples=[["-5 mm", "5 mm"]])
     rest: bool = False
 
     @model_validator(mode="after")

@@ -104,7 +104,8 @@ REFUSED = {
     "a wide angle": ({"groups": {"a": {"facing": "x", "within": "100 deg"}}}, "above 0 and up to 90"),
     "a unit of the angle": ({"groups": {"a": {"facing": "x", "within": "10 mm"}}}, "mm"),
     "a turned range": ({"groups": {"a": {"z": ["5 mm", "-5 mm"]}}}, "above the highest"),
-    "one limit": ({"groups": {"a": {"z": ["5 mm"]}}}, "groups.a.z"),
+    "one limit": ({"groups": {"a": {"z": ["5 mm"]}}}, r"groups.a.z(?s:.*)lowest and the highest"),
+    "a number as limits": ({"groups": {"a": {"z": 3}}}, "lowest and the highest"),
     "a number": ({"groups": {"a": 3}}, "a direction, a table, or the word rest"),
     "a list": ({"groups": ["-z"]}, "groups are a table"),
     "another word": ({"groups": "auto"}, "groups are a table"),
@@ -243,6 +244,17 @@ def test_file_without_groups_is_refused_with_advice(tmp_path, name):
         rb.Mesh(file=str(tmp_path / name), unit="mm", groups="file")
     cavity = rb.Mesh(file=str(tmp_path / name), unit="mm", groups={"floor": "-z", "side": "rest"})
     assert areas(cavity) == pytest.approx({"floor": 600, "side": 3100})
+
+
+def test_polygons_with_numbers_are_refused(tmp_path):
+    """A PLY file whose faces have four corners and a number is refused, because the numbers are not those of triangles."""
+    pytest.importorskip("trimesh")
+    text = ply((1, 1, 2, 2, 3, 3)).splitlines()
+    rows = [f"4 {4 * k} {4 * k + 1} {4 * k + 2} {4 * k + 3} {k}" for k in range(6)]
+    head = [line.replace(f"face {len(BOX[1])}", "face 6") for line in text if not line.startswith("3 ")]
+    (tmp_path / "box.ply").write_text("\n".join([*head, *rows]) + "\n")
+    with pytest.raises(rb.DataError, match="more than three corners"):
+        rb.Mesh(file=str(tmp_path / "box.ply"), unit="mm", groups="file")
 
 
 def test_name_of_a_group_of_the_file_is_advised(tmp_path):

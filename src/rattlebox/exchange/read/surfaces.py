@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -93,8 +94,8 @@ def _grouped(path: Path, ending: str, trimesh: Any) -> list[tuple[str, Any]]:
     if ending == ".ply":
         raw = loaded.metadata.get("_ply_raw", {}).get("face", {})
         name = next((name for name in _OF_FACES if name in raw.get("properties", ())), None)
-        number = None if name is None else np.asarray(raw["data"][name]).reshape(-1)
-        if number is not None and len(number) == len(loaded.faces):
+        if name is not None:
+            number = _numbers(path, raw["data"], name, len(loaded.faces))
             each = sorted(set(number.tolist()))
             return [(f"{name} {k:g}", loaded.submesh([np.flatnonzero(number == k)], append=True)) for k in each]
     parts = _parts(loaded)
@@ -102,6 +103,15 @@ def _grouped(path: Path, ending: str, trimesh: Any) -> list[tuple[str, Any]]:
         whole = _parts(trimesh.load(path, process=False, merge_primitives=False))
         return [(f"face {k + 1}", mesh) for k, (_, mesh) in enumerate(whole)]
     return parts
+
+
+def _numbers(path: Path, data: Any, name: str, faces: int) -> NDArray[Any]:
+    """Return the number of each triangle in a PLY file; trimesh loses them where faces have more corners."""
+    with suppress(KeyError, ValueError):
+        number = np.asarray(data[name]).reshape(-1)
+        if len(number) == faces:
+            return number
+    raise DataError(f"{path} has a {name} of faces with more than three corners, which are divided", "triangles only")
 
 
 def _obj_groups(text: str, trimesh: Any) -> list[tuple[str, Any]]:
