@@ -250,21 +250,7 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
     dampers, time = case.particle_dampers, raw.time
     shapes = [cavity.shape for cavity in packed.cavities]
     displacement = np.stack([raw.q @ shape for shape in shapes], axis=1)
-    # In a cavity that turns, the core measures positions along its axes and forces along those of the machine.
-    inside, turning_force, on_structure = displacement.copy(), raw.force.copy(), raw.force.copy()
-    torque = np.zeros(raw.angle.shape)
-    for index, damper in enumerate(dampers):
-        if (rotation := damper.rotation) is None:
-            continue
-        angle, carries = raw.angle[:, index], rotation.vibration == "cavity"
-        turning_force[:, index] = rotation.to_cavity(raw.force[:, index], angle)
-        arm = np.asarray(rotation.arm) + carries * displacement[:, index]
-        if not carries:
-            inside[:, index] = rotation.to_cavity(displacement[:, index], angle)
-        elif case.modes.decay.size:
-            on_structure[:, index] = turning_force[:, index]
-        moment = rotation.to_cavity(raw.moment[:, index], angle) + np.cross(arm, turning_force[:, index])
-        torque[:, index] = -moment @ unit_vector(rotation.axis)
+    inside, turning_force, on_structure, torque = _in_turning_cavities(case, raw, displacement)
     base = np.zeros((3, time.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.multiply.outer(acceleration.motion(time), direction_of_base(dampers, signal))
@@ -309,6 +295,29 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
             **fixed,
         },
     )
+
+
+def _in_turning_cavities(case: Case, raw: _core.Records, displacement: Array) -> tuple[Array, Array, Array, Array]:
+    """Return displacements along the axes of the cavities, forces along them and on the structure, and torques of drives.
+
+    `displacement`: those of the cavities along the axes of the machine, (T, D, 3) [m].
+    """
+    # In a cavity that turns, the core measures positions along its axes and forces along those of the machine.
+    inside, turning_force, on_structure = displacement.copy(), raw.force.copy(), raw.force.copy()
+    torque = np.zeros(raw.angle.shape)
+    for index, damper in enumerate(case.particle_dampers):
+        if (rotation := damper.rotation) is None:
+            continue
+        angle, carries = raw.angle[:, index], rotation.vibration == "cavity"
+        turning_force[:, index] = rotation.to_cavity(raw.force[:, index], angle)
+        arm = np.asarray(rotation.arm) + carries * displacement[:, index]
+        if not carries:
+            inside[:, index] = rotation.to_cavity(displacement[:, index], angle)
+        elif case.modes.decay.size:
+            on_structure[:, index] = turning_force[:, index]
+        moment = rotation.to_cavity(raw.moment[:, index], angle) + np.cross(arm, turning_force[:, index])
+        torque[:, index] = -moment @ unit_vector(rotation.axis)
+    return inside, turning_force, on_structure, torque
 
 
 def _wall_arrays(dampers: Sequence[ParticleDamper], raw: _core.Records) -> dict[str, Any]:

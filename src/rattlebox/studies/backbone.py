@@ -559,12 +559,35 @@ _QUANTITIES = {
 }
 
 
+def _mean_and_limits(
+    values: FloatArray, error: FloatArray, motions: NDArray[np.int64]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the mean over the starts at each amplitude, and the limits of its 95 % interval.
+
+    `values`: those of each start, (starts, A); NaN where none was found. `error`: relative error by the transient, (A,).
+    `motions`: number of the motion of each start, (starts, A).
+    """
+    from scipy import stats
+
+    part, count = np.ma.masked_invalid(values), np.isfinite(values).sum(axis=0)
+    mean = part.mean(axis=0).filled(np.nan)
+    half = np.full(mean.size, np.nan)
+    several = count > 1
+    scatter = part.std(axis=0, ddof=1).filled(np.nan)[several] / np.sqrt(count[several])
+    half[several] = np.hypot(stats.t.ppf(0.975, count[several] - 1) * scatter, (mean * error)[several])
+    lower, upper = mean - half, mean + half
+    # The interval of the mean of many starts in several motions is narrower than the distance of these.
+    for level in np.flatnonzero(motions.max(axis=0) > 0):
+        ends = _limits_of_motions(values[:, level], motions[:, level])
+        lower[level], upper[level] = min(lower[level], ends[0]), max(upper[level], ends[1])
+    return mean, lower, upper
+
+
 def _dataset(
     searches: list[_Search], levels: FloatArray, starts: int, target: _Target, case: Case, messages: list[str]
 ) -> xarray.Dataset:
     """Return the means over the starts, their intervals, and the values of each start."""
     import xarray
-    from scipy import stats
 
     shape = starts, levels.size
     found = np.array([search.is_found for search in searches]).reshape(shape)
@@ -586,18 +609,8 @@ def _dataset(
     motions = np.array([_motions(searches[level :: levels.size]) for level in range(levels.size)]).T
     for name, (units, long_name) in _QUANTITIES.items():
         about = {"units": units, "long_name": long_name}
-        part = np.ma.masked_invalid(values[name])
-        mean = part.mean(axis=0).filled(np.nan)
-        half = np.full(levels.size, np.nan)
-        several = count > 1
-        scatter = part.std(axis=0, ddof=1).filled(np.nan)[several] / np.sqrt(count[several])
-        bias = mean * error * (result.damping_ratio.values if name == "frequency" else 1)
-        half[several] = np.hypot(stats.t.ppf(0.975, count[several] - 1) * scatter, bias[several])
-        lower, upper = mean - half, mean + half
-        # The interval of the mean of many starts in several motions is narrower than the distance of these.
-        for level in np.flatnonzero(motions.max(axis=0) > 0):
-            ends = _limits_of_motions(values[name][:, level], motions[:, level])
-            lower[level], upper[level] = min(lower[level], ends[0]), max(upper[level], ends[1])
+        relative = error * (result.damping_ratio.values if name == "frequency" else 1)
+        mean, lower, upper = _mean_and_limits(values[name], relative, motions)
         result[name] = "amplitude", mean, about
         result[f"{name}_lower"] = "amplitude", lower, {**about, "long_name": f"lower limit of the {long_name}"}
         result[f"{name}_upper"] = "amplitude", upper, {**about, "long_name": f"upper limit of the {long_name}"}

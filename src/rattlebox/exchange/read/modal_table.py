@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -125,69 +126,89 @@ def _words(name: str) -> str:
     return " ".join(name.lower().replace("_", " ").split())
 
 
-def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: FloatArray) -> ModesInFile:
-    """Return the modes in a table of columns with these names and units."""
+@dataclass(frozen=True)
+class _Columns:
+    """Columns of a table of modes."""
 
-    def scale(column: int, factors: dict[str, float] | dict[str, float | None]) -> float | None:
-        unit = units[column].strip()
+    path: Path
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    table: FloatArray
+
+    def scale(self, column: int, factors: Mapping[str, float | None]) -> float | None:
+        """Return the factor of the unit of a column; raise if it is none of those in `factors`."""
+        unit = self.units[column].strip()
         key = unit.lower() if unit.lower() in factors else unit
         if key not in factors:
             raise DataError(
-                f"{path}: the column {names[column]!r} has the unknown unit {unit!r}",
+                f"{self.path}: the column {self.names[column]!r} has the unknown unit {unit!r}",
                 " or ".join(repr(word) for word in factors if word),
             )
         return factors[key]
 
-    columns, points, others = _quantities_and_points(path, names)
-    # The unit of mass follows from what the table states: modal masses, or else the unit kg^-1/2 of mass-normalised
-    # shapes.
-    (frequency,) = columns["frequency"]
-    modal_masses, mass_unit = None, None
-    if "mass" in columns:
-        (column,) = columns["mass"]
-        mass_unit, modal_masses = scale(column, _MASS), table[:, column]
-    else:
-        roots = {scale(column, _SHAPE) for axes in points.values() for column in axes.values()}
-        if len(roots) > 1:
-            raise DataError(f"{path}: the mode shapes are in different units", "one unit for all of them")
-        mass_unit = roots.pop()
-    participation = None
-    if "participation" in columns:
-        places = columns["participation"]
-        if len(places) > 1:
-            by_axis = {_AXES.get(_words(names[column]).rpartition(" ")[2], -1): column for column in places}
-            if sorted(by_axis) != [0, 1, 2]:
-                found = " and ".join(repr(names[column]) for column in places)
-                raise DataError(
-                    f"{path}: {found} are not the participation along x, y and z",
-                    "participation x, participation y and participation z; or one column for points on a line",
-                )
-            places = [by_axis[axis] for axis in range(3)]
-        participation = table[:, places[0]] if len(places) == 1 else table[:, places]
-        # phi^T M r has the unit of mass for shapes with modal masses, and of its root for mass-normalised shapes.
-        stated = {scale(column, _PARTICIPATION if modal_masses is None else _MASS) for column in places} - {None}
-        mass_unit = stated.copy().pop() if mass_unit is None and len(stated) == 1 else mass_unit
-        if stated - {mass_unit}:
+    def participation(self, columns: list[int]) -> FloatArray:
+        """Return the participation, (modes,) or along three axes, (modes, 3)."""
+        if len(columns) == 1:
+            return self.table[:, columns[0]]
+        by_axis = {_AXES.get(_words(self.names[column]).rpartition(" ")[2], -1): column for column in columns}
+        if sorted(by_axis) != [0, 1, 2]:
+            found = " and ".join(repr(self.names[column]) for column in columns)
             raise DataError(
-                f"{path}: the participation is in another unit of mass than the mode shapes or modal masses",
+                f"{self.path}: {found} are not the participation along x, y and z",
+                "participation x, participation y and participation z; or one column for points on a line",
+            )
+        return self.table[:, [by_axis[axis] for axis in range(3)]]
+
+    def mass_unit(self, quantities: dict[str, list[int]], points: dict[str, dict[int, int]]) -> float | None:
+        """Return the unit of mass [kg]; None if no column states it.
+
+        It is that of the modal masses, or else follows from the unit kg^-1/2 of mass-normalised shapes.
+        """
+        has_masses = "mass" in quantities
+        if has_masses:
+            unit = self.scale(quantities["mass"][0], _MASS)
+        else:
+            roots = {self.scale(column, _SHAPE) for axes in points.values() for column in axes.values()}
+            if len(roots) > 1:
+                raise DataError(f"{self.path}: the mode shapes are in different units", "one unit for all of them")
+            unit = roots.pop()
+        # phi^T M r has the unit of mass for shapes with modal masses, and of its root for mass-normalised shapes.
+        factors = _MASS if has_masses else _PARTICIPATION
+        stated = {self.scale(column, factors) for column in quantities.get("participation", ())} - {None}
+        if unit is None and len(stated) == 1:
+            (unit,) = stated
+        if stated - {unit}:
+            raise DataError(
+                f"{self.path}: the participation is in another unit of mass than the mode shapes or modal masses",
                 "one unit of mass: (kg^0.5) and (kg^-0.5) without modal masses, (kg) with them",
             )
+        return unit
+
+
+def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: FloatArray) -> ModesInFile:
+    """Return the modes in a table of columns with these names and units."""
+    quantities, points, others = _quantities_and_points(path, names)
+    columns = _Columns(path, names, units, table)
+    participation = quantities.get("participation")
+    along = columns.participation(participation) if participation else None
+    mass_unit = columns.mass_unit(quantities, points)
     # Units that the table leaves out are assumed, and noted with the largest value, which shows a wrong assumption.
-    frequencies, damping = table[:, frequency] * float(scale(frequency, _FREQUENCY) or 1.0), None
+    (frequency,) = quantities["frequency"]
+    frequencies, damping = table[:, frequency] * float(columns.scale(frequency, _FREQUENCY) or 1.0), None
     notes = [f"{path.name}: the column {name!r} is not read" for name in others]
     if not units[frequency].strip():
         notes.append(f"{path.name} states no unit of frequency; Hz is assumed, up to {frequencies.max():.4g} Hz")
-    if "damping" in columns:
-        (column,) = columns["damping"]
-        damping = table[:, column] * float(scale(column, _DAMPING) or 1.0)
+    if "damping" in quantities:
+        (column,) = quantities["damping"]
+        damping = table[:, column] * float(columns.scale(column, _DAMPING) or 1.0)
         if not units[column].strip():
             notes.append(f"{path.name} states no unit of damping; shares of one are assumed, up to {damping.max():.4g}")
     return ModesInFile(
         frequencies=frequencies,
         shapes={name: _shape(table, axes) for name, axes in points.items()},
-        modal_masses=modal_masses,
+        modal_masses=table[:, quantities["mass"][0]] if "mass" in quantities else None,
         damping_ratios=damping,
-        participation=participation,
+        participation=along,
         mass_unit=mass_unit,
         notes=tuple(notes),
     )

@@ -261,6 +261,48 @@ def read_frd(path: Path, _: ModesRequest) -> ModesInFile:
         return _made(path, squares, shapes, masses, ())
 
 
+def _tables_of_dat(path: Path) -> tuple[dict[str, dict[int, list[float]]], list[float], Table]:
+    """Return the rows of each table of a .dat file by mode, the total effective masses, and the displacements."""
+    rows: dict[str, dict[int, list[float]]] = {}
+    total: list[float] = []
+    shapes: Table = {}
+    table, mode, is_shape = "", 0, False
+    for number, line in enumerate(_lines(path), start=1):
+        cells = line.split()
+        if found := re.match(r"^ +E I G E N V A L U E    N U M B E R +(\d+)", line):
+            table, mode, is_shape = "", int(found[1]), False
+        elif re.match(r"^ +[A-Z] [A-Z] ", line):
+            table, is_shape = line.replace(" ", ""), False
+            if table in rows:
+                raise DataError(
+                    f"{path}, line {number}: {line.strip()} is in the file twice",
+                    "the results of one frequency step",
+                )
+            rows[table] = {}
+            mode = 0
+        elif " for set " in line and " and time " in line:
+            is_shape = bool(mode) and line.startswith(" displacements (vx,vy,vz)")
+        elif "NODAL" in cells or "DIAMETER" in cells:
+            raise DataError(f"{path}, line {number}: the modes are those of a cyclic sector", "the whole structure")
+        elif not cells:
+            continue
+        elif is_shape:
+            if cells[-1] == "L":
+                raise DataError(
+                    f"{path}, line {number}: displacements are along local axes (*TRANSFORM)",
+                    "*NODE PRINT, GLOBAL=YES",
+                )
+            label, texts = line[:10].strip(), [line[10 + 14 * k : 24 + 14 * k] for k in range(3)]
+            if not label.isdigit():
+                raise DataError(f"{path}, line {number}: {label[:20]!r} is no number of a node", "an integer")
+            _add(path, number, shapes.setdefault(mode, {}), int(label), _floats(path, number, texts))
+        elif table and cells[0].isdigit():
+            rows[table][int(cells[0])] = _floats(path, number, cells[1:])
+        elif table == "TOTALEFFECTIVEMASS" and cells[0] != "MODE":
+            total = _floats(path, number, cells)
+    return rows, total, shapes
+
+
 @modes_reader(contents=_DAT_STARTS)
 def read_dat(path: Path, _: ModesRequest) -> ModesInFile:
     """Read the modes of a .dat file of CalculiX: eigenvalues, participation, and displacements of *NODE PRINT.
@@ -270,43 +312,7 @@ def read_dat(path: Path, _: ModesRequest) -> ModesInFile:
     The modes are mass-normalised: the effective masses are the squares of the participation, which is checked.
     """
     with errors_of(path, "a .dat file of CalculiX"):
-        rows: dict[str, dict[int, list[float]]] = {}
-        total: list[float] = []
-        shapes: Table = {}
-        table, mode, is_shape = "", 0, False
-        for number, line in enumerate(_lines(path), start=1):
-            cells = line.split()
-            if found := re.match(r"^ +E I G E N V A L U E    N U M B E R +(\d+)", line):
-                table, mode, is_shape = "", int(found[1]), False
-            elif re.match(r"^ +[A-Z] [A-Z] ", line):
-                table, is_shape = line.replace(" ", ""), False
-                if table in rows:
-                    raise DataError(
-                        f"{path}, line {number}: {line.strip()} is in the file twice",
-                        "the results of one frequency step",
-                    )
-                rows[table] = {}
-                mode = 0
-            elif " for set " in line and " and time " in line:
-                is_shape = bool(mode) and line.startswith(" displacements (vx,vy,vz)")
-            elif "NODAL" in cells or "DIAMETER" in cells:
-                raise DataError(f"{path}, line {number}: the modes are those of a cyclic sector", "the whole structure")
-            elif not cells:
-                continue
-            elif is_shape:
-                if cells[-1] == "L":
-                    raise DataError(
-                        f"{path}, line {number}: displacements are along local axes (*TRANSFORM)",
-                        "*NODE PRINT, GLOBAL=YES",
-                    )
-                label, texts = line[:10].strip(), [line[10 + 14 * k : 24 + 14 * k] for k in range(3)]
-                if not label.isdigit():
-                    raise DataError(f"{path}, line {number}: {label[:20]!r} is no number of a node", "an integer")
-                _add(path, number, shapes.setdefault(mode, {}), int(label), _floats(path, number, texts))
-            elif table and cells[0].isdigit():
-                rows[table][int(cells[0])] = _floats(path, number, cells[1:])
-            elif table == "TOTALEFFECTIVEMASS" and cells[0] != "MODE":
-                total = _floats(path, number, cells)
+        rows, total, shapes = _tables_of_dat(path)
         values = rows.get("EIGENVALUEOUTPUT")
         if not values:
             raise DataError(f"{path} contains no table of eigenvalues", "the results of a step with *FREQUENCY")
