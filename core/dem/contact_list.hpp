@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "dem/contact_start.hpp"
+#include "util/at.hpp"
 
 namespace rattlebox::dem {
-
-template <class T, class A> T& at(std::vector<T, A>& v, int i) { return v[static_cast<std::size_t>(i)]; }
-template <class T, class A> const T& at(const std::vector<T, A>& v, int i) {
-    return v[static_cast<std::size_t>(i)];
-}
 
 // History variables of contacts, by slot. Slots of contacts that ended are reused.
 struct ContactHistory {

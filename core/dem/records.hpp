@@ -73,14 +73,14 @@ struct Records {
         }
     }
 
-    void add_sample(real t, const std::vector<Bed>& beds, const std::vector<ModeState>& modes, Row gravity,
-                    const std::vector<real>& loads, const std::vector<real>& base,
-                    const std::vector<real>& lost) {
+    void add_sample(real t, const std::vector<Bed>& beds, const Structure& structure, Row gravity) {
         time.push_back(t);
-        for (const ModeState& m : modes) q.push_back(m.q), p.push_back(m.p);
-        load_work.insert(load_work.end(), loads.begin(), loads.end());
-        base_work.insert(base_work.end(), base.begin(), base.end());
-        viscous.insert(viscous.end(), lost.begin(), lost.end());
+        for (const ModeState& m : structure.state) q.push_back(m.q), p.push_back(m.p);
+        const auto append = [](std::vector<real>& to, const std::vector<real>& from) {
+            to.insert(to.end(), from.begin(), from.end());
+        };
+        append(load_work, structure.load_work), append(base_work, structure.base_work);
+        append(viscous, structure.viscous);
         for (std::size_t b = 0; b < beds.size(); ++b) {
             const Bed& bed = beds[b];
             Totals sum{.before = losses_before_[b], .now = losses(bed)};

@@ -47,16 +47,7 @@ class Simulation {
     std::vector<NeighbourList> neighbours_;
     std::vector<ContactLoop> contact_loops_;
     std::vector<Integrator> integrators_;
-    std::vector<ModeState> modes_,
-        output_modes_; // at the next step, and at the last one whose forces are known
-    std::vector<ModeTransition> mode_transitions_;
-    std::vector<real> transition_;
-    std::vector<ModeState> propagated_;
-    std::vector<real> modal_force_, load_value_;
-    std::vector<real> load_work_, base_work_, viscous_;
-    std::vector<Signal> signals_;
-    std::vector<real> load_shape_;
-    std::vector<int> load_base_;
+    Structure structure_;
     long step_ = 0;
     Status status_ = Status::finished;
     int stopped_cavity_ = 0;
@@ -121,51 +112,6 @@ class Simulation {
 
     // ---- the structure
 
-    // Returns pointers to the arrays of this object.
-    Structure structure() {
-        return {static_cast<int>(modes_.size()),
-                static_cast<int>(signals_.size()),
-                problem_.dt,
-                problem_.gravity,
-                problem_.modes.data(),
-                mode_transitions_.data(),
-                transition_.empty() ? nullptr : transition_.data(),
-                propagated_.data(),
-                modes_.data(),
-                output_modes_.data(),
-                modal_force_.data(),
-                viscous_.data(),
-                signals_.data(),
-                load_shape_.data(),
-                load_base_.data(),
-                problem_.load_direction.data(),
-                load_value_.data(),
-                load_work_.data(),
-                base_work_.data()};
-    }
-
-    void compute_transitions() {
-        mode_transitions_.clear();
-        for (const Mode& mode : problem_.modes)
-            mode_transitions_.push_back(mode_transition(mode, problem_.dt));
-        if (!problem_.coupling.empty())
-            transition_ = transition(problem_.modes, problem_.coupling, problem_.dt);
-    }
-
-    void prepare_structure() {
-        modes_ = output_modes_ = problem_.start;
-        compute_transitions();
-        propagated_.resize(modes_.size());
-        for (const Load& load : problem_.loads) {
-            signals_.push_back(load.signal);
-            load_shape_.insert(load_shape_.end(), load.shape.begin(), load.shape.end());
-            load_base_.push_back(load.base);
-        }
-        modal_force_.assign(modes_.size(), 0);
-        viscous_.assign(modes_.size(), 0);
-        for (auto* numbers : {&load_value_, &load_work_, &base_work_}) numbers->assign(signals_.size(), 0);
-    }
-
     // Sums for each wall begin at zero, unless a state with the same walls has been read.
     void clear_wall_totals(Bed& bed) const {
         const auto labels = static_cast<std::size_t>(problem_.each_wall ? bed.cavity->wall_labels() : 0);
@@ -173,22 +119,27 @@ class Simulation {
             if (chunk.each_wall.size() != labels) chunk.each_wall.assign(labels, WallTotals{});
     }
 
-    void update_cavity_motion(Bed& bed) {
-        bed.motion = bed.frame.moved(structure().cavity_motion(bed.cavity->shape.data()));
+    // Adapts the structure and the contact laws to the step, gravity and loads of the problem.
+    void set_inputs() {
+        structure_.set_inputs(problem_.dt, problem_.gravity, problem_.coupling);
+        for (ContactLoop& loop : contact_loops_) loop.update_step();
     }
 
-    // Adds half of the work of the base and of the drives of cavities in this step.
-    void work_on_particles() {
-        Row momentum{};
+    void update_cavity_motion(Bed& bed) {
+        bed.motion = bed.frame.moved(structure_.cavity_motion(bed.cavity->shape.data()));
+    }
+
+    // Adds half of the work of the base and of the drives of cavities in this step; the momentum is that of
+    // all particles.
+    void work_on_particles(Row momentum) {
         for (Bed& bed : beds_) {
-            momentum += bed.frame.to_machine(momentum_of(bed));
             if (!bed.frame.turns()) continue;
             Row moment{};
             for (const Chunk& c : bed.chunks) moment += c.diagnostics.wall_moment;
             bed.frame.drive_work +=
                 0.5 * problem_.dt * bed.frame.drive_power(force_on(bed), moment, bed.motion.displacement);
         }
-        structure().work_on_particles(momentum);
+        structure_.work_on_particles(momentum);
     }
 
     // Returns the mean velocity of the particles, relative to the cavity.
@@ -203,9 +154,8 @@ class Simulation {
 
     // Acceleration by gravity and the base in cavities that turn.
     void set_body_accelerations() {
-        const Row body = structure().body_acceleration();
         for (Bed& bed : beds_)
-            if (bed.frame.turns()) bed.frame.now.body = bed.frame.to_cavity(body);
+            if (bed.frame.turns()) bed.frame.now.body = bed.frame.to_cavity(structure_.body_acceleration);
     }
 
     Row force_on(const Bed& bed) const {
@@ -220,12 +170,18 @@ class Simulation {
         return total;
     }
 
+    // In the machine frame.
+    Row total_momentum() const {
+        Row total{};
+        for (const Bed& bed : beds_) total += bed.frame.to_machine(momentum_of(bed));
+        return total;
+    }
+
     void compute_modal_force() {
-        Structure s = structure();
-        s.clear_forces();
+        structure_.clear_forces();
         for (const Bed& bed : beds_)
-            s.add_force(bed.cavity->shape.data(), bed.frame.to_structure(force_on(bed)));
-        s.add_loads();
+            structure_.add_force(bed.cavity->shape.data(), bed.frame.to_structure(force_on(bed)));
+        structure_.add_loads();
     }
 
     // ---- saved states
@@ -252,10 +208,11 @@ class Simulation {
         require(RestartCheck::is_possible(status_) &&
                 RestartCheck::is_possible(stop_reason_, static_cast<int>(where.position.size()),
                                           static_cast<int>(where.cavity->walls.size())));
-        for (const std::size_t size :
-             {modes_.size(), output_modes_.size(), modal_force_.size(), viscous_.size()})
+        for (const std::size_t size : {structure_.state.size(), structure_.output.size(),
+                                       structure_.force.size(), structure_.viscous.size()})
             require(size == problem_.modes.size());
-        require(load_work_.size() == signals_.size() && base_work_.size() == signals_.size());
+        for (const std::size_t size : {structure_.load_work.size(), structure_.base_work.size()})
+            require(size == problem_.loads.size());
         for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], has_contact_forces());
     }
 
@@ -341,7 +298,7 @@ class Simulation {
     // chunks share one buffer that stays in the caches.
     template <class Worker> void advance(Worker& worker, bool first, bool sample, bool last) {
         WorkerRange& range = partition_.range(worker.rank());
-        const Row body = structure().body_acceleration();
+        const Row body = structure_.body_acceleration;
         std::vector<char>& computed = range.computed;
         // Chunks at the border of a range exert forces on particles of other ranges. They are computed first,
         // so that no worker waits for the whole range of another one.
@@ -412,8 +369,8 @@ class Simulation {
     }
 
     void advance_structure() {
-        structure().kick();
-        structure().drift();
+        structure_.kick();
+        structure_.drift();
         needs_rebuild_ = false;
         for (Bed& bed : beds_) {
             // What matters for neighbours is the motion of particles relative to each other: the mean
@@ -438,9 +395,9 @@ class Simulation {
     // the last step.
     void predict_again(real dt_before) {
         const bool has_forces = has_contact_forces();
-        modes_ = output_modes_;
+        structure_.state = structure_.output;
         --step_, --steps_since_;
-        structure().clear_forces(); // the velocity of the cavities is then that at the last step
+        structure_.clear_forces(); // the velocity of the cavities is then that at the last step
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             beds_[b].frame.now = beds_[b].frame.before;
             update_cavity_motion(beds_[b]);
@@ -448,13 +405,13 @@ class Simulation {
             if (dt_before != problem_.dt)
                 for (Chunk& c : beds_[b].chunks) contact_loops_[b].change_step(c, dt_before, has_forces);
         }
-        structure().load_values(now());
+        structure_.load_values(now());
         for (Bed& bed : beds_)
             if (bed.frame.turns()) bed.frame.restart(now(), problem_.dt);
         compute_modal_force();
-        work_on_particles();
+        work_on_particles(total_momentum());
         set_body_accelerations();
-        const Row body = structure().body_acceleration();
+        const Row body = structure_.body_acceleration;
         for (std::size_t b = 0; b < beds_.size(); ++b)
             for (const Chunk& c : beds_[b].chunks) integrators_[b].predict(c, body_before_, body);
         body_before_ = body;
@@ -463,7 +420,7 @@ class Simulation {
 
     // Computes the data of the next step that all workers need. Called by one worker.
     void prepare_step() {
-        structure().load_values(now());
+        structure_.load_values(now());
         set_body_accelerations();
         if (sampled(step_)) records_.begin_sample(beds_);
     }
@@ -472,21 +429,17 @@ class Simulation {
     void finish_step(bool first, bool sample) {
         compute_modal_force();
         // Half of this kick was part of the prediction; the forces at the start have had no prediction.
-        if (!first) structure().kick();
-        structure().store_output();
-        Row momentum{};
-        for (Bed& bed : beds_) {
-            bed.output_displacement = bed.motion.displacement;
-            momentum += momentum_of(bed);
-        }
+        if (!first) structure_.kick();
+        structure_.store_output();
+        for (Bed& bed : beds_) bed.output_displacement = bed.motion.displacement;
+        const Row momentum = total_momentum();
         // The sum of the momentum is a cheap sign of numbers that are not finite anywhere in the bed.
         if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
-        if (!first) work_on_particles();
-        if (sample)
-            records_.add_sample(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
-        work_on_particles();
+        if (!first) work_on_particles(momentum);
+        if (sample) records_.add_sample(now(), beds_, structure_, problem_.gravity);
+        work_on_particles(momentum);
         check_chunks();
-        body_before_ = structure().body_acceleration();
+        body_before_ = structure_.body_acceleration;
         advance_structure();
     }
 
@@ -543,9 +496,11 @@ class Simulation {
     }
 
 public:
-    explicit Simulation(Problem&& problem) : problem_(std::move(problem)) {
+    explicit Simulation(Problem&& problem)
+        : problem_(std::move(problem)),
+          structure_(problem_.modes, problem_.start, problem_.loads, problem_.load_direction) {
         for (PairLaw& e : problem_.pair_laws) e.constant_damping = constant_damping(e);
-        prepare_structure();
+        set_inputs();
         const std::size_t count = problem_.cavities.size();
         beds_.reserve(count), neighbours_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
@@ -592,36 +547,36 @@ public:
         const bool began = step_ > 0;
         bool changed = dt != problem_.dt || gravity[0] != problem_.gravity[0] ||
                        gravity[1] != problem_.gravity[1] || gravity[2] != problem_.gravity[2];
-        for (std::size_t l = 0; l < values.size(); ++l) changed |= values[l] != signals_[l].amplitude;
+        std::vector<Signal>& signals = structure_.signals;
+        for (std::size_t l = 0; l < values.size(); ++l) changed |= values[l] != signals[l].amplitude;
         problem_.steps = problem_.sample_interval = std::max(step_ - 1, 0L) + steps;
         if (!changed) return;
         const real dt_before = problem_.dt;
         problem_.dt = dt, problem_.gravity = gravity;
-        for (std::size_t l = 0; l < values.size(); ++l) signals_[l].amplitude = values[l];
-        compute_transitions();
-        for (ContactLoop& loop : contact_loops_) loop.update_step();
+        for (std::size_t l = 0; l < values.size(); ++l) signals[l].amplitude = values[l];
+        set_inputs();
         if (!began) return;
-        load_work_ = work.load, base_work_ = work.base, viscous_ = work.viscous;
+        structure_.load_work = work.load, structure_.base_work = work.base;
+        structure_.viscous = work.viscous;
         predict_again(dt_before);
     }
 
     // Writes or reads all that the next step needs, in a fixed order.
     template <class Archive> void serialize(Archive& archive) {
         archive(step_, body_before_, status_, stopped_cavity_, stop_reason_, rebuilds_, needs_rebuild_,
-                forces_known_at_, steps_since_, modes_, output_modes_, modal_force_, load_work_, base_work_,
-                viscous_);
+                forces_known_at_, steps_since_, structure_.state, structure_.output, structure_.force,
+                structure_.load_work, structure_.base_work, structure_.viscous);
         for (Bed& bed : beds_) bed.serialize(archive);
     }
 
     // Writes or reads what change_inputs() sets; it belongs before the state.
     template <class Archive> void serialize_inputs(Archive& archive) {
         archive(problem_.dt, problem_.steps, problem_.sample_interval, problem_.gravity);
-        for (Signal& signal : signals_) archive(signal.amplitude);
+        for (Signal& signal : structure_.signals) archive(signal.amplitude);
         if constexpr (!Archive::reads) return;
         if (!(problem_.dt > 0 && problem_.dt < infinity) || problem_.sample_interval < 1)
             throw std::invalid_argument("the state is damaged");
-        compute_transitions();
-        for (ContactLoop& loop : contact_loops_) loop.update_step();
+        set_inputs();
     }
 
     // What a state of this case must agree with; of a new object, or one whose state is sound.
@@ -657,8 +612,9 @@ public:
     template <class Reader> void continue_from(Reader& reader, real dt_before) {
         const std::vector<RestartCheck> fixed = restart_check();
         serialize(reader);
-        for (auto* sums : {&load_work_, &base_work_}) sums->assign(signals_.size(), 0); // of other loads
-        viscous_.assign(viscous_.size(), 0);
+        for (auto* sums : {&structure_.load_work, &structure_.base_work}) // of other loads
+            sums->assign(problem_.loads.size(), 0);
+        structure_.viscous.assign(problem_.modes.size(), 0);
         for (Bed& bed : beds_) bed.frame.drive_work = 0;
         check_state(reader, fixed);
         for (Bed& bed : beds_) clear_wall_totals(bed), update_cavity_motion(bed);
@@ -673,7 +629,7 @@ public:
     // ended.
     bool has_contact_forces() const { return forces_known_at_ >= 0 && forces_known_at_ == step_ - 1; }
     const Problem& problem() const { return problem_; }
-    const std::vector<ModeState>& modes() const { return output_modes_; }
+    const std::vector<ModeState>& modes() const { return structure_.output; }
     Row output_body_acceleration() const { return body_before_; }
     int stopped_cavity() const { return stopped_cavity_; }
     std::size_t memory() const {

@@ -2,13 +2,15 @@
 // propagation of the free modes between two kicks (second order).
 //
 // G. Strang, SIAM J. Numer. Anal. 5 (1968) 506, doi:10.1137/0705041.
-//
-// Holds pointers to arrays that the simulation owns.
 #pragma once
+
+#include <algorithm>
+#include <vector>
 
 #include "math/rows.hpp"
 #include "structure/coupled_modes.hpp"
-#include "structure/signal.hpp"
+#include "structure/loads.hpp"
+#include "util/at.hpp"
 
 namespace rattlebox::dem {
 
@@ -28,114 +30,135 @@ inline ModeTransition mode_transition(const Mode& mode, real dt) {
     return {of_q.at(dt), of_p.at(dt)};
 }
 
-struct Structure {
-    int modes = 0, loads = 0;
-    real dt = 0;
-    Row gravity{};
+class Structure {
+    real dt_ = 0;
+    Row gravity_{};
     // by mode
-    const Mode* mode = nullptr;
-    const ModeTransition* mode_transitions = nullptr;
-    const real* transition = nullptr; // matrix of all modes together if damping couples them; else null
-    ModeState* propagated = nullptr;  // scratch
-    ModeState* state = nullptr;       // at the next step
-    ModeState* output = nullptr;      // at the last step whose forces are known
-    real* force = nullptr;
-    real* viscous = nullptr;
+    std::vector<Mode> mode_;
+    std::vector<ModeTransition> mode_transitions_;
+    std::vector<real> transition_; // matrix of all modes together if damping couples them; else empty
+    std::vector<ModeState> propagated_;
     // by load
-    const Signal* signal = nullptr;
-    const real* load_shape = nullptr; // force on each mode, by load and mode
-    const int* base = nullptr;        // whether it is an acceleration of the base
-    const Row* direction = nullptr;
-    real* value = nullptr; // at the next step
-    real* load_work = nullptr;
-    real* base_work = nullptr;
+    std::vector<real> shape_;    // force on each mode, by load and mode
+    std::vector<char> is_base_;  // whether it is an acceleration of the base
+    std::vector<Row> direction_; // of that
+    std::vector<real> value_;    // at the next step
 
-    void load_values(real t) {
-        for (int l = 0; l < loads; ++l) value[l] = signal[l].step_value(t, dt);
+    int modes() const { return static_cast<int>(mode_.size()); }
+    int loads() const { return static_cast<int>(signals.size()); }
+
+public:
+    std::vector<ModeState> state, output; // at the next step, and at the last one whose forces are known
+    std::vector<real> force, viscous;     // by mode
+    std::vector<Signal> signals;
+    std::vector<real> load_work, base_work; // by load
+    Row body_acceleration{};                // of all particles, by gravity and the base
+
+    Structure(const std::vector<Mode>& modes, const std::vector<ModeState>& start,
+              const std::vector<Load>& loads, const std::vector<Row>& directions)
+        : mode_(modes), propagated_(modes.size()), direction_(directions), value_(loads.size()), state(start),
+          output(start), force(modes.size()), viscous(modes.size()), load_work(loads.size()),
+          base_work(loads.size()) {
+        for (const Load& load : loads) {
+            signals.push_back(load.signal);
+            shape_.insert(shape_.end(), load.shape.begin(), load.shape.end());
+            is_base_.push_back(load.base);
+        }
     }
 
-    // Acceleration of all particles by gravity and the base.
-    Row body_acceleration() const {
-        Row b = gravity;
-        for (int l = 0; l < loads; ++l)
-            if (base[l]) b -= direction[l] * value[l];
-        return b;
+    void set_inputs(real dt, Row gravity, const std::vector<real>& coupling) {
+        dt_ = dt, gravity_ = gravity;
+        mode_transitions_.clear();
+        for (const Mode& mode : mode_) mode_transitions_.push_back(mode_transition(mode, dt));
+        if (!coupling.empty()) transition_ = transition(mode_, coupling, dt);
+    }
+
+    // Evaluates the loads at the next step.
+    void load_values(real t) {
+        body_acceleration = gravity_;
+        for (int l = 0; l < loads(); ++l) {
+            at(value_, l) = at(signals, l).step_value(t, dt_);
+            if (at(is_base_, l)) body_acceleration -= at(direction_, l) * at(value_, l);
+        }
     }
 
     CavityMotion cavity_motion(const Row* shape) const {
         CavityMotion c;
-        for (int m = 0; m < modes; ++m) {
-            c.displacement += shape[m] * state[m].q;
+        for (int m = 0; m < modes(); ++m) {
+            c.displacement += shape[m] * at(state, m).q;
             // The velocity is predicted for the end of the kick.
-            c.velocity += shape[m] * (state[m].p + 0.5 * dt * force[m]);
+            c.velocity += shape[m] * (at(state, m).p + 0.5 * dt_ * at(force, m));
         }
         return c;
     }
 
     // Modal forces: first the cavities, one by one, then the loads.
-    void clear_forces() {
-        for (int m = 0; m < modes; ++m) force[m] = 0;
-    }
+    void clear_forces() { std::fill(force.begin(), force.end(), 0); }
     void add_force(const Row* shape, Row on_cavity) {
-        for (int m = 0; m < modes; ++m) force[m] += dot(shape[m], on_cavity);
+        for (int m = 0; m < modes(); ++m) at(force, m) += dot(shape[m], on_cavity);
     }
     void add_loads() {
-        for (int l = 0; l < loads; ++l)
-            for (int m = 0; m < modes; ++m) force[m] += load_shape[l * modes + m] * value[l];
+        for (int l = 0; l < loads(); ++l)
+            for (int m = 0; m < modes(); ++m) at(force, m) += at(shape_, l * modes() + m) * at(value_, l);
     }
 
     // Applies the forces for half a step.
     void kick() {
-        const real h = 0.5 * dt;
-        for (int m = 0; m < modes; ++m) {
-            const real mean = state[m].p + 0.5 * h * force[m];
-            for (int l = 0; l < loads; ++l) {
-                const real work = load_shape[l * modes + m] * value[l] * h * mean;
-                (base[l] ? base_work : load_work)[l] += work;
+        const real h = 0.5 * dt_;
+        for (int m = 0; m < modes(); ++m) {
+            const real mean = at(state, m).p + 0.5 * h * at(force, m);
+            for (int l = 0; l < loads(); ++l) {
+                const real work = at(shape_, l * modes() + m) * at(value_, l) * h * mean;
+                at(at(is_base_, l) ? base_work : load_work, l) += work;
             }
-            state[m].p += h * force[m];
+            at(state, m).p += h * at(force, m);
         }
     }
 
     void drift() {
-        if (transition) return drift_coupled();
-        for (int m = 0; m < modes; ++m) {
-            const ModeState from = state[m];
-            const auto& [of_q, of_p] = mode_transitions[m];
-            state[m] = {of_q.q * from.q + of_p.q * from.p, of_q.p * from.q + of_p.p * from.p};
-            if (mode[m].decay > 0) viscous[m] += from.energy(mode[m]) - state[m].energy(mode[m]);
+        if (!transition_.empty()) return drift_coupled();
+        // Compilers compute several modes at once if pointers are loaded before the loop.
+        const int count = modes();
+        const Mode* const mode = mode_.data();
+        const ModeTransition* const transitions = mode_transitions_.data();
+        ModeState* const moved = state.data();
+        real* const lost = viscous.data();
+        for (int m = 0; m < count; ++m) {
+            const ModeState from = moved[m];
+            const auto& [of_q, of_p] = transitions[m];
+            moved[m] = {of_q.q * from.q + of_p.q * from.p, of_q.p * from.q + of_p.p * from.p};
+            if (mode[m].decay > 0) lost[m] += from.energy(mode[m]) - moved[m].energy(mode[m]);
         }
     }
 
     // The loss is not separable by mode; it is added to that of the first mode.
     void drift_coupled() {
         real energy = 0;
-        for (int m = 0; m < modes; ++m) energy += state[m].energy(mode[m]);
-        const int n = 2 * modes;
-        for (int m = 0; m < modes; ++m) {
-            propagated[m] = {};
-            const real *q = transition + 2 * m * n, *p = q + n;
-            for (int j = 0; j < modes; ++j) {
-                propagated[m].q += q[2 * j] * state[j].q + q[2 * j + 1] * state[j].p;
-                propagated[m].p += p[2 * j] * state[j].q + p[2 * j + 1] * state[j].p;
+        for (int m = 0; m < modes(); ++m) energy += at(state, m).energy(at(mode_, m));
+        const int n = 2 * modes();
+        for (int m = 0; m < modes(); ++m) {
+            ModeState& next = at(propagated_, m) = {};
+            const real *q = &at(transition_, 2 * m * n), *p = q + n;
+            for (int j = 0; j < modes(); ++j) {
+                next.q += q[2 * j] * at(state, j).q + q[2 * j + 1] * at(state, j).p;
+                next.p += p[2 * j] * at(state, j).q + p[2 * j + 1] * at(state, j).p;
             }
         }
-        for (int m = 0; m < modes; ++m) {
-            state[m] = propagated[m];
-            energy -= state[m].energy(mode[m]);
+        for (int m = 0; m < modes(); ++m) {
+            at(state, m) = at(propagated_, m);
+            energy -= at(state, m).energy(at(mode_, m));
         }
         viscous[0] += energy;
     }
 
     // Adds half of the work of the base on the particles in this step.
     void work_on_particles(Row momentum) {
-        for (int l = 0; l < loads; ++l)
-            if (base[l]) base_work[l] -= 0.5 * dt * value[l] * dot(direction[l], momentum);
+        for (int l = 0; l < loads(); ++l)
+            if (at(is_base_, l))
+                at(base_work, l) -= 0.5 * dt_ * at(value_, l) * dot(at(direction_, l), momentum);
     }
 
-    void store_output() {
-        for (int m = 0; m < modes; ++m) output[m] = state[m];
-    }
+    void store_output() { std::copy(state.begin(), state.end(), output.begin()); }
 };
 
 } // namespace rattlebox::dem

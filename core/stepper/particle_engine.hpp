@@ -20,7 +20,6 @@ class ParticleEngine : public StepEngine {
 
     // Angular momentum about the centre of the cavity, from the state at the last step.
     Components angular_momentum(const dem::Bed& bed) const {
-        using dem::at;
         const real dt = simulation_.problem().dt;
         const Row body = simulation_.output_body_acceleration();
         Row sum{};
