@@ -13,6 +13,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "dem/bed.hpp"
@@ -149,12 +150,13 @@ public:
         if (phase == 2) bed.spin.swap(rows_);
     }
 
-    // Calls found(j) for each neighbour j > i of a particle in a periodic cavity. The cells around a particle
-    // go on behind the last cell of a periodic axis with the first one.
-    template <class Found> void search_images(const Bed& bed, int i, Found&& found) const {
+    // Lists the neighbours j > i of a particle in a periodic cavity; returns their number. The cells around a
+    // particle go on behind the last cell of a periodic axis with the first one.
+    int search_images(const Bed& bed, int i, int* found) const {
         const Row& p = at(bed.position, i);
         const real reach = p[3] + bed.reach;
         const auto& levels = cells_.levels();
+        int count = 0;
         for (std::size_t k = 0; k < levels.size(); ++k) {
             const CellLevel& level = levels[k];
             const auto [x, y, z] = cells_.cells_around(level, p, reach + level.largest);
@@ -165,7 +167,7 @@ public:
                     if (j <= i || (k == 0 && other[3] > level.largest)) continue; // coarse levels hold them
                     Row apart = other - p;
                     apart += bed.periods.to_nearest_image(apart);
-                    if (square(reach + other[3]) > dot(apart, apart)) found(j);
+                    if (square(reach + other[3]) > dot(apart, apart)) found[count++] = j;
                 }
             };
             for (int b = 0; b < z.count; ++b)
@@ -177,88 +179,88 @@ public:
                     if (over > 0) visit(line, 0, over);
                 }
         }
+        return count;
     }
 
-    void search(const Bed& bed, Chunk& chunk) const {
-        thread_local std::vector<int> firsts, seconds;
-        int count = 0, *first = firsts.data(), *second = seconds.data();
-        const auto make_room = [&] {
-            const auto room = static_cast<std::size_t>(count + lane_count);
-            if (room <= firsts.size()) return;
-            firsts.resize(2 * room), seconds.resize(2 * room);
-            first = firsts.data(), second = seconds.data();
-        };
+    // The same in a cavity without periods.
+    int search_cells(const Bed& bed, int i, int* found) const {
         // Particles of very different sizes are on several levels of cells: one level for the smallest would
         // make a search around a large one visit thousands of cells.
         const auto& levels = cells_.levels();
         const CellLevel& fine = levels.front();
         const Group fits = Group::all(fine.largest);
         const bool mixed = levels.size() > 1;
-        for (int i = chunk.begin; i < chunk.end; ++i) {
-            const Row& p = at(bed.position, i);
-            const real reach = p[3] + bed.reach;
-            const Vector<Group> place = {Group::all(p[0]), Group::all(p[1]), Group::all(p[2])};
-            const Group around = Group::all(reach);
-            // Particles are sorted by cell, so that a line of cells is one range of particles and is compared
-            // in registers.
-            const auto search_range = [&](int from, int to) {
-                for (int j = from; j < to; j += group) {
-                    make_room();
-                    const auto others = [&](int a) { return unaligned(&at(coordinates_[a], j)); };
-                    const Vector<Group> apart = place - Vector<Group>{others(0), others(1), others(2)};
-                    const Group near = around + others(3);
-                    unsigned within = positive(near * near - dot(apart, apart));
-                    if (mixed) within &= ~positive(others(3) - fits); // the coarse levels hold them
-                    for (int l = 0; l < lane_count; ++l) first[count + l] = i - chunk.begin;
-                    count += list_lanes(within & first_lanes(std::min(group, to - j)), j, second + count);
-                }
-            };
-            if (bed.periods.any) {
-                search_images(bed, i, [&](int j) {
-                    make_room();
-                    first[count] = i - chunk.begin, second[count] = j;
-                    ++count;
-                });
-                continue;
+        const Row& p = at(bed.position, i);
+        const real reach = p[3] + bed.reach;
+        const Vector<Group> place = {Group::all(p[0]), Group::all(p[1]), Group::all(p[2])};
+        const Group around = Group::all(reach);
+        int count = 0;
+        // Particles are sorted by cell, so that a line of cells is one range of particles and is compared in
+        // registers.
+        const auto search_range = [&](int from, int to) {
+            for (int j = from; j < to; j += group) {
+                const auto others = [&](int a) { return unaligned(&at(coordinates_[a], j)); };
+                const Vector<Group> apart = place - Vector<Group>{others(0), others(1), others(2)};
+                const Group near = around + others(3);
+                unsigned within = positive(near * near - dot(apart, apart));
+                if (mixed) within &= ~positive(others(3) - fits); // the coarse levels hold them
+                count += list_lanes(within & first_lanes(std::min(group, to - j)), j, found + count);
             }
-            // Each pair is found once: by the particle with the lower index, in its own cell behind itself
-            // and in cells that follow.
-            const Cell own = cells_.cell(fine, p);
-            const CellBox box = p[3] <= fine.largest ? cells_.adjacent_cells(fine, own)
-                                                     : cells_.cells_within(fine, p, reach + fine.largest);
-            for (int z = own[2]; z <= box.high[2]; ++z)
-                for (int y = z == own[2] ? own[1] : box.low[1]; y <= box.high[1]; ++y) {
-                    const int line = fine.line(y, z);
-                    const bool has_own = z == own[2] && y == own[1];
-                    search_range(has_own ? i + 1 : at(fine.begin, line + box.low[0]),
-                                 at(fine.begin, line + box.high[0] + 1));
-                }
-            // Larger particles have lists of members, which are few, and both orders of indices occur: the
-            // lower index searches.
-            for (std::size_t k = 1; k < levels.size(); ++k) {
-                const CellLevel& level = levels[k];
-                const CellBox there = cells_.cells_within(level, p, reach + level.largest);
-                for (int z = there.low[2]; z <= there.high[2]; ++z)
-                    for (int y = there.low[1]; y <= there.high[1]; ++y) {
-                        const int line = level.line(y, z), to = at(level.begin, line + there.high[0] + 1);
-                        for (int m = at(level.begin, line + there.low[0]); m < to; ++m) {
-                            const int j = at(level.member, m);
-                            const Row apart = p - at(bed.position, j);
-                            if (j <= i || !(square(reach + at(bed.position, j)[3]) > dot(apart, apart)))
-                                continue;
-                            make_room();
-                            first[count] = i - chunk.begin, second[count] = j;
-                            ++count;
-                        }
+        };
+        if (bed.particles() <= Bed::chunk_size && !mixed) {
+            search_range(i + 1, bed.particles());
+            return count;
+        }
+        // Each pair is found once: by the particle with the lower index, in its own cell behind itself and in
+        // cells that follow.
+        const Cell own = cells_.cell(fine, p);
+        const CellBox box = p[3] <= fine.largest ? cells_.adjacent_cells(fine, own)
+                                                 : cells_.cells_within(fine, p, reach + fine.largest);
+        for (int z = own[2]; z <= box.high[2]; ++z)
+            for (int y = z == own[2] ? own[1] : box.low[1]; y <= box.high[1]; ++y) {
+                const int line = fine.line(y, z);
+                const bool has_own = z == own[2] && y == own[1];
+                search_range(has_own ? i + 1 : at(fine.begin, line + box.low[0]),
+                             at(fine.begin, line + box.high[0] + 1));
+            }
+        // Larger particles have lists of members, which are few, and both orders of indices occur: the lower
+        // index searches.
+        for (std::size_t k = 1; k < levels.size(); ++k) {
+            const CellLevel& level = levels[k];
+            const CellBox there = cells_.cells_within(level, p, reach + level.largest);
+            for (int z = there.low[2]; z <= there.high[2]; ++z)
+                for (int y = there.low[1]; y <= there.high[1]; ++y) {
+                    const int line = level.line(y, z), to = at(level.begin, line + there.high[0] + 1);
+                    for (int m = at(level.begin, line + there.low[0]); m < to; ++m) {
+                        const int j = at(level.member, m);
+                        const Row apart = p - at(bed.position, j);
+                        if (j > i && square(reach + at(bed.position, j)[3]) > dot(apart, apart))
+                            found[count++] = j;
                     }
-            }
+                }
+        }
+        return count;
+    }
+
+    void search(const Bed& bed, Chunk& chunk) const {
+        thread_local std::vector<int> buffer;
+        thread_local std::vector<std::uint8_t> first_buffer;
+        std::vector<int>& found = buffer;
+        std::vector<std::uint8_t>& first = first_buffer;
+        first.clear();
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            // A particle has fewer neighbours than the bed has particles; lanes are written as a whole.
+            const std::size_t room = first.size() + bed.position.size() + lane_count;
+            if (found.size() < room) found.resize(room);
+            int* const next = found.data() + first.size();
+            const int count = bed.periods.any ? search_images(bed, i, next) : search_cells(bed, i, next);
+            first.insert(first.end(), static_cast<std::size_t>(count),
+                         static_cast<std::uint8_t>(i - chunk.begin));
         }
         // The lists are copied at the end, with a byte for the first partner: neighbours are read in each
         // scan and must fit into the caches.
-        chunk.neighbour_first.resize(static_cast<std::size_t>(count));
-        std::transform(first, first + count, chunk.neighbour_first.begin(),
-                       [](int own) { return static_cast<std::uint8_t>(own); });
-        chunk.neighbour_second.assign(second, second + count);
+        chunk.neighbour_first.assign(first.begin(), first.end());
+        chunk.neighbour_second.assign(found.data(), found.data() + first.size());
         chunk.highest_neighbour = chunk.end - 1;
         for (const int j : chunk.neighbour_second)
             chunk.highest_neighbour = std::max(chunk.highest_neighbour, j);
@@ -355,24 +357,31 @@ public:
         const int walls = solids.empty() ? static_cast<int>(all_walls.size()) : solids.plain_walls();
         const int last = bed.particles() - 1;
         const Row c = bed.motion.displacement;
+        const Group zero = Group::all(0);
         thread_local std::vector<std::uint32_t> masks;
-        masks.assign(static_cast<std::size_t>(chunk.end - chunk.begin) + group, 0);
+        masks.resize(static_cast<std::size_t>(chunk.end - chunk.begin) + group);
         int count = 0;
         for (int i = chunk.begin; i < chunk.end; i += group) {
             const auto a = columns([&](int l) { return &at(bed.position, std::min(i + l, last)); });
             const Vector<Group> place = {a.x - Group::all(c[0]), a.y - Group::all(c[1]),
                                          a.z - Group::all(c[2])};
             const int used = std::min(group, chunk.end - i);
-            // A bit for each wall of a particle; 32 walls are the most that a cavity has.
-            std::uint32_t* mask = &at(masks, i - chunk.begin);
+            // A bit for each wall of a particle, as a number; 32 walls are the most that a cavity has.
+            Group bits = zero, least = Group::all(infinity);
             for (int w = 0; w < walls; ++w) {
                 const Group far = distance(at(all_walls, w), place);
-                each_lane(positive(Group::all(skin) + a.w - far), [&](int l) { mask[l] |= 1u << w; });
-                each_lane(positive(Group::all(0) - far) &
-                              first_lanes(used), // the centre is outside the cavity
-                          [&](int l) { chunk.stop_reason = {Status::escaped, i + l, w, 0}; });
+                bits += choose(Group::all(skin) + a.w - far, Group::all(static_cast<real>(1u << w)), zero);
+                least = smaller(least, far);
             }
-            for (int l = 0; l < used; ++l) count += __builtin_popcount(mask[l]);
+            if (positive(zero - least) & first_lanes(used)) // the centre is outside the cavity
+                for (int w = 0; w < walls; ++w)
+                    each_lane(positive(zero - distance(at(all_walls, w), place)) & first_lanes(used),
+                              [&](int l) { chunk.stop_reason = {Status::escaped, i + l, w, 0}; });
+            alignas(64) real of[group];
+            pack<group>(of) = bits;
+            std::uint32_t* mask = &at(masks, i - chunk.begin);
+            for (int l = 0; l < group; ++l) mask[l] = static_cast<std::uint32_t>(of[l]);
+            for (int l = 0; l < used; ++l) count += std::popcount(mask[l]);
         }
         if (!solids.empty()) return scan_solids(bed, chunk, masks.data());
         ContactList& list = chunk.walls;
