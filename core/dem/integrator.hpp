@@ -54,11 +54,11 @@ class Integrator {
 
     // Corrects the velocities of this step and predicts those of the next one. `body` is the acceleration
     // without contacts, `body_before` that of the previous step. The range of the worker ends at particle
-    // `until`.
-    template <bool sampled, bool far>
+    // `until`. Choices that a run never changes are types, since a loop over 100 particles takes 2 % longer
+    // if it reads them.
+    template <bool sampled, bool far, bool spins, bool rolls>
     void advance(ForceSums& sums, Chunk& chunk, int until, Row body, Row body_before, bool first) {
         Diagnostics& diagnostics = chunk.diagnostics;
-        const bool spins = spins_, rolls = rolls_;
         const Verlet step(problem_.dt, body, body_before, first);
         const Row evenly = step.corrected(Row{}, body, body_before),
                   reference_velocity = bed_.reference_velocity;
@@ -84,11 +84,11 @@ class Integrator {
                 // on velocities; it is corrected with the present one.
                 v = step.corrected(u, a, before ? rates[i].velocity : body_before);
                 rates[i].velocity = a;
-                if (spins) {
+                if constexpr (spins) {
                     Row &w = spin[i], rate = Row{}, rate_before = before ? rates[i].spin : Row{};
                     if (now) {
                         rate = sum.couple;
-                        if (rolls) {
+                        if constexpr (rolls) {
                             rate += sums.torque(i) / x[3];
                             sums.torque(i) = Row{};
                         }
@@ -287,11 +287,15 @@ public:
         if (bed_.frame.turns())
             return sampled ? advance_turning<true>(sums, chunk, first)
                            : advance_turning<false>(sums, chunk, first);
-        const auto with = [&](auto sampled, auto far) {
-            advance<sampled.value, far.value>(sums, chunk, until, body, body_before, first);
-        };
         constexpr std::true_type on;
         constexpr std::false_type off;
+        const auto with = [&](auto sampled, auto far) {
+            const auto of = [&](auto spins, auto rolls) {
+                advance<sampled.value, far.value, spins.value, rolls.value>(sums, chunk, until, body,
+                                                                            body_before, first);
+            };
+            rolls_ ? of(on, on) : spins_ ? of(on, off) : of(off, off);
+        };
         if (far_)
             sampled ? with(on, on) : with(off, on);
         else
