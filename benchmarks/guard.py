@@ -67,7 +67,7 @@ diameter = 3e-3
 count = {count}
 """
 DT, FILL, DIAMETER = 1.4549e-5, 0.36, 3e-3
-STEPS = {1000: 60_000, 10_000: 5000, 100_000: 350}
+STEPS = {100: 500_000, 1000: 60_000, 10_000: 5000, 100_000: 350}
 """Steps by number of particles."""
 
 
