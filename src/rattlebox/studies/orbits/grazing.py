@@ -28,6 +28,8 @@ _CLOSE = {"miss": 1e-8, "slow": 1e-5}
 """Gap or approach speed, over the sizes of gaps and of speeds in the motion, at which grazing is extrapolated."""
 _ENOUGH = {"miss": 1e-5, "slow": 1e-3}
 """The same, at which it is extrapolated if no closer motion can be computed."""
+_REMAINS = 0.01
+"""Largest extrapolated distance from there, in longest steps of the branch."""
 _FAR = 3.0
 """Largest extrapolated distance to a grazing point, in longest steps of the branch."""
 _BEYOND = (0.03, 0.3, 3e-3, 1.0)
@@ -94,7 +96,10 @@ def approach(corrector: Corrector, before: Point, point: Point, length: float) -
             share /= 2
         else:
             break
-    if indicators(row[-1])[chosen] > _ENOUGH[chosen.kind] * size:
+    last_one, remaining = indicators(row[-1])[chosen], _distance(corrector, row[-2], row[-1], chosen)
+    # A soft contact may be slow along a branch, also at a fold, that no grazing follows.
+    is_close = last_one < _CLOSE[chosen.kind] * size or 0 < remaining < _REMAINS * length
+    if last_one > _ENOUGH[chosen.kind] * size or not is_close:
         return None
     # Points whose quantities differ by less than their rounding errors cannot be extrapolated.
     last = [row[-1]]

@@ -83,8 +83,9 @@ class GrazingCurve(SmoothCurve):
                 self._begin, self.start = found[:2], row
                 return
         raise Hint(
-            "no motion without the impact was found next to this point, because the motion is very unstable there",
-            "another parameter for the branch, or rb.continue_orbit on each side of the point",
+            f"no motion without the impact was found next to this point, with gaps from {_FOLLOWED[-1]:g} to "
+            f"{_FOLLOWED[0]:g} of the size of the motion, as where other impacts begin or end very near to it",
+            "a special point next to it; or rb.continue_orbit on each side of the point",
         )
 
     def _unfolding(self, state: Vector, values: Vector, touch: Touch | None) -> tuple[Unfolding | None, int]:
