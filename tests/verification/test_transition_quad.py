@@ -19,7 +19,10 @@ from tests.support.quad.store import CLOSED, STOPS_DATA, Stored, read
 STATE = 2e-13
 """Largest error of a state over its growth, in units of the largest gap and the largest approach speed."""
 STATE_COLLOCATED = 5e-13
-"""The same with stops, and with collocated contacts: their energy is compared with a part of the energy of all bodies."""
+"""The same with collocated contacts, whose energy is compared with a part of that of all bodies, and with stops.
+
+Each contact at a stop adds an error of 1e-13, which may grow more until the next contact than until the end.
+"""
 DERIVATIVES = 1e-9
 """Largest error of a derivative, as a part of the largest term of its component."""
 FLOORS = {"power": 1e-7}

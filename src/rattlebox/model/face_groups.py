@@ -148,7 +148,7 @@ class _Table:
 
 
 AnyGroup = Annotated[FaceGroup, BeforeValidator(_group), AlsoAccepts({"type": "string"})]
-AnyGroups = Annotated[dict[str, FaceGroup] | Literal["file"], _Table(), AlsoAccepts({"const": FROM_FILE})]
+AnyGroups = Annotated[dict[str, AnyGroup] | Literal["file"], _Table(), AlsoAccepts({"const": FROM_FILE})]
 
 
 def check_names(names: Iterable[str]) -> None:

@@ -58,9 +58,16 @@ def _members(annotation: object, metadata: tuple[Any, ...] = ()) -> list[str]:
         if _takes_text(each):
             members = [re.sub(r"\bfloat\b(?: \| str)?", _QUANTITY, name) for name in members if name != "str"]
         elif isinstance(each, AlsoAccepts):
-            members += [_JSON_TYPES[each.schema["type"]]] if each.schema else []
+            members += [name for name in _other_types(each) if name not in members]
             members = members if each.schema else [*_members(arguments[0]), *members]
     return members
+
+
+def _other_types(also: AlsoAccepts) -> list[str]:
+    """Return the names of the types that a field accepts besides its own."""
+    if not also.schema:
+        return []
+    return [f"Literal[{also.schema['const']!r}]" if "const" in also.schema else _JSON_TYPES[also.schema["type"]]]
 
 
 def _takes_text(metadata: object) -> bool:
