@@ -357,8 +357,11 @@ def test_missing_case_file(answer: Run) -> None:
     Path("steel_ball.toml").write_text(GOOD, encoding="utf-8")
     Path("cases").mkdir()
     assert answer("run", "steel_bal.toml") == (2, "error: there is no file steel_bal.toml\n  try: steel_ball.toml\n")
-    assert answer("run", "cases") == (2, "error: cases is a folder, not a file\n")
-    assert answer("run", "none/x.toml") == (2, "error: there is no file none/x.toml: there is no folder none\n")
+    advice = "a file; the folder contains none"
+    assert answer("run", "cases") == (2, f"error: cases is a folder, not a file\n  try: {advice}\n")
+    advice = f"a path from {Path.cwd()}, or a full one"
+    complaint = "error: there is no file none/x.toml: there is no folder none"
+    assert answer("run", "none/x.toml") == (2, f"{complaint}\n  try: {advice}\n")
 
 
 def test_file_in_place_of_the_results_folder(answer: Run) -> None:

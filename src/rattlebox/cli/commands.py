@@ -12,7 +12,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from rattlebox._util.atomic_io import only_watched_files
-from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError
+from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError, message
 from rattlebox._util.plugins import PluginWarning
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
@@ -427,8 +427,8 @@ def run_command() -> None:
         sys.exit(2)
     except OSError as error:
         file = f"{error.filename}: " if error.filename else ""
-        advice = "\n  try: a folder in which you may write" if isinstance(error, PermissionError) else ""
-        typer.echo(printable(f"error: {file}{error.strerror or error}{advice}"), err=True)
+        advice = "a folder in which you may write" if isinstance(error, PermissionError) else ""
+        typer.echo(printable(message(f"error: {file}{error.strerror or error}", advice)), err=True)
         sys.exit(2)
     except typer.Abort:
         typer.echo("stopped", err=True)

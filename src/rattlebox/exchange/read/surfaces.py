@@ -81,6 +81,8 @@ def _arrays(path: Path, meshes: list[Any]) -> tuple[NDArray[np.float64], NDArray
         raise DataError(f"{path} contains no triangles", "a surface of triangles, not of points or lines")
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     vertices = np.concatenate([np.asarray(mesh.vertices, np.float64) for mesh in meshes])
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.isfinite(vertices).all():
+        raise DataError(f"{path} has corners without three finite coordinates", "the surface exported again")
     faces = [np.asarray(mesh.faces, np.int64) + start for mesh, start in zip(meshes, starts, strict=False)]
     scale = 1e3 if path.suffix.lower() in STEP else 1.0  # the triangulation is in metres
     return scale * vertices, np.concatenate(faces)
