@@ -585,8 +585,8 @@ struct Motion {
         if (in.at != numbers.size()) throw Refusal("numbers are left over");
     }
 
-    // Runs to the end, or, if there is none, until contacts are open after the wanted number: then sets the end,
-    // in the flight that follows, or with a negative fraction within the last wanted contact.
+    // Runs to the end, or, if there is none, until contacts are open after the wanted number: then sets the
+    // end, in the flight that follows, or with a negative fraction within the last wanted contact.
     void run() {
         const bool plans = end == 0;
         Q opened = -1;
