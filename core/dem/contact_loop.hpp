@@ -91,11 +91,10 @@ class ContactLoop {
             diagnostics.enduring[partner] += first_lane(cost);
     }
 
-    // Lets a contact, whose history has moved from one candidate to another one, go on at the wall of that.
-    // It keeps its age, its springs, and the normal law with which it began, so that no energy comes from a
-    // change of stiffness at constant overlap. Friction and rolling resistance are those of the new wall; the
-    // energy that a softer spring holds no more is lost in the next step
-    // (contact/tangential/spring_slider.hpp).
+    // Gives a contact whose history has moved to another candidate the wall of that candidate. It keeps its
+    // age, its springs, and the normal law with which it began, so that no energy comes from a change of
+    // stiffness at constant overlap. Friction and rolling resistance are those of the new wall; the energy
+    // that a softer spring cannot hold is lost in the next step (contact/tangential/spring_slider.hpp).
     void change_wall(ContactList& list, int from, int to) const {
         const int s = at(list.slot, to);
         if (list.history.yields && at(list.history.began_at, s) == ContactList::none)

@@ -150,8 +150,8 @@ public:
         if (phase == 2) bed.spin.swap(rows_);
     }
 
-    // Lists the neighbours j > i of a particle in a periodic cavity; returns their number. The cells around a
-    // particle go on behind the last cell of a periodic axis with the first one.
+    // Lists the neighbours j > i of a particle in a periodic cavity; returns their number. After the
+    // last cell of a periodic axis follows the first one.
     int search_images(const Bed& bed, int i, int* found) const {
         const Row& p = at(bed.position, i);
         const real reach = p[3] + bed.reach;
