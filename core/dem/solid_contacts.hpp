@@ -23,7 +23,7 @@ inline void find_surfaces(ContactList& list, const Cavity& cavity) {
 }
 
 // Moves the history of a contact that ends on one of the leaves near a particle to a leaf that begins one, if
-// the surface goes on there; calls changed(from, to) with the candidates if laws differ.
+// the surface continues there; calls changed(from, to) with the candidates if laws differ.
 template <class Changed>
 void move_history(ContactList& list, const Cavity& cavity, const LeafPoint& from,
                   const std::vector<LeafPoint>& points, Changed&& changed) {
@@ -44,8 +44,8 @@ void move_history(ContactList& list, const Cavity& cavity, const LeafPoint& from
 }
 
 // Fills `near` of a list of the chunk that begins with a particle. `selects`: whether contacts are chosen;
-// else the list keeps those of the last step. Calls changed(from, to) for contacts that go on with other
-// laws.
+// else the list keeps those of the last step. Calls changed(from, to) for contacts that continue with
+// other laws.
 template <class Changed>
 void find_wall_points(ContactList& list, const Bed& bed, int begin, bool selects, Changed&& changed) {
     if (list.near.empty()) return;

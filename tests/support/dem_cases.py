@@ -32,6 +32,22 @@ def dem_of(case: Any, threads: int = 1) -> Any:
     return dem, step.count
 
 
+def ends_alike(case: Any) -> bool:
+    """Return whether step 3000 has the same bits with one to three threads, and after a restart from step 1500."""
+    ends = []
+    for threads in (1, 2, 3):
+        dem, _ = dem_of(case, threads)
+        dem.run(1500, None)
+        saved = dem.save()
+        dem.run(3000, None)
+        ends.append(np.array(dem.state().cavities[0].position))
+    again, _ = dem_of(case, 2)
+    again.restore(saved)
+    again.run(3000, None)
+    ends.append(np.array(again.state().cavities[0].position))
+    return all(np.array_equal(each, ends[0]) for each in ends)
+
+
 @dataclass(frozen=True)
 class Ball:
     """One particle: size, material and initial motion."""

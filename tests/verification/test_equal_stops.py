@@ -74,7 +74,7 @@ def test_gaps_that_differ_in_their_last_bits_are_one_stop(bits: int, order: int)
 
 
 def test_stiffness_of_hard_stops_changes_nothing() -> None:
-    """A stop beside a much stiffer one: both are hard, and act as one."""
+    """A stop next to a much stiffer one: both are hard, and act as one."""
     laws = [rb.Linear(stiffness=stiffness, restitution=0.6) for stiffness in (3e4, 5e10)]
     several = on_stops([], stops=[rb.Stop(gap=1e-3, contact=law) for law in laws])
     compare(several, on_stops([1e-3]))

@@ -48,7 +48,7 @@ def make_folder(out: Path) -> None:
     except FileExistsError:
         raise DataError(f"{out} is a file; results need a folder", "--out results") from None
     except OSError as error:
-        # A folder beside it would be refused, too.
+        # Another name in the same folder would be refused, too.
         advice = "--out with a folder in which you may write, such as --out ~/results"
         raise DataError(f"the folder {out} cannot be created: {error.strerror}", advice) from None
 

@@ -323,8 +323,8 @@ def _check_places(damper: ParticleDamper, places: Vector) -> Iterator[str]:
     turns = damper.rotation is not None
     away = float(np.linalg.norm(places + (damper.rotation.arm if damper.rotation else 0.0), axis=1).max(initial=0.0))
     if away > _FARTHEST * _ROUNDING:
-        what = "axis, more than usual; check arm" if turns else "point, more than usual; check offsets"
-        yield f"a cavity is {away:.4g} m from its {what} and {'offsets and their units' if turns else 'their unit'}"
+        what, fields = ("axis", "arm and offsets") if turns else ("point", "offsets")
+        yield f"a cavity is {away:.4g} m from its {what}, more than usual; try: check {fields}, and their unit"
 
 
 def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:

@@ -537,7 +537,7 @@ def _column_indices(
             is_time = bool(_TIMES.fullmatch(_without_unit(names[0]))) if names else False
             advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
             if advice and is_time:
-                advice = "a column of values beside that of the times"
+                advice = "a second column of values"
             if len(names) > needed:
                 advice = f"columns = {[2] if rises and needed == 1 else list(range(1, needed + 1))}"
             if len(names) > needed == 1 and rises:
@@ -635,7 +635,7 @@ def _layout(
     if leading:
         lines = [row._replace(cells=row.cells[1:] if not row.cells[0] else row.cells) for row in lines]
         head = [row._replace(cells=row.cells[1:]) for row in head]
-    # A heading above a column without any value is not that of a column beside it.
+    # A heading above a column without any value is not that of the next column.
     width = max((len(row.cells) for row in head[:_PROBED]), default=0)
     trailing = min((empty_at_end(row, dialect) for row in head[:_PROBED]), default=0)
     for k, row in enumerate(lines[:start] if leading or trailing else ()):

@@ -48,6 +48,11 @@ class Solid:
         """Names of its walls."""
         return self.groups or (self.name,)
 
+    @property
+    def hides_centres(self) -> bool:
+        """Whether a sphere whose centre is beyond the surface has no contact with it."""
+        return self.form == "mesh"
+
     def moved(self, shift: Vector, frame: Vector | None = None) -> Solid:
         """Return the solid turned, if the axes of another frame are given in rows, and then shifted."""
         turned = np.eye(3) if frame is None else frame
@@ -130,8 +135,7 @@ class Solid:
         """Return points that cover the surface evenly, (count, 3) [m], and the normals there, out of the body."""
         surface = self.surface()
         fans = [(face[0], face[k], face[k + 1]) for face in surface.polygons for k in range(1, len(face) - 1)]
-        corners = surface.points[np.array(fans)]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        corners, normals = surface.points[np.array(fans)], face_normals(surface.points, np.array(fans))
         areas = np.linalg.norm(normals, axis=1)
         # Each triangle has points by its area; in it they are a Kronecker sequence, as in `Cavity.spread`.
         share = (np.arange(count) + 0.5) / count
@@ -152,7 +156,7 @@ class Solid:
 
     def is_within(self, points: Vector) -> NDArray[np.bool_]:
         """Return whether points are in the body, where there are no particles, (n,)."""
-        return np.asarray(Solids((self,)).distances(points)[:, 0] < 0)
+        return np.asarray((Solids((self,)).distances(points) < 0).any(axis=1))
 
     @property
     def bounds(self) -> tuple[Vector, Vector]:

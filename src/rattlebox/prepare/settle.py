@@ -299,12 +299,12 @@ def _off_solids(walls: Walls, places: Array, radii: Array, depth: Array) -> tupl
         return near, np.zeros((0, 3))
     number, normal, distance = walls.solids.contacts(places[near], radii[near])
     who, moves = [near[number]], [(distance - radii[near[number]])[:, None] * normal]
-    # A centre beyond a surface of triangles has no contact with it: the sphere moves back up the gradient of the distance.
+    # A sphere without a contact, because its centre is beyond a surface, moves back up the gradient of the distance.
     end = 0
     for solid in walls.solids.each:
         own = slice(end, end := end + len(solid.walls))
         nearest = depth[:, own].min(axis=1)
-        beyond = np.flatnonzero(nearest < -radii) if solid.form == "mesh" else near[:0]
+        beyond = np.flatnonzero(nearest < -radii) if solid.hides_centres else near[:0]
         if beyond.size:
             steps = 1e-4 * radii[beyond, None, None] * np.eye(3)
             ahead, back = (

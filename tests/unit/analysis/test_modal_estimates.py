@@ -152,7 +152,7 @@ def test_wrong_arguments_are_refused(call: Any, message: str) -> None:
 @pytest.mark.parametrize("drop", [0.1, 0.25, 0.5])
 @pytest.mark.parametrize("gone", [2, 5])
 def test_a_jump_beside_the_peak_has_no_estimate(side: int, drop: float, gone: int) -> None:
-    """A response that jumps beside its largest value is refused; all functions had resonances with both flanks before."""
+    """A response that jumps next to its largest value is refused; all functions had resonances with both flanks before."""
     frequency = 60 + 0.1 * np.arange(-40, 41)
     r = frequency / 60
     values = 1e-4 / (1 - r**2 + 0.02j * r)

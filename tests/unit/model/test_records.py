@@ -544,7 +544,7 @@ def test_headings_above_empty_columns_are_left_out(
 @pytest.mark.parametrize("delimiter", [",", ";", "\t"])
 @pytest.mark.parametrize("options", [{}, {"dt": "2 ms"}])
 def test_times_without_values_are_refused(delimiter: str, options: Any, tmp_path: Path) -> None:
-    """Times beside an empty column are refused, also with a step; their units were joined with those of the empty column."""
+    """Times next to an empty column are refused, also with a step; both headings were joined into one unit."""
     lines = ["time (s),acc (g)", *(f"{0.01 * k:.2f}," for k in range(40))]
     (tmp_path / "log.csv").write_text("\n".join(lines).replace(",", delimiter) + "\n")
     with pytest.raises(rb.DataError, match=r"column of values|'s', written above"):

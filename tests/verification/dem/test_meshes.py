@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 from support import triangle_meshes
-from support.dem_cases import dem_of
+from support.dem_cases import ends_alike
 
 import rattlebox as rb
 
@@ -346,15 +346,4 @@ def test_bits_in_surface_depend_neither_on_threads_nor_on_restart(shape):
     )
     base = rb.Harmonic(amplitude="60 m/s^2", frequency="50 Hz", direction="x")
     case = rb.Case(structure=rb.Fixed(), damper=damper, base=base, duration=0.1)
-    ends = []
-    for threads in (1, 2, 3):
-        dem, _ = dem_of(case, threads)
-        dem.run(1500, None)
-        saved = dem.save()
-        dem.run(3000, None)
-        ends.append(np.array(dem.state().cavities[0].position))
-    again, _ = dem_of(case, 2)
-    again.restore(saved)
-    again.run(3000, None)
-    ends.append(np.array(again.state().cavities[0].position))
-    assert all(np.array_equal(each, ends[0]) for each in ends)
+    assert ends_alike(case)

@@ -9,7 +9,7 @@ Applications of Bifurcation Theory, Academic Press, 359-384.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -104,26 +104,10 @@ class Follower:
             changes = taken is None or not is_near or taken[0].contacts != point.contacts
             # Near grazing the map is a square root, which no step crosses.
             if changes and before is not None and (event := approach(corrector, before, point, longest)) is not None:
-                row, passage = [point, *event[0]], None
-                outside = next((k for k, each in enumerate(row) if not self._is_inside(each)), len(row))
-                if outside == len(row):
-                    row, passage = self._passed(row, event[1])
-                for last, each in pairwise(row[: min(outside, len(event[0]) + 1)]):
-                    found, image = self._special(last, each)
-                    yield from found
-                    if image:
-                        self.reasons.append(image)
-                        return
-                    yield each
-                if outside <= len(event[0]):  # the branch reaches its limit before it grazes
-                    self.reasons.append("")
-                    yield from self._up_to_limit(row[outside - 1], row[outside])
-                    return
-                yield from row[len(event[0]) + 1 :]
-                count += len(event[0]) + 1
+                passage = yield from self._graze(point, *event)
                 if passage is None:
-                    self.reasons.append(f"grazing, {NOT_FOUND}")
                     return
+                count += len(event[0]) + 1
                 before, point, length = None, corrector.resection(passage.point), longest / 64
                 continue
             # The branch turns too much, a step leads to another branch, or Newton's method fails: a shorter step.
@@ -179,11 +163,28 @@ class Follower:
         self.loop = loop
         return proceed()
 
-    def _passed(self, points: list[Point], indicator: Indicator) -> tuple[list[Point], Passage | None]:
-        """Return points up to a grazing and the first one past it, and how the branch continues there."""
-        passage = beyond(self.corrector, points[-2], points[-1], indicator)
-        further = [] if passage is None else [passage.point]
-        return [*points[:-1], with_passage(points[-1], passage), *further], passage
+    def _graze(self, point: Point, points: list[Point], indicator: Indicator) -> Generator[Point, None, Passage | None]:
+        """Yield points up to a grazing and the first one past it; return how the branch continues, None if it ends."""
+        row, passage = [point, *points], None
+        outside = next((k for k, each in enumerate(row) if not self._is_inside(each)), len(row))
+        if outside == len(row):
+            passage = beyond(self.corrector, row[-2], row[-1], indicator)
+            row[-1] = with_passage(row[-1], passage)
+        for last, each in pairwise(row[:outside]):
+            found, image = self._special(last, each)
+            yield from found
+            if image:
+                self.reasons.append(image)
+                return None
+            yield each
+        if outside < len(row):  # the branch reaches its limit before it grazes
+            self.reasons.append("")
+            yield from self._up_to_limit(row[outside - 1], row[outside])
+        elif passage is None:
+            self.reasons.append(f"grazing, {NOT_FOUND}")
+        else:
+            yield passage.point
+        return passage
 
     def _up_to_limit(self, point: Point, after: Point) -> list[Point]:
         """Return the special points between the last point and the limit, and the point at the limit."""

@@ -410,7 +410,7 @@ def steady_run(
         return SteadyRun(run, paused if run.ok and paused.memory <= room else None)
     more, end = case.model_copy(update={"duration": kept / frequency}), paused.state
     for _ in range(extensions):
-        if not run.ok or cycle_loss(run, frequency, kept).is_steady:
+        if not run.ok or not _may_settle(run, frequency, kept):
             break
         run, end = continue_dem(more, end, threads=threads, progress=progress)
     return SteadyRun(run, None)
@@ -429,6 +429,12 @@ def _steady_impact_run(
     for number in range(extensions + 1 if part == 1 else 1):
         longer = case.model_copy(update={"duration": part * case.duration + number * kept / frequency})
         (run,) = simulate_many([longer], threads=threads, progress=progress or False)
-        if not run.ok or cycle_loss(run, frequency, kept).is_steady:
+        if not run.ok or not _may_settle(run, frequency, kept):
             break
     return run
+
+
+def _may_settle(run: Run, frequency: float, kept: int) -> bool:
+    """Return whether a motion is not steady yet, but may become so in further cycles."""
+    loss = cycle_loss(run, frequency, kept)
+    return not loss.is_steady and loss.is_whole_turn
