@@ -31,6 +31,7 @@ _CHANGE = 0.2  # largest relative change of the response
 _MOST = 200_000  # frequencies
 _PASSES = 40
 _ROOT_STEPS = 100
+_NEAR = 0.01  # of the smallest sample: two resonances of a sampled response may change their order between the samples
 _MARGIN = 1.3  # of the depths at the ends of an interval, when roots are chosen that may have the smallest depth
 
 
@@ -62,7 +63,19 @@ def minimum_real_part(frequency: FloatArray, response: ComplexArray) -> float:
     frequency, real = np.asarray(frequency, float), np.asarray(response).real
     if not np.isfinite(real).any():
         return math.nan
-    k = int(np.nanargmin(real))
+    return min(_bottom(frequency, real, int(k)) for k in _candidates(real))
+
+
+def _candidates(values: FloatArray) -> NDArray[np.intp]:
+    """Return the samples next to which the smallest value may be: local minima near the smallest, which is negative."""
+    known = np.where(np.isfinite(values), values, np.inf)
+    around = np.concatenate([[np.inf], known, [np.inf]])
+    near = known <= known.min() + _NEAR * abs(known.min())
+    return np.flatnonzero(near & (known <= around[:-2]) & (known <= around[2:]))
+
+
+def _bottom(frequency: FloatArray, real: FloatArray, k: int) -> float:
+    """Return the minimum of a parabola through a sample and its neighbours."""
     if not 0 < k < real.size - 1 or not np.isfinite(real[k - 1 : k + 2]).all():
         return float(real[k])
     x, y = frequency[k - 1 : k + 2] - frequency[k], real[k - 1 : k + 2]
@@ -83,15 +96,17 @@ class SampledResponse:
 
     @classmethod
     def of(cls, response: Response, omega: FloatArray) -> SampledResponse:
-        """Sample a response at the given frequencies, and between them where its real part is negative."""
+        """Sample a response at the given frequencies, and between them where it is large or its real part is negative."""
         omega = np.unique(omega)
         values = response(omega)
         for _ in range(_PASSES):
             with np.errstate(invalid="ignore", divide="ignore"):
                 turn = np.abs(np.angle(values[1:] / values[:-1]))
                 change = np.abs(values[1:] - values[:-1]) / np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
-                negative = (values.real[1:] < 0) | (values.real[:-1] < 0)
-                coarse = negative & ((turn > _TURN) | (change > _CHANGE))
+                used = (values.real[1:] < 0) | (values.real[:-1] < 0)
+                size = np.nan_to_num(np.abs(values))
+                used |= np.maximum(size[1:], size[:-1]) > 0.5 * size.max(initial=0.0)  # for `largest`
+                coarse = used & ((turn > _TURN) | (change > _CHANGE))
                 # Where the response ends or changes to another motion, halving stops at rounding.
                 coarse &= np.diff(omega) > 1e-9 * omega[1:]
             places = np.flatnonzero(coarse)
@@ -104,21 +119,30 @@ class SampledResponse:
 
     def smallest_real_part(self) -> tuple[float, float]:
         """Return the smallest real part [m/N] and its angular frequency [rad/s]; NaN if it is not negative anywhere."""
-        from scipy.optimize import minimize_scalar
-
         real = self.values.real
         if not (np.isfinite(real) & (real < 0)).any():
             return math.nan, math.nan
-        k = int(np.nanargmin(real))
-        low, high = self.omega[max(k - 1, 0)], self.omega[min(k + 1, real.size - 1)]
+        return self._smallest(np.real)
+
+    def largest(self) -> float:
+        """Return the largest absolute value [m/N]; 0 if nothing is known."""
+        return -self._smallest(lambda values: -np.abs(values))[0] if np.isfinite(self.values).any() else 0.0
+
+    def _smallest(self, measure: Callable[[ComplexArray], FloatArray]) -> tuple[float, float]:
+        """Return the smallest value of a measure of the response, and its angular frequency [rad/s]."""
+        from scipy.optimize import minimize_scalar
 
         def value(omega: float) -> float:
-            found = float(self.response(np.array([omega])).real[0])
+            found = float(measure(self.response(np.array([omega])))[0])
             return found if math.isfinite(found) else math.inf
 
-        with np.errstate(invalid="ignore"):  # parabolas through infinite values, which the search then ignores
-            found = minimize_scalar(value, bounds=(low, high), method="bounded", options={"xatol": 1e-10 * high})
-        best = [(float(real[k]), float(self.omega[k])), (float(found.fun), float(found.x))]
+        sampled, last = measure(self.values), self.omega.size - 1
+        best = []
+        for k in _candidates(sampled):
+            low, high = self.omega[max(k - 1, 0)], self.omega[min(k + 1, last)]
+            with np.errstate(invalid="ignore"):  # parabolas through infinite values, which the search then ignores
+                found = minimize_scalar(value, bounds=(low, high), method="bounded", options={"xatol": 1e-10 * high})
+            best += [(float(sampled[k]), float(self.omega[k])), (float(found.fun), float(found.x))]
         return min(best)
 
 

@@ -194,8 +194,13 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
                 angular = any(word in str(value.units) for word in ("radian", "rev", "turn", "degree"))
                 if unit == "Hz" and angular:
                     return _finite(float(value.to("rad/s").magnitude) / (2 * math.pi)), unit
-                if unit == "rad/s" and "hertz" in str(value.units):  # 1/s is rad/s
+                if unit == "rad/s" and "hertz" in str(value.units):
                     return _finite(float(value.to("Hz").magnitude) * (2 * math.pi)), unit
+                if unit == "rad/s" and not angular:  # machine makers write turns, mathematicians radians
+                    raise Hint(
+                        f"{value:~} may be turns or radians; {_wanted(units)}",
+                        f'"{value.to("1/s").magnitude:.12g} rad/s" or "{value.to("1/s").magnitude:.12g} Hz"',
+                    )
                 return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
         grams = "m/s^2" in units and str(value.units) == "gram"  # g of gravity is meant
         advice = f'"{value.magnitude:.12g} g_0"' if grams else _example(units)

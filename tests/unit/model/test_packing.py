@@ -190,7 +190,7 @@ def test_positions_have_units() -> None:
         positions=rows,
         radii=["1 mm", "2 mm"],
         velocities=quantity([[1, 2, 3], [0, 0, 4]], "mm/s"),
-        spins=[["60 rpm", "360 deg/s", "1 Hz"], ["1 rad/s", "2 1/s", 0]],
+        spins=[["60 rpm", "360 deg/s", "1 Hz"], ["1 rad/s", "2 rad/s", 0]],
     )
     assert np.array(made.positions) == pytest.approx(np.array([[1e-3, 0, -2e-3], [0.01, 0.02, 0]]))
     assert made.radii == pytest.approx([1e-3, 2e-3])

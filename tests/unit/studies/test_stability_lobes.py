@@ -190,15 +190,21 @@ def test_study_file(tmp_path: Path) -> None:
         rb.stability_lobes(TOOL, None, KS, store=tmp_path / "lobes.zarr")
 
 
+FREE = rb.Matrices(
+    M=[[2, 0], [0, 3]], K=[[4e5, -4e5], [-4e5, 4e5]], C=[[20, -20], [-20, 20]], points={"tip": 0, "end": 1}
+)
 REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"cutting_coefficient": None}, "a cutting coefficient is needed"),
     ({"cutting_coefficient": ("2200", "Pa")}, '"2200 N/mm^2"'),
     ({"cutting_coefficient": "2200 N"}, "cutting_coefficient = '2200 N': a force over an area is needed"),
     ({"cutting_coefficient": "2200 N/mm"}, 'cutting_coefficient = "2000 N/mm^2"'),
     ({"directional_factor": 0}, "does not feel the force"),
-    ({"speeds": [1000, 2000]}, "rpm and 1/s differ by 60"),
+    ({"speeds": [1000, 2000]}, "rpm and rad/s differ by 9.55"),
     ({"speeds": ["2000 rpm", "1000 rpm"]}, "rising"),
     ({"speeds": ["20 N"]}, "angular velocity"),
+    ({"speeds": ["20 1/s"]}, '"20 rad/s" or "20 Hz"'),
+    ({"speeds": ["1e-6 rpm", "1000 rpm"]}, "is the limit of all speeds"),  # took all memory
+    ({"case": FREE, "point": "tip"}, "moves freely, in a mode without stiffness"),  # a limit of picometres
     ({"teeth_in_cut": 1.5}, "more than the number of teeth"),
     ({"amplitudes": ["1 um"]}, "has no amplitude"),
     ({"damper": ball()}, "none are given"),

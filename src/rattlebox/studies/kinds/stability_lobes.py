@@ -60,6 +60,8 @@ _RATIOS = 41
 """Number of frequencies at which the motion of dampers away from the tip is compared with that of the tip."""
 _WIDER = 1.25
 """Margin of its amplitudes around those of the tip."""
+_MOST_WAVES = 1e6
+"""Largest number of waves between two teeth: 1e6 lobes differ from the limit of all speeds by less than a millionth."""
 _FALL = 0.98
 """Limit at a larger amplitude over the largest one, below which the limit counts as falling."""
 
@@ -209,6 +211,19 @@ class StabilityLobes(Study):
                 )
         if not elastic.any():
             raise Hint(f"no elastic mode moves the point {self._tool.point!r}", "another point or direction")
+        if np.any((self._bare.tip != 0) & (self._bare_model.stiffness <= 0)):
+            raise Hint(
+                f"the point {self._bare.point!r} moves freely, in a mode without stiffness, and chatters at every depth of "
+                "cut; a tool must be held",
+                "the modes of the tool in its holder, without those of a rigid body",
+            )
+        passes = 60 / (self._speeds * self.teeth) * self._bare_samples.smallest_real_part()[1] / (2 * math.pi)
+        if np.any(passes > _MOST_WAVES):
+            raise Hint(
+                f"speeds begin at {self._speeds[0]:.3g} rpm, where a vibration of the tool has {passes[0]:.1g} waves between "
+                f"two teeth; more than {_MOST_WAVES:.0e} are not computed, since the depth there is the limit of all speeds",
+                f'speeds from "{1.05 * self._speeds[0] * passes[0] / _MOST_WAVES:.2g} rpm" on',
+            )
         if self._runs_map:
             self._map.validate()
         elif self._damper is None and self.amplitudes is not None:
@@ -244,7 +259,7 @@ class StabilityLobes(Study):
         spaced = isinstance(given, Spaced)
         pairs = [parse(each, ("rad/s",)) for each in ((given.start, given.stop) if spaced else list(given))]
         if any(unit is None for _, unit in pairs):
-            raise Hint("speeds have no unit, and rpm and 1/s differ by 60", advice, ["speeds"])
+            raise Hint("speeds have no unit, and rpm and rad/s differ by 9.55", advice, ["speeds"])
         values = np.array([value for value, _ in pairs]) * 30 / math.pi
         speeds = np.asarray(given.values(*values)) if spaced else values
         if not speeds.size or np.any(speeds <= 0) or np.any(np.diff(speeds) <= 0):
@@ -408,7 +423,7 @@ class StabilityLobes(Study):
             smallest.append(each.smallest_real_part())
             lobes.append(lobes_of(each, period))
         real, omega = np.array(smallest).T
-        stiffest = [np.nanmax(np.abs(each.values), initial=0.0) for each in samples]
+        stiffest = [each.largest() for each in samples]
         with np.errstate(divide="ignore"):
             return _Limits(
                 np.asarray(amplitudes, float),
