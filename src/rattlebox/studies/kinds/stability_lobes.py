@@ -220,8 +220,8 @@ class StabilityLobes(Study):
         passes = 60 / (self._speeds * self.teeth) * self._bare_samples.smallest_real_part()[1] / (2 * math.pi)
         if np.any(passes > _MOST_WAVES):
             raise Hint(
-                f"speeds begin at {self._speeds[0]:.3g} rpm, where a vibration of the tool has {passes[0]:.1g} waves between "
-                f"two teeth; more than {_MOST_WAVES:.0e} are not computed, since the depth there is the limit of all speeds",
+                f"speeds begin at {self._speeds[0]:.3g} rpm, where a vibration has {passes[0]:.1g} waves between two teeth; "
+                f"more than {_MOST_WAVES:.0e} are not computed, since the depth there is the limit of all speeds",
                 f'speeds from "{1.05 * self._speeds[0] * passes[0] / _MOST_WAVES:.2g} rpm" on',
             )
         if self._runs_map:
