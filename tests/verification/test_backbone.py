@@ -50,12 +50,70 @@ def test_storeys_resonate_where_the_receptance_is_imaginary(mode):
     np.testing.assert_allclose(curve.force, curve.amplitude / abs(receptance(omega)), rtol=1e-7)
 
 
-def test_a_ball_almost_without_a_gap_lowers_the_frequency_as_its_mass():
-    """A ball of 0.44 times the mass in a gap of 0.1 % of the amplitude shifts the frequency by 1 / sqrt(1.44), 17 %."""
-    damper = ball_damper(mass=0.44, gap=1e-6, restitution=0.1)
+@pytest.mark.parametrize(("mass", "shift"), [(0.44, 1.2), (0.5625, 1.25)])
+def test_a_ball_almost_without_a_gap_acts_as_its_mass(mass, shift):
+    """A ball in a gap of 0.1 % of the amplitude has frequency and damping of the structure with its mass, 20 % lower.
+
+    The damping ratio was that of the bare mass, too large by the square of the shift; the test looked at the frequency only.
+    """
+    damper = ball_damper(mass=mass, gap=1e-6, restitution=0.1)
     case = case_of(rb.SDOF(mass="1 kg", frequency="10 Hz", damping_ratio=0.02), damper)
     curve = rb.backbone(case, ["1 mm", "2 mm"], starts=2, cycles=(20, 16), progress=False)
-    np.testing.assert_allclose(curve.frequency, 10 / 1.2, rtol=2e-3)
+    np.testing.assert_allclose(curve.frequency, 10 / shift, rtol=2e-3)
+    np.testing.assert_allclose(curve.damping_ratio, 0.02 / shift, rtol=5e-3)
+
+
+def test_a_glued_mass_at_another_point_has_the_damping_of_its_modes():
+    """A ball without clearance at one storey, and the load at another: frequency and damping are eigenvalues, within 1 %."""
+    building = rb.ShearBuilding(masses=[2e5] * 3, stiffnesses=[3e8] * 3, damping_ratio=0.02)
+    ball = rb.ImpactDamper(
+        ball=rb.Striker(mass=1.5e4),
+        gap=1e-6,
+        contact=rb.Linear(contact_time="2 ms", restitution=0.1),
+        point="storey 2",
+    )
+    curve = rb.backbone(
+        case_of(building, ball, point="storey 3"), ["5 mm", "10 mm"], starts=2, cycles=(20, 16), progress=False
+    )
+    modes = building.modes()
+    shape = modes.shape("storey 2")
+    inverse = np.linalg.inv(np.eye(3) + 1.5e4 * np.outer(shape, shape))
+    first_order = np.block(
+        [[np.zeros((3, 3)), np.eye(3)], [-inverse @ np.diag(modes.stiffness), -2 * inverse @ np.diag(modes.decay)]]
+    )
+    root = min(np.linalg.eigvals(first_order), key=abs)
+    np.testing.assert_allclose(curve.frequency, abs(root) / (2 * math.pi), rtol=2e-3)
+    np.testing.assert_allclose(curve.damping_ratio, -root.real / abs(root), rtol=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("mass", "hertz", "ratio", "ball", "gap", "restitution", "amplitudes"),
+    [
+        (2.2, 47, 0.006, 0.03, 0.7e-3, 0.45, [0.9e-3, 1.5e-3, 3e-3]),
+        (1.0, 33, 0.02, 0.05, 0.5e-3, 0.6, [1e-3, 2e-3]),
+        (8.0, 12, 0.01, 0.6, 4e-3, 0.7, [5e-3, 8e-3]),
+    ],
+)
+def test_the_map_of_a_ball_has_the_same_damping_and_frequency(mass, hertz, ratio, ball, gap, restitution, amplitudes):
+    """Damping ratio and frequency from the map of a ball are those of the backbone, but for its mass.
+
+    In the map a ball meets walls of infinite mass, so that its impacts are stronger by about the ratio of masses.
+    """
+    damper, structure = ball_damper(ball, gap, restitution), rb.SDOF(mass=mass, frequency=hertz, damping_ratio=ratio)
+    curve = rb.backbone(case_of(structure, damper), amplitudes, starts=3, progress=False)
+    shaker = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=amplitudes[0], frequency=hertz)),
+        damper=damper.model_copy(update={"velocity": (0.5,)}),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+    sizes = np.geomspace(0.7 * amplitudes[0], 1.4 * amplitudes[-1], 25).tolist()
+    loss_map = rb.loss_map(shaker, sizes, [0.9 * hertz, hertz, 1.05 * hertz], cycles=(150, 100), progress=False)
+    response = rb.response_from_map(structure, loss_map, level=["1 N"])
+    for name, tolerance in (("damping_ratio", 5e-3 + ball / mass / 3), ("mode_frequency", 1e-3)):
+        found = response[name].squeeze().interp(map_amplitude=amplitudes)
+        mine = curve["frequency" if name == "mode_frequency" else name]
+        np.testing.assert_allclose(mine, found, rtol=tolerance, err_msg=name)
 
 
 def effective_mass(amplitude, half, restitution):

@@ -138,9 +138,12 @@ def backbone(
     resonance with the force for the wanted amplitude, because a bent resonance is next to a fold. Hard stops leave no
     amplitude above their gap, and a search there ends without a result. The first m comes from a run in which the cavities
     move harmonically, as in the mode.
-    The damping ratio is that of a linear mode with the same loss, with its shape phi at the point of the load,
+    The damping ratio is that of a linear mode with the same loss, with its shape phi at the point of the load and the mass
+    of structure and dampers there, so that a bed that rests has the damping ratio of a structure with its mass,
 
-    .. math:: \zeta = \frac{\phi^2 F}{2 \omega^2 X}.
+    .. math:: \zeta = \frac{F}{2 \omega^2 X (\phi^{-2} + \operatorname{Re} m)} .
+
+    With stops the mass is that of the structure alone.
 
     Starts whose effective masses differ by more than 10 % and three standard errors of both have found different motions.
     Where several coexist, no start has the mean of all: a warning lists them, and the limits include the 95 % interval of
@@ -263,6 +266,10 @@ class _Target:
     def weight(self, omega: float) -> float:
         """Return the dynamic stiffness per effective mass; with stops, which are springs rather than masses, 1."""
         return 1.0 if self.case.stops else omega**2
+
+    def modal_mass(self, mass: complex) -> float:
+        """Return the mass of the mode at the point of the load, with that of the dampers [kg]."""
+        return self.shape**-2 + (0.0 if self.case.stops else mass.real)
 
     def resonance(self, near: float, mass: complex) -> float:
         """Return the angular frequency nearest to `near` at which the stiffness is imaginary; NaN if there is none."""
@@ -593,6 +600,7 @@ def _dataset(
     found = np.array([search.is_found for search in searches]).reshape(shape)
     omega = np.array([search.omega for search in searches]).reshape(shape)
     force = np.where(found, np.array([search.force for search in searches]).reshape(shape), np.nan)
+    masses = np.array([target.modal_mass(search.mass) for search in searches]).reshape(shape)
     # What all starts have in common is a transient: their mean drift turns and scales the dynamic stiffness by as much.
     drift = np.ma.masked_invalid(
         np.where(found, np.array([search.drift for search in searches]).reshape(shape), np.nan)
@@ -600,7 +608,7 @@ def _dataset(
     error = np.abs(drift.mean(axis=0)).filled(np.nan)
     values = {
         "frequency": np.where(found, omega / (2 * math.pi), np.nan),
-        "damping_ratio": target.shape**2 * force / (2 * omega**2 * levels),
+        "damping_ratio": force / (2 * omega**2 * levels * masses),
         "force": force,
         "work": math.pi * force * levels,
     }

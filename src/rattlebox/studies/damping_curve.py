@@ -145,7 +145,8 @@ def damping_curve(
     of the particles) and the energy E = (w q)^2 / 2 of the mode with modal amplitude q. "shaking": zeta = W / (2 pi (w q)^2)
     with the work W of the cavity on its content in a cycle: the energy lost in contacts plus the rise of the stored energy.
     A bed that still sinks also dissipates its own potential energy, which is not in W; `rb.analysis.shaken_cavity` has the
-    test of steadiness. Each is the ratio of the linear oscillator with the same loss.
+    test of steadiness. Each is the ratio of the linear oscillator with the same loss. "shaking" is at the frequency of the
+    structure alone: with a damper whose effective mass is the share s of its mass, it is too large by up to 1 + s.
 
     The interval covers the scatter of random initial states alone. In twelve regimes of two beds, intervals of "shaking"
     from two or three packings held the mean of 40 to 120 packings in 86 to 97 % of draws: below 95 % where a bed is nearly
