@@ -289,12 +289,19 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
                     for damper, end in zip(dampers, ends, strict=True)
                 ]
             ),
-            "velocity": np.concatenate([end.velocity for end in ends]),
+            "velocity": np.concatenate([_velocity(*of) for of in zip(dampers, ends, raw.speed[-1], strict=True)]),
             "spin": np.concatenate([end.spin for end in ends]),
             "damper": np.repeat(np.arange(len(dampers)), [part.radius.size for part in contents]),
             **fixed,
         },
     )
+
+
+def _velocity(damper: ParticleDamper, end: Any, speed: float) -> Array:
+    """Return velocities relative to the base, or to axes that turn with the cavity about the displaced axis, (n, 3)."""
+    if (rotation := damper.rotation) is None:
+        return np.asarray(end.velocity)
+    return np.asarray(end.velocity) - rotation.lever_velocity(np.asarray(end.displacement), speed)
 
 
 def _in_turning_cavities(case: Case, raw: _core.Records, displacement: Array) -> tuple[Array, Array, Array, Array]:

@@ -216,6 +216,15 @@ class Rotation(Part):
         """Return vectors along the axes of the cavity, (..., 3), in the machine, at an angle or at one for each vector."""
         return rotated(np.asarray(vectors, dtype=float), unit_vector(self.axis), angle)
 
+    def lever_velocity(self, displacement: Vector, speed: float) -> Vector:
+        """Return the velocity of a cavity that turns about an axis displaced with it, less that about the axis at rest, (3,).
+
+        The displacement is along the axes of the cavity. A cavity that carries the vibration turns about the axis at rest.
+        """
+        if self.vibration == "cavity":
+            return np.zeros(3)
+        return -speed * np.cross(unit_vector(self.axis), displacement)
+
     def field(self, gravity: Vector) -> Vector:
         """Return gravity and centrifugal acceleration at the centre of the cavity at the start, along its axes [m/s^2]."""
         start = self.at(0.0)

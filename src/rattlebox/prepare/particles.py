@@ -123,7 +123,7 @@ def pack_particles(prepared: Prepared) -> _core.DemProblem:
     cavities = []
     parts = zip(case.particle_dampers, _shapes(case), prepared.tables, prepared.positions, strict=True)
     for damper, shape, table, position in parts:
-        cavities.append(_cavity(damper, shape, table, len(pairs), position))
+        cavities.append(_cavity(case, damper, shape, table, len(pairs), position))
         pairs += [_pair_laws(damper, entry) for entry in table.entries]
     return _core.DemProblem(
         dt=step.dt,
@@ -291,16 +291,22 @@ def _without_particles(case: Case) -> Array:
     return raw.state.reshape(raw.time.size, -1, 2)
 
 
-def _cavity(damper: ParticleDamper, shape: Array, table: ContactTable, first: int, position: Array) -> _core.Cavity:
+def _cavity(
+    case: Case, damper: ParticleDamper, shape: Array, table: ContactTable, first: int, position: Array
+) -> _core.Cavity:
     """Pack a cavity and its particles; `first` is the index of its first pair law in the list of the problem."""
     contents, start, walls = damper.contents, damper.start, damper.interior.walls()
+    velocity = start.velocity
+    if (turning := damper.rotation) is not None:
+        # Particles start relative to the cavity, which turns about an axis that the structure may have displaced.
+        velocity = velocity + turning.lever_velocity(_displacement(case, damper, shape), float(turning.at(0.0).speed))
     return _core.Cavity(
         shape=_array(shape),
         walls=pack_walls(walls, table.wall_kind),
         solids=pack_solids(walls, table.wall_kind),
         period=damper.interior.period,
         position=position,
-        velocity=_array(start.velocity),
+        velocity=_array(velocity),
         spin=_array(start.spin),
         radius=_array(contents.radius),
         mass=_array(contents.mass),
