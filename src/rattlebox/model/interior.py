@@ -20,6 +20,8 @@ from .surfaces import Surface
 
 _SAMPLES, _LEAST = 2**19, 2**11
 """Points on the surfaces of all bodies, and least number on one of them, by which areas are computed."""
+_ON_WALLS = 2**17
+"""Points on the faces of the cavity, by which the area under bodies is computed."""
 _TOUCHING = (
     1e-7  # distance of two surfaces that touch, over the size of the cavity: files round coordinates to half of it
 )
@@ -106,12 +108,13 @@ class Interior(Cavity):
     def face_areas(self) -> Vector:
         """Area of each face of the cavity, then of each body, (f,) [m^2]; the bodies of an array are one face.
 
-        Of a body, the area that is inside of the cavity and in no other body, from points on its surface.
+        What is inside of the cavity and in no other body, from points on the surfaces.
         """
         labels = self.walls().labels
         areas = np.zeros(len(labels))
-        areas[: len(self.shape.walls().labels)] = self.shape.face_areas
         count, tiny = max(_LEAST, _SAMPLES // len(self.solids)), _TOUCHING * float(self.lengths.max())
+        faces = self.shape.face_areas
+        areas[: len(faces)] = faces * (1 - self._covered(len(faces), tiny))
         for k, solid in enumerate(self.solids):
             points, normals = solid.surface_samples(count)
             free = self.shape.depth(points) > tiny
@@ -124,6 +127,19 @@ class Interior(Cavity):
                 free[rest] = ~covered
             areas[labels.index(solid.name)] += float(free.mean()) * solid.area
         return areas
+
+    def _covered(self, faces: int, tiny: float) -> Vector:
+        """Return the share of each face of the cavity that is in bodies, or on them within a distance [m], (f,)."""
+        walls = self.shape.walls()
+        points, inward = self.shape.surface().spread(_ON_WALLS)
+        label = walls.label_numbers[np.abs(walls.distances(points)).argmin(axis=1)]
+        points += tiny * inward
+        covered = np.zeros(len(points), bool)
+        for solid in self.solids:
+            low, high = solid.bounds
+            near = np.flatnonzero(((points > low) & (points < high)).all(axis=1) & ~covered)
+            covered[near] = solid.is_within(points[near])
+        return np.bincount(label, covered, faces) / np.maximum(np.bincount(label, minlength=faces), 1)
 
     @property
     def period(self) -> Vector:

@@ -22,7 +22,6 @@ SolidForm = Literal["rod", "plate", "ball", "mesh"]
 _SAMPLES = 2**18, 2**22  # points by which the share of a solid in a cavity is computed, and those of all together
 _AROUND, _LATITUDES = 36, 17  # corners of drawn rods and balls
 _SPREAD = 1.2207440846057596  # of the sequence in `Cavity.spread`
-_FLAT_SPREAD = 1.324717957244746  # of the sequence in a plane: g^3 = g + 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,17 +132,7 @@ class Solid:
 
     def surface_samples(self, count: int) -> tuple[Vector, Vector]:
         """Return points that cover the surface evenly, (count, 3) [m], and the normals there, out of the body."""
-        surface = self.surface()
-        fans = [(face[0], face[k], face[k + 1]) for face in surface.polygons for k in range(1, len(face) - 1)]
-        corners, normals = surface.points[np.array(fans)], face_normals(surface.points, np.array(fans))
-        areas = np.linalg.norm(normals, axis=1)
-        # Each triangle has points by its area; in it they are a Kronecker sequence, as in `Cavity.spread`.
-        share = (np.arange(count) + 0.5) / count
-        u, v = ((np.arange(count)[:, None] * _FLAT_SPREAD ** -np.arange(1.0, 3.0) + 0.5) % 1.0).T
-        index = np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(fans) - 1)
-        chosen, outward = corners[index], normals[index] / areas[index, None]
-        u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
-        points = chosen[:, 0] * (1 - u - v) + chosen[:, 1] * u + chosen[:, 2] * v
+        points, outward = self.surface().spread(count)
         if self.form in ("rod", "ball"):  # drawn facets are chords of the round surface
             along = self.axes[2]
             is_round = np.ones(count, bool) if self.form == "ball" else np.abs(outward @ along) < 0.5

@@ -16,9 +16,13 @@ _SHARP = np.cos(np.radians(20.0))
 """Cosine of the angle between the normals of two faces above which their edge is drawn from every side."""
 
 
+_FLAT_SPREAD = 1.324717957244746
+"""Root of g^3 = g + 1, for the sequence of `Cavity.spread` in a plane."""
+
+
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A closed surface of polygons."""
+    """A closed surface of polygons, whose corners are counter-clockwise as seen from the space for particles."""
 
     points: Vector  # Corners, from the centre of the cavity [m], (n, 3)
     polygons: Polygons
@@ -45,6 +49,20 @@ class Surface:
         """Volume inside [m^3]: that of the pyramids from the centre over the polygons."""
         pyramids = [self.points[polygon[0]] @ _normal(self.points[list(polygon)]) for polygon in self.polygons]
         return -float(np.sum(pyramids)) / 6
+
+    def spread(self, count: int) -> tuple[Vector, Vector]:
+        """Return points that cover the surface evenly, (count, 3) [m], and the unit normals there, into the space."""
+        fans = [(face[0], face[k], face[k + 1]) for face in self.polygons for k in range(1, len(face) - 1)]
+        corners = self.points[np.array(fans)]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        areas = np.linalg.norm(normals, axis=1)
+        # Each triangle has points by its area; in it they are a Kronecker sequence.
+        share = (np.arange(count) + 0.5) / count
+        u, v = ((np.arange(count)[:, None] * _FLAT_SPREAD ** -np.arange(1.0, 3.0) + 0.5) % 1.0).T
+        index = np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(fans) - 1)
+        u, v = np.where(u + v > 1, 1 - u, u)[:, None], np.where(u + v > 1, 1 - v, v)[:, None]
+        first, second, third = corners[index].transpose(1, 0, 2)
+        return first * (1 - u - v) + second * u + third * v, normals[index] / areas[index, None]
 
     @cached_property
     def edges(self) -> dict[tuple[int, int], tuple[int, int]]:
