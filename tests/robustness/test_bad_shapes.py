@@ -88,7 +88,7 @@ SURFACES = {
     "shell that crosses the wall": (both(BOX, shifted(INNER, 0, 0, -13)), "crosses itself"),
     "shell beside": (both(BOX, shifted(INNER, 45, 0, 0)), "2 shells"),
     "shell in a shell in a shell": (both(BOX, INNER, (0.3 * INNER[0], INNER[1])), "inside of another inner shell"),
-    "the same surface twice": (both(BOX, BOX), "more than two triangles"),
+    "the same surface twice": (both(BOX, BOX), "48 triangles are copies of others"),
     "two triangles back to back": (SHEET, "folded onto itself"),
     "sheet without thickness inside": (both(BOX, SHEET), "folded onto itself"),
     "fold in a side": (moved(THIRDS, (5.33, 3.67, 13), (-8, 3.67, 13)), "folded onto itself at 4 edges"),
@@ -98,7 +98,10 @@ SURFACES = {
         (box((32, 22, 26))[0] + 1e-3 * np.random.default_rng(2).standard_normal((24, 3)), box((32, 22, 26))[1]),
         "is open",
     ),
-    "a triangle twice": ((BOX[0], np.concatenate([BOX[1], BOX[1][:1]])), "more than two triangles"),
+    "a triangle twice": (
+        (BOX[0], np.concatenate([BOX[1], BOX[1][:1]])),
+        "more than two triangles.*1 triangle is a copy of others",
+    ),
     "corner without a number": (moved(BOX, (16, 11, 13), (NAN, 0, 0)), "rows of 3 finite numbers"),
     "corner at the end of the world": (moved(BOX, (16, 11, 13), (1e300, 0, 0)), "1e.297 m from the origin"),
     "ball with all corners of a shell on it": (

@@ -222,6 +222,10 @@ class Part(BaseModel, metaclass=_PartMeta):
         """Return the fields of this part that a new value of a field excludes."""
         return self.excluded_by(name, value)
 
+    def absent_item(self, field: str, name: str) -> str:
+        """Return advice on a name that a table of this part lacks, by default the nearest one."""
+        return nearest(name, getattr(self, field))
+
     @classmethod
     def expand_aliases(cls, values: dict[str, Any]) -> dict[str, Any]:
         """Return values with the names of fields in place of aliases.

@@ -1,4 +1,4 @@
-"""Previews of files: what a record or modes read from a file would be, with lines of TOML and Python that read it."""
+"""Previews of files: what a record, modes or a cavity in a file would be, with lines of TOML and Python that read it."""
 
 from __future__ import annotations
 
@@ -6,32 +6,39 @@ import json
 import os
 import tomllib
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rattlebox._util.exceptions import DataError, RattleboxError
+from rattlebox._util.exceptions import CaseError, DataError, RattleboxError
+from rattlebox._util.quantities import amount
 from rattlebox.exchange.read.formats import density_reader, modes_reader, record_reader, signals_in
 from rattlebox.exchange.read.guarded import errors_of
 from rattlebox.exchange.read.modes_in_file import ModesInFile
+from rattlebox.exchange.read.surfaces import ENDINGS, STEP
 from rattlebox.exchange.read.universal import frequency_responses
 
 from .density_files import density_names, states_density
 from .effective_masses import effective_masses
 from .elementwise import Vector
 from .errors import several
+from .face_groups import FROM_FILE
 from .files import BINARY, existing, read_arrays, read_text
 from .matrices import Matrices
+from .mesh_cavity import Mesh
 from .modal_files import MOST_POINTS, export_instead, read_modes
 from .random_vibration import Random
 from .recorded import Record, is_table
 from .records import columns_of_arrays, columns_of_text
 from .structures import Modal, StructurePart
+from .triangle_surface import surface_notes
 from .units import STANDARD_GRAVITY
 
 _ASSUMED_DURATION = "1 s"
+_ASSUMED_LENGTH = "mm"
 _ASSUMED_STEP, _ASSUMED_UNIT, _ASSUMED_DAMPING = "0.01 s", "m/s^2", 0.01
 _LISTED = 12
 _HEAD = 1000  # bytes of a table that contain its headings
@@ -49,11 +56,11 @@ class FileContents:
     content
         What the file is, such as "a record".
     lines
-        Channels with unit, samples, sampling and peak, or modes with their frequencies.
+        Channels with unit, samples, sampling and peak, modes with their frequencies, or size and groups of a surface.
     notes
         What is assumed.
     toml, python
-        Lines that read the first channel, or the modes; "" if there is none, and `toml` for frequency responses.
+        Lines that read the first channel, the modes or the surface; "" if there is none, and `toml` for frequency responses.
     """
 
     file: str
@@ -79,8 +86,8 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
     Parameters
     ----------
     file
-        A file with records (see `file` of `rb.Record`), power spectral densities (`rb.Random`), modes (`rb.Modal`), or
-        frequency responses of a universal file.
+        A file with records (see `file` of `rb.Record`), power spectral densities (`rb.Random`), modes (`rb.Modal`),
+        frequency responses of a universal file, or a closed surface (`rb.Mesh`).
 
     Returns
     -------
@@ -104,7 +111,7 @@ def inspect(file: str | os.PathLike[str]) -> FileContents:
     if instead := export_instead(path):
         raise DataError(f"{path}: files with the ending {path.suffix.lower()!r} are not read", instead)
     _refuse_own_files(path)
-    if found := _matrices(path, given):
+    if found := _surface(path, given) or _matrices(path, given):
         return found
     problem: RattleboxError | None = None
     # Universal files and tables may have records or modes: the first that can be read.
@@ -318,6 +325,36 @@ def _modes(path: Path, given: str) -> FileContents | None:
     else:
         lines += _table_of_masses(modal)
     return _structure(given, "modes of a structure", modal, lines, assumed, options)
+
+
+def _surface(path: Path, given: str) -> FileContents | None:
+    """Return the preview of a file with a surface of triangles; None for other files."""
+    if path.suffix.lower() not in ENDINGS:
+        return None
+    states_unit = path.suffix.lower() in STEP
+    options: dict[str, Any] = {} if states_unit else {"unit": _ASSUMED_LENGTH}
+    try:
+        cavity = Mesh(file=str(path), **options)
+    except CaseError as error:
+        raise error.restated(DataError, head="", place=(), complaint=f"{path}: {error.complaint}") from None
+    size = f"volume {1e6 * cavity.volume:.4g} cm^3, the largest sphere inside has {amount(cavity.widest, 'm')}"
+    lines = [cavity.words(), size]
+    with suppress(DataError):  # without groups
+        lines.append(f"groups: {', '.join(Mesh(file=str(path), groups=FROM_FILE, **options).walls().labels)}")
+        options["groups"] = FROM_FILE
+    notes = (
+        [] if states_unit else [f"assumed: unit = {_ASSUMED_LENGTH!r}, since the file states none: set the right one"]
+    )
+    fields = {"kind": "mesh", "file": given, **options}
+    python = "".join(f", {key}={_python(value)}" for key, value in options.items())
+    return FileContents(
+        given,
+        "a closed surface, as a cavity",
+        tuple(lines),
+        (*notes, *surface_notes(cavity)),
+        "\n".join(["[damper.cavity]", *(f"{key} = {_toml(value)}" for key, value in fields.items())]),
+        f"rb.Mesh(file={json.dumps(given, ensure_ascii=False)}{python})",
+    )
 
 
 def _matrices(path: Path, given: str) -> FileContents | None:

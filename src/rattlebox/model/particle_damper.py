@@ -379,6 +379,17 @@ class ParticleDamper(Damper):
                 ["packing"],
             )
 
+    def absent_item(self, field: str, name: str) -> str:
+        """Return advice on a face without an entry in `walls`, or a name that another table lacks."""
+        if field != "walls":
+            return super().absent_item(field, name)
+        labels = self.interior.walls().labels
+        if name not in labels:
+            return self.interior.face_instead(name, labels)
+        return (
+            f'walls = {{ "{name}" = {{}} }} in the case: a face with the properties of the others, which may then vary'
+        )
+
     def _check_faces(self) -> None:
         """Raise if a face does not exist, or if particles would fall forever along a periodic direction."""
         with at("walls"):

@@ -63,9 +63,11 @@ def place_of(case: Part, path: str) -> Place:
             node = node[step]
         elif node is None:
             raise Hint(f"{path}: {so_far} is not set in this case", f"give {so_far} as a whole")
+        elif isinstance(node, dict):
+            holder = part_at(case, place[:-1])
+            raise Hint(f"{path}: there is no {step!r} in {so_far}", holder.absent_item(str(place[-1]), step))
         else:
-            hint = nearest(step, node) if isinstance(node, dict) else _suggested(case, path, step, set())
-            raise Hint(f"{path}: there is no {step!r} in {so_far}", hint)
+            raise Hint(f"{path}: there is no {step!r} in {so_far}", _suggested(case, path, step, set()))
     return tuple(place)
 
 

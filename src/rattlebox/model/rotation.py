@@ -217,9 +217,9 @@ class Rotation(Part):
         return rotated(np.asarray(vectors, dtype=float), unit_vector(self.axis), angle)
 
     def lever_velocity(self, displacement: Vector, speed: float) -> Vector:
-        """Return the velocity of a cavity that turns about an axis displaced with it, less that about the axis at rest, (3,).
+        """Return the velocity of a cavity that turns about an axis displaced with it less that about the axis at rest, (3,).
 
-        The displacement is along the axes of the cavity. A cavity that carries the vibration turns about the axis at rest.
+        The displacement is along the axes of the cavity. With the vibration of the cavity the axis is at rest.
         """
         if self.vibration == "cavity":
             return np.zeros(3)

@@ -295,10 +295,21 @@ def _edges(vertices: Vector, faces: Faces) -> tuple[Faces, Faces]:
     many = np.flatnonzero(count > 2)
     if many.size:
         edge = key[start[many[0]]]
+        # Of shells that touch, triangles at one place are turned against each other.
+        first_corner = faces.argmin(axis=1)[:, None]
+        turned = np.take_along_axis(faces, (first_corner + np.arange(3)) % 3, axis=1)
+        repeated = len(faces) - len(np.unique(turned, axis=0))
         raise Hint(
             f"{counted(many.size, 'edge')} of the surface {'has' if many.size == 1 else 'have'} more than two triangles, "
-            f"the first near {_place(vertices[edge].mean(axis=0))}",
-            "shells that do not touch: one surface around the space, and bodies apart from it",
+            f"the first near {_place(vertices[edge].mean(axis=0))}"
+            + (
+                f"; {counted(repeated, 'triangle')} {'is a copy' if repeated == 1 else 'are copies'} of others"
+                if repeated
+                else ""
+            ),
+            "each triangle once, in trimesh by mesh.update_faces(mesh.unique_faces())"
+            if repeated
+            else "shells that do not touch: one surface around the space, and bodies apart from it",
         )
     first, second = face[start], face[start + 1]
     against = forward[start] == forward[start + 1]

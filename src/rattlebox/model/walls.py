@@ -7,6 +7,8 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field, ValidationInfo
 
+from rattlebox._util.exceptions import CaseError
+
 from .also_accepts import AlsoAccepts
 from .base import Part
 from .contacts import AnyContact
@@ -62,7 +64,7 @@ class Wall(Part):
         Raises
         ------
         Hint
-            If the usual law has no restitution that another one can replace.
+            If the usual law has no restitution that another one can replace, or cannot have this one.
         """
         if self.contact is not None:
             return self.contact
@@ -77,7 +79,10 @@ class Wall(Part):
             )
         excluded = {other for pair in usual.alternatives if "restitution" in pair for other in pair}
         kept = {name: value for name, value in given.items() if name not in excluded}
-        return type(usual)(restitution=self.restitution, **kept)
+        try:
+            return type(usual)(restitution=self.restitution, **kept)
+        except CaseError as error:  # names the contact law, of which the user has written nothing at this place
+            raise error.restated(Hint, head="", place=["restitution"]) from None
 
 
 def _wall(value: object, info: ValidationInfo) -> Any:

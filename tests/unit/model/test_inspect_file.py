@@ -136,3 +136,34 @@ def test_files_for_other_functions_are_named(name: str, content: str, advice: st
     (tmp_path / name).write_text(content, encoding="latin-1")
     with pytest.raises(rb.DataError, match=rf"(?s)try: .*{advice}"):
         rb.inspect(tmp_path / name)
+
+
+def test_a_surface(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A preview of a surface shows its size and its groups; its lines are executed and agree.
+
+    Surfaces were read as cavities only: of an STL file the preview said that it is not text, and of an OBJ file that it is a
+    table of four channels.
+    """
+    trimesh = pytest.importorskip("trimesh")
+    monkeypatch.chdir(tmp_path)
+    block = trimesh.creation.box((18, 22, 31))
+    block.export("block.stl")
+    corners = "".join(f"v {x} {y} {z}\n" for x, y, z in block.vertices)
+    rows = ["f " + " ".join(str(corner + 1) for corner in face) + "\n" for face in block.faces]
+    Path("block.obj").write_text(f"{corners}g part\n{''.join(rows[:5])}g lid\n{''.join(rows[5:])}")
+    for name, groups in (("block.stl", None), ("block.obj", "file")):
+        contents = rb.inspect(name)
+        for words in (
+            "12 triangles, 18 x 22 x 31 mm",
+            "volume 12.28 cm^3",
+            "18 mm",
+            "unit = 'mm', since the file states none",
+        ):
+            assert words in str(contents)
+        assert ("groups: lid, part" in str(contents)) == (groups is not None)
+        fields = tomllib.loads(contents.toml)["damper"]["cavity"]
+        assert fields.pop("kind") == "mesh" and fields.get("groups") == groups
+        assert rb.Mesh(**fields) == eval(contents.python, {"rb": rb})
+    trimesh.Trimesh(block.vertices, block.faces[1:]).export("open.stl")
+    with pytest.raises(rb.DataError, match=r"(?s)open\.stl: the surface is open.*try: a closed surface"):
+        rb.inspect("open.stl")

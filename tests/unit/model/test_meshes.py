@@ -15,6 +15,8 @@ from rattlebox.prepare.settle import ENLARGEMENT, push_apart, start_positions
 
 BOX = triangle_meshes.box((30, 20, 25), 2)
 
+EDGES = ("30 mm", "20 mm", "25 mm")
+
 
 def box(vertices=BOX[0], faces=BOX[1], **options):
     """Return a box of triangles in mm."""
@@ -29,7 +31,7 @@ def damper(cavity=None, **options):
         "friction": 0.3,
         "packing": rb.Lattice(seed=1),
     }
-    return rb.ParticleDamper(cavity=cavity or rb.Box(size=("30 mm", "20 mm", "25 mm")), **{**usual, **options})
+    return rb.ParticleDamper(cavity=cavity or rb.Box(size=EDGES), **{**usual, **options})
 
 
 def test_measures_of_surface_are_those_of_its_shape():
@@ -277,6 +279,23 @@ def test_bed_of_a_file_that_has_changed_is_settled_again(tmp_path):
     assert lowest == pytest.approx([-0.005 + 0.0015, -0.0125 + 0.0015], abs=1e-5)
 
 
+def test_cut_file_is_named(tmp_path):
+    """A binary STL file that is too short or too long for its number of triangles is refused with both lengths.
+
+    Cut files were tried at random, and any refusal was accepted: it said that the file contains no triangles.
+    """
+    trimesh = pytest.importorskip("trimesh")
+    path = tmp_path / "cavity.stl"
+    trimesh.creation.box((0.03, 0.02, 0.01)).export(path)
+    content = path.read_bytes()
+    for damaged in (content[:-50], content[:301], content + b"end"):
+        path.write_bytes(damaged)
+        with pytest.raises(
+            rb.DataError, match=rf"states 12 triangles, for which it needs 684 bytes, and has {len(damaged)}"
+        ):
+            rb.Mesh(file=path, unit="m")
+
+
 def test_plate_in_front_of_a_surface_is_a_face():
     """A plate in front of a part of a surface has results and laws of its own."""
     floor = rb.PlateBody(name="floor", size=("34 mm", "24 mm", "4 mm"), position=(0, 0, "-13.5 mm"))
@@ -312,6 +331,41 @@ def test_plate_in_front_of_a_surface_is_a_face():
 def test_area_of_a_body_is_that_inside_the_cavity(bodies, area):
     """What is in a wall, or in another body, is not an area of a body on which particles press."""
     assert 1e6 * damper(bodies=bodies).interior.face_areas[-1] == pytest.approx(area, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("cavity", "bodies", "face", "area"),
+    [
+        (rb.Box(size=EDGES), [rb.RodBody(diameter="8 mm")], "+z", 600 - math.pi * 16),
+        (rb.Box(size=EDGES), [rb.RodBody(diameter="8 mm")] * 2, "+z", 600 - math.pi * 16),
+        (rb.Box(size=EDGES), [rb.RodBody(diameter="8 mm")], "+x", 500),
+        (rb.Box(size=EDGES), [rb.BallBody(diameter="12 mm", position=("15 mm", 0, 0))], "+x", 500 - math.pi * 36),
+        (rb.Box(size=EDGES), [rb.PlateBody(size=("30 mm", "20 mm", "2 mm"), position=(0, 0, "-12.5 mm"))], "-z", 0),
+        (
+            rb.Cylinder(diameter="20 mm", length="9 mm"),
+            [rb.BodyCross(thickness="1 mm")],
+            "side",
+            (20 * math.pi - 4) * 9,
+        ),
+        (
+            rb.Cylinder(diameter="20 mm", length="9 mm"),
+            [rb.BodyCross(thickness="1 mm")],
+            "first end",
+            100 * math.pi - 39,
+        ),
+        (box(groups={"lid": "z"}), [rb.RodBody(diameter="8 mm")], "lid", 600 - math.pi * 16),
+        (box(groups={"lid": "z"}), [rb.RodBody(diameter="8 mm")], "mesh", 3100 - math.pi * 16),
+    ],
+)
+def test_area_of_a_wall_is_that_beside_the_bodies(cavity, bodies, face, area):
+    """What is under bodies that stand on a wall is not an area of the wall on which particles press.
+
+    Areas of bodies were tested, and those of walls with bodies on them were the areas without bodies: pressures on the floor
+    of a honeycomb were a sixth too small.
+    """
+    interior = damper(cavity, bodies=bodies).interior
+    areas = dict(zip(interior.walls().labels, 1e6 * interior.face_areas, strict=True))
+    assert areas[face] == pytest.approx(area, rel=1e-3, abs=0.05)
 
 
 @pytest.mark.parametrize(

@@ -79,6 +79,9 @@ ERRORS: dict[str, Any] = {
     r"linear and tsuji cannot be combined": {
         "walls": {"-z": rb.Wall(contact=rb.Linear(stiffness=1e5, restitution=0.5))}
     },
+    r"walls\.-z\.restitution = 0\n  a contact with duration needs a restitution of at least 1e-6": {
+        "walls": {"-z": {"restitution": 0}}
+    },
     r"walls\.-z\.restitution.* = 2.0": {"walls": {"-z": {"restitution": 2.0}}},
     r"the contact law 'thornton' has no restitution that a face could replace": {
         "contact": rb.Thornton(),
@@ -135,6 +138,27 @@ def test_advice_of_refusals_was_followed() -> None:
     damper(walls={"-z": "frictionless"})
     damper(cavity=rb.Box(size=(8.161e-3, 0.02, 0.02), periodic="x"))
     damper(cavity=rb.Box(size=(0.02,) * 3, periodic="z"), gravity=(9.81, 0, 0))
+
+
+def test_a_face_without_an_entry_as_an_axis() -> None:
+    """A path to a face without an entry is refused with the names of faces or the entry to add, which works.
+
+    Studies of faces were tested with entries that had the field; without one, the advice was an empty list of names.
+    """
+    case = rb.Case(structure=rb.Fixed(), damper=damper(), duration="1 ms")
+    path = "damper.walls.-z.friction"
+    with pytest.raises(
+        rb.CaseError, match=r"there is no '-z' in damper.walls\n  try: walls = { \"-z\" = {} } in the case"
+    ):
+        case.replaced({path: 0.1})
+    with pytest.raises(rb.CaseError, match=r"no 'bottom' in damper.walls\n  try: did you mean '-z'"):
+        case.replaced({"damper.walls.bottom.friction": 0.1})
+    with_entry = rb.Case(structure=rb.Fixed(), damper=damper(walls={"-z": {}}), duration="1 ms")
+    for name in ("momentum", "sliding_loss"):
+        runs = [rb.simulate(each) for each in (case, with_entry)]
+        assert np.array_equal(*(getattr(run.arrays, name) for run in runs))
+    changed = with_entry.replaced({path: 0.1}).particle_dampers[0]
+    assert at_wall(changed, "-z").friction.coefficient == 0.1 and at_wall(changed, "+z").friction.coefficient == 0.3
 
 
 def test_a_case_file_with_faces_is_read_back_equal() -> None:

@@ -40,7 +40,13 @@ class Motion(NamedTuple):
         """Return the matrix from the cavity to the machine."""
         first, second = np.diff(self.speeds) / 0.02
         early, late = min(t, 0.02), max(t - 0.02, 0.0)
-        angle = self.angle + self.speeds[0] * early + 0.5 * first * early**2 + self.speeds[1] * late + 0.5 * second * late**2
+        angle = (
+            self.angle
+            + self.speeds[0] * early
+            + 0.5 * first * early**2
+            + self.speeds[1] * late
+            + 0.5 * second * late**2
+        )
         angle += self.swing * math.sin(2 * math.pi * 31 * t)
         x, y, z = self.axis
         spin = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -103,7 +109,9 @@ def by_impacts(motion: Motion) -> tuple[Any, Any, int, Any, float]:
         for side in range(3):
             for sign in (-1, 1):
                 crossed = [n for n in range(1, 400) if gap(grid[n], side, sign) < 0 <= gap(grid[n - 1], side, sign)][:1]
-                hits += [(brentq(gap, grid[n - 1], grid[n], args=(side, sign), xtol=1e-14), side, sign) for n in crossed]
+                hits += [
+                    (brentq(gap, grid[n - 1], grid[n], args=(side, sign), xtol=1e-14), side, sign) for n in crossed
+                ]
         now, side, sign = min(hits, default=(DURATION, 0, 0))
         place, speed, t = (
             place + speed * (now - t) + 0.5 * motion.gravity * (now - t) ** 2,
@@ -131,7 +139,9 @@ def test_ball_in_turning_vibrating_box_as_by_hard_impacts(seed: int, carried: bo
     motion = drawn(seed, carried)
     place, velocity, impacts, impulse, work = by_impacts(motion)
     damper = rb.ParticleDamper(
-        particles=rb.Particles(material=rb.Material(name="ball", density=DENSITY, young=2e9, poisson=0.3), radius=RADIUS),
+        particles=rb.Particles(
+            material=rb.Material(name="ball", density=DENSITY, young=2e9, poisson=0.3), radius=RADIUS
+        ),
         cavity=rb.Box(size=tuple(2 * HALF)),
         contact=rb.Linear(contact_time="5 us", restitution=motion.restitution),
         packing=rb.Positions(positions=[motion.position], velocities=[motion.velocity]),
@@ -161,6 +171,8 @@ def test_ball_in_turning_vibrating_box_as_by_hard_impacts(seed: int, carried: bo
     vibrating = (motion.vibration(t + step) - motion.vibration(t - step)) / (2 * step)
     expected = velocity + (vibrating if carried else motion.turned(t).T @ vibrating)
     assert np.abs(arrays.particles.velocity[0] - expected).max() < 0.01
-    assert np.allclose(arrays.wall_impulse[-1].sum(axis=0), impulse, rtol=0, atol=4e-3 * np.abs(arrays.wall_impulse).max())
+    assert np.allclose(
+        arrays.wall_impulse[-1].sum(axis=0), impulse, rtol=0, atol=4e-3 * np.abs(arrays.wall_impulse).max()
+    )
     energy = np.abs(run.ledger.particles).max()
     assert arrays.drive_work[-1, 0] == pytest.approx(work, abs=4e-3 * energy)

@@ -58,7 +58,22 @@ def _library(path: Path) -> tuple[str, Any]:
         raise DataError(f"{path} has no ending of a surface", f"a file that ends in {', '.join(ENDINGS)}")
     if ending in STEP:
         optional_import("cascadio", "cad", "export the surface as STL")
+    if ending == ".stl":
+        _check_length(path)
     return ending, optional_import("trimesh", "mesh", "pass the arrays vertices and faces")
+
+
+def _check_length(path: Path) -> None:
+    """Raise if a binary STL file is not as long as its number of triangles, for which trimesh finds none."""
+    size = path.stat().st_size
+    with path.open("rb") as stream:
+        head = stream.read(84)
+    if len(head) < 84 or b"solid" in head[:80].lower():  # a text file, if it is none of both
+        return
+    count = int.from_bytes(head[80:], "little")
+    if size != 84 + 50 * count:
+        what = f"{path} is damaged: it states {count} triangles, for which it needs {84 + 50 * count} bytes, and has {size}"
+        raise DataError(what, "the file copied or exported again")
 
 
 def _parts(loaded: Any) -> list[tuple[str, Any]]:
