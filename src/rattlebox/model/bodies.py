@@ -19,7 +19,7 @@ from .elementwise import Vector
 from .errors import Hint
 from .kinds import AnyKind
 from .round_part import RoundPart
-from .solids import Solid, body, mesh
+from .solids import Ball, Plate, Rod, Solid, TriangleMesh
 from .space import Direction, Lengths, unit_vector
 from .triangle_surface import TriangleSurface, surface_notes, surface_words
 from .units import Angle, PositiveLength, Whole
@@ -125,9 +125,8 @@ class RodBody(RoundPart, Body):
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return the rod."""
         length = _through(cavity, self.axis) if self.length is None else self.length
-        return [
-            body(self.label, "rod", (self.radius, length / 2, 0.0), np.array(self.position), frame_along(self.axis))
-        ]
+        sizes = np.array([self.radius, length / 2, 0.0])
+        return [Rod(self.label, np.array(self.position), sizes, frame_along(self.axis))]
 
     def words(self) -> str:
         """Return a phrase with the diameter."""
@@ -165,7 +164,7 @@ class PlateBody(Body):
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return the plate."""
         axes = turned(frame_along(self.axis), self.angle) if self.angle else np.eye(3)
-        return [body(self.label, "plate", np.array(self.size) / 2, np.array(self.position), axes)]
+        return [Plate(self.label, np.array(self.position), np.array(self.size) / 2, axes)]
 
     def words(self) -> str:
         """Return a phrase with the edges."""
@@ -190,7 +189,7 @@ class BallBody(RoundPart, Body):
 
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return the ball."""
-        return [body(self.label, "ball", (self.radius, 0.0, 0.0), np.array(self.position))]
+        return [Ball(self.label, np.array(self.position), np.array([self.radius, 0.0, 0.0]))]
 
     def words(self) -> str:
         """Return a phrase with the diameter."""
@@ -232,7 +231,8 @@ class MeshBody(TriangleSurface, Body):
         corners = self.triangles.vertices
         middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         faces = np.ascontiguousarray(self.triangles.faces[:, ::-1])
-        return [mesh(self.label, corners - middle + np.array(self.position), faces, self.smooth)]
+        placed = corners - middle + np.array(self.position)
+        return [TriangleMesh(self.label, vertices=placed, faces=faces, smooth=self.smooth)]
 
     def words(self) -> str:
         """Return a phrase with the bounding box."""
@@ -243,7 +243,38 @@ class MeshBody(TriangleSurface, Body):
         return surface_notes(self)
 
 
-class BodyRing(Body):
+class BodyArray(Body):
+    """Base class of arrays of equal bodies, which are one wall."""
+
+    kind: str
+    body: AnyBody = Field(examples=[{"kind": "rod", "diameter": "4 mm"}])
+    count: Annotated[Whole, Field(ge=1, le=MOST_BODIES)] = Field(examples=[6])
+
+    @property
+    def label(self) -> str:
+        """The name, or that of the body."""
+        return self.name or self.body.label
+
+    @property
+    def number(self) -> int:
+        """That of the body, times the count."""
+        return self.count * self.body.number
+
+    @property
+    def digest(self) -> str:
+        """Text that differs for other bodies."""
+        return f"{super().digest} {self.body.digest}"
+
+    def words(self) -> str:
+        """Return a phrase with the number."""
+        return f"a {self.kind} of {self.count} bodies, each {self.body.words()}"
+
+    def notes(self) -> Iterator[str]:
+        """Yield those of the body."""
+        return self.body.notes()
+
+
+class BodyRing(BodyArray):
     """Equal bodies on a circle, turned with it.
 
     Parameters
@@ -265,22 +296,10 @@ class BodyRing(Body):
     """
 
     kind: Literal["ring"] = "ring"
-    body: AnyBody = Field(examples=[{"kind": "rod", "diameter": "4 mm"}])
-    count: Annotated[Whole, Field(ge=1, le=MOST_BODIES)] = Field(examples=[6])
     radius: PositiveLength
     axis: Direction = "z"
     angle: Angle = 0.0
     position: Lengths = (0.0, 0.0, 0.0)
-
-    @property
-    def label(self) -> str:
-        """The name, or that of the body."""
-        return self.name or self.body.label
-
-    @property
-    def number(self) -> int:
-        """That of the body, times the count."""
-        return self.count * self.body.number
 
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return all bodies."""
@@ -292,21 +311,8 @@ class BodyRing(Body):
             result += [each.moved(shift, turn) for each in self.body.solids(cavity)]
         return _named(result, self.label)
 
-    def words(self) -> str:
-        """Return a phrase with the number."""
-        return f"a ring of {self.count} bodies, each {self.body.words()}"
 
-    def notes(self) -> Iterator[str]:
-        """Yield those of the body."""
-        return self.body.notes()
-
-    @property
-    def digest(self) -> str:
-        """Text that differs for other bodies."""
-        return f"{super().digest} {self.body.digest}"
-
-
-class BodyRow(Body):
+class BodyRow(BodyArray):
     """Equal bodies in a row; a row of rows is a grid.
 
     Parameters
@@ -324,39 +330,14 @@ class BodyRow(Body):
     """
 
     kind: Literal["row"] = "row"
-    body: AnyBody = Field(examples=[{"kind": "rod", "diameter": "4 mm"}])
-    count: Annotated[Whole, Field(ge=1, le=MOST_BODIES)] = Field(examples=[6])
     step: Lengths
     position: Lengths = (0.0, 0.0, 0.0)
-
-    @property
-    def label(self) -> str:
-        """The name, or that of the body."""
-        return self.name or self.body.label
-
-    @property
-    def number(self) -> int:
-        """That of the body, times the count."""
-        return self.count * self.body.number
 
     def solids(self, cavity: Cavity) -> list[Solid]:
         """Return all bodies."""
         one = self.body.solids(cavity)
         places = (np.arange(self.count) - 0.5 * (self.count - 1))[:, None] * np.array(self.step)
         return _named([each.moved(place + np.array(self.position)) for place in places for each in one], self.label)
-
-    def words(self) -> str:
-        """Return a phrase with the number."""
-        return f"a row of {self.count} bodies, each {self.body.words()}"
-
-    def notes(self) -> Iterator[str]:
-        """Yield those of the body."""
-        return self.body.notes()
-
-    @property
-    def digest(self) -> str:
-        """Text that differs for other bodies."""
-        return f"{super().digest} {self.body.digest}"
 
 
 class BodyCross(Body):
@@ -395,13 +376,9 @@ class BodyCross(Body):
         length = _through(cavity, self.axis) if self.length is None else self.length
         # As wide as the cavity is across the axis in any direction.
         width = 2 * float(np.linalg.norm(cavity.lengths)) if self.width is None else self.width
-        result = []
-        for k in range(self.count):
-            axes = frame @ turned(frame, self.angle + math.pi * k / self.count)
-            result.append(
-                body(self.label, "plate", (width / 2, self.thickness / 2, length / 2), np.array(self.position), axes)
-            )
-        return result
+        half = np.array([width / 2, self.thickness / 2, length / 2])
+        angles = (self.angle + math.pi * k / self.count for k in range(self.count))
+        return [Plate(self.label, np.array(self.position), half, frame @ turned(frame, angle)) for angle in angles]
 
     def words(self) -> str:
         """Return a phrase with the number of plates and their thickness."""
@@ -460,13 +437,13 @@ class Honeycomb(Body):
         # The walls reach into each other at the joints, so that no gap is left.
         half = np.array([self.cell / math.sqrt(3) / 2, self.thickness / 2, length / 2])
         angles = np.arange(6) * math.pi / 3
+        result: list[Solid] = []
         middles = self.centres()[:, None] + 0.5 * self.cell * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         _, first = np.unique(np.round(middles.reshape(-1, 2) / (1e-6 * self.cell)), axis=0, return_index=True)
-        result = []
         for k in np.sort(first):
             axes = frame @ turned(frame, float(angles[k % 6]) + math.pi / 2)
             centre = np.array(self.position) + middles.reshape(-1, 2)[k] @ frame[:2]
-            result.append(body(self.label, "plate", half, centre, axes))
+            result.append(Plate(self.label, centre, half, axes))
         return result
 
     def words(self) -> str:

@@ -23,7 +23,7 @@ from .elementwise import Vector
 from .errors import Hint, at, several
 from .face_groups import DIRECTIONS, FROM_FILE, UNGROUPED, AnyGroups, check_names, named_groups, select_groups
 from .necks import neck_notes, widest_sphere
-from .solids import Solid, Solids, face_normals, mesh
+from .solids import Solids, TriangleMesh, face_normals
 from .space import components_along
 from .surfaces import Surface
 from .triangle_surface import TriangleSurface, surface_notes, surface_words
@@ -133,15 +133,18 @@ class Mesh(TriangleSurface, Cavity):
         return np.asarray(0.5 * (corners.min(axis=0) + corners.max(axis=0)))
 
     @cached_property
-    def solid(self) -> Solid:
+    def solid(self) -> TriangleMesh:
         """The surface, around the centre."""
         names, number, _ = self._grouped
-        surface = mesh(
-            UNGROUPED, self.triangles.vertices - self.centre, self.triangles.faces, self.smooth, encloses=True
+        surface = TriangleMesh(
+            names[0] if len(names) == 1 else UNGROUPED,
+            vertices=self.triangles.vertices - self.centre,
+            faces=self.triangles.faces,
+            smooth=self.smooth,
+            encloses=True,
         )
-        if len(names) == 1:  # the same as without groups, but for its name
-            return replace(surface, name=names[0])
-        return replace(surface, groups=names, group=number)
+        # One group is the same as none, but for its name.
+        return replace(surface, groups=names, group=number) if len(names) > 1 else surface
 
     @cached_property
     def _walls(self) -> Walls:

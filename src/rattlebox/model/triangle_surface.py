@@ -23,7 +23,7 @@ from .elementwise import Vector
 from .errors import Hint, at
 from .face_groups import FROM_FILE
 from .files import absolute, existing
-from .solids import Solids, mesh
+from .solids import Solids, TriangleMesh
 from .units import Angle, factor_of
 
 Faces = NDArray[np.int64]
@@ -359,7 +359,8 @@ def _oriented(vertices: Vector, faces: Faces, shell: Faces, notes: list[str]) ->
                 "a surface around a space: a sheet without thickness is no cavity and no body; check its unit and precision",
             )
     outer = int(np.abs(volumes).argmax())
-    inside = [Solids((mesh("", vertices, _outward(faces[shell == k], volumes[k]), 0.9),)) for k in numbers]
+    shells = [_outward(faces[shell == k], volumes[k]) for k in numbers]
+    inside = [Solids((TriangleMesh("", vertices=vertices, faces=each),)) for each in shells]
     for k in numbers:
         if k == outer:
             continue
