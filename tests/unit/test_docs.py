@@ -3,6 +3,7 @@
 import contextlib
 import inspect
 import io
+import pydoc
 import re
 import tomllib
 from pathlib import Path
@@ -29,6 +30,9 @@ LAWS = [
     for law in laws
     if law is not rb.Tabulated  # a table of the user has no source
 ]
+ROOMS = ("src", "core", "tests", "docs", "tools", "reproduction", "benchmarks", "examples")
+# Files that a page tells the reader to write.
+OF_THE_READER = re.compile(r"^(my_package|quarry)/|(viscoelastic|hunt_crossley|hertz_ratio)\.hpp$")
 # Tests of the studies and of the engines hold for fewer cycles what these pages compute for 3 s and more.
 SLOW_PAGES = (
     "how-to/design",
@@ -265,11 +269,38 @@ def test_rows_of_tables_have_the_cells_of_their_header():
     assert count > 500 and not wrong
 
 
-def test_tour_names_files_that_exist():
-    """Every source file named in the tour exists."""
-    named = re.findall(r"`((?:src|core)/\S+)`", (DOCS / "developing" / "tour.md").read_text(encoding="utf-8"))
-    assert len(named) > 20
-    assert [name for name in named if not (ROOT / name).exists()] == []
+def test_pages_name_files_and_words_of_the_code_that_exist():
+    """Files on all pages, and words of the code on those for developers and on theory, exist; the tour alone was checked."""
+    files = [f"/{path.relative_to(ROOT).as_posix()}" for room in ROOMS for path in (ROOT / room).rglob("*.*")]
+    source = [ROOT / file[1:] for file in files if file.endswith((".py", ".pyi", ".hpp", ".cpp", ".toml", ".txt"))]
+    settings = [ROOT / name for name in ("pyproject.toml", "CMakeLists.txt", "Makefile")]
+    words = {word for path in (*source, *settings) for word in re.findall(r"\w+", path.read_text(encoding="utf-8"))}
+    words |= {Path(file).stem for file in files}
+    wrong, count = [], 0
+    for page in DOCS.rglob("*.md"):
+        if "_build" in page.parts:
+            continue
+        text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        for span in re.findall(r"`([^`\n]+)`", text):
+            if re.fullmatch(r"[\w./-]+\.(py|pyi|hpp|cpp|js|svg)", span) and not OF_THE_READER.search(span):
+                count += 1
+                wrong += [] if any(file.endswith(f"/{span}") for file in files) else [f"{page.name}: {span}"]
+            elif page.parent.name in ("developing", "theory"):
+                named = re.findall(r"\b(?:[A-Z][a-z]+){2,}\b|\b[a-z]\w*_\w+\b", span)
+                wrong += [f"{page.name}: {word}" for word in named if word not in words]
+    assert count > 150 and not wrong
+
+
+def test_docstrings_name_modules_that_exist():
+    """Dotted names of the package, such as `rattlebox.model.space.Direction`, lead to an object after a move, too."""
+    names = {
+        name
+        for path in [*(ROOT / "src").rglob("*.py"), *DOCS.rglob("*.md")]
+        for name in re.findall(r"`~?(rattlebox(?:\.\w+)+)`", path.read_text(encoding="utf-8"))
+    }
+    names -= {"rattlebox.h", "rattlebox.json", "rattlebox.plugins"}  # files, and the entry point
+    assert len(names) > 50
+    assert [name for name in sorted(names) if pydoc.locate(name) is None] == []
 
 
 @pytest.mark.parametrize("words", SEARCHES)
