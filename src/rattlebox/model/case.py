@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -24,6 +23,8 @@ from .any_signal import AnySignal
 from .any_structure import AnyStructure
 from .as_written import with_texts
 from .base import Part, vocabulary
+from .case_tree import relative, shortened, with_files, without_empty
+from .computable_laws import check_laws, check_particle_laws, check_stop_law
 from .dampers import ImpactDamper
 from .elementwise import Vector
 from .errors import Hint, at, translate
@@ -43,11 +44,6 @@ from .structures import Shaker
 from .tuned_mass import TunedMass, with_tuned_masses
 from .units import MOST_MEMORY, PositiveTime, Whole
 
-_LONG = 12  # items of a list
-_LONG_TEXT = 300  # characters
-_NOT_COMPUTABLE = "cannot be computed for bodies of these sizes, masses and moduli"
-_USUAL = "numbers of usual sizes"
-
 
 def _kind_of_damper(value: object) -> str:
     """Return the kind of a damper; by default it follows from the fields."""
@@ -60,6 +56,15 @@ AnyDamper = Annotated[
     Annotated[ImpactDamper, Tag("impact")] | Annotated[ParticleDamper, Tag("particle")],
     Discriminator(_kind_of_damper),
 ]
+
+
+_Place = tuple[str | int, ...]
+
+
+def _placed(signals: Iterable[Signal], *field: str) -> Iterator[tuple[_Place, Signal]]:
+    """Yield the place in the case of each signal of a field, and the signal."""
+    for index, signal in enumerate(signals):
+        yield (*field, index), signal
 
 
 class Case(Part):
@@ -150,9 +155,9 @@ class Case(Part):
                 if isinstance(damper, ImpactDamper):
                     self._check_clearance(damper)
                     self._check_starts(damper)
-                    self._check_laws(damper)
+                    check_laws(damper, self.modes, self.method)
                 else:
-                    self._check_particle_laws(damper)
+                    check_particle_laws(damper)
         self._check_stops(names)
         return self
 
@@ -164,18 +169,22 @@ class Case(Part):
                 signals.append(signal.placed((unit,), place))
         return tuple(signals)
 
+    def _motions(self) -> Iterator[tuple[_Place, Signal]]:
+        """Yield the place and signal of each motion of the base, or of a shaker, which has no other base."""
+        yield from _placed(self.base, "base")
+        yield from _placed(self.shaker_motion, "structure", "motion")
+
     def _check_signals(self) -> None:
         modes = self.modes
         for numbers in (modes.decay, modes.stiffness, modes.q0, modes.p0, *modes.shapes.values()):
             if not np.isfinite(numbers).all():
                 raise Hint("the modes are not finite", "masses and stiffnesses of usual sizes", ["structure"])
-        for field, signals in (("loads", self.loads), ("base", self.base), ("motion", self.shaker_motion)):
-            for index, signal in enumerate(signals):
-                with at(*(("structure",) if field == "motion" else ()), field, index):
-                    if isinstance(signal, Sampled):
-                        self._check_record(signal)
-                    if field != "loads" and signal.point is not None:
-                        raise Hint("a motion of the base acts on the whole base, not at a point", "no point", ["point"])
+        for place, signal in (*_placed(self.loads, "loads"), *self._motions()):
+            with at(*place):
+                if isinstance(signal, Sampled):
+                    self._check_record(signal)
+                if place[0] != "loads" and signal.point is not None:
+                    raise Hint("a motion of the base acts on the whole base, not at a point", "no point", ["point"])
         if self.loads and not modes.decay.size:
             raise Hint(
                 f"a load cannot move a {self.structure.kind} structure",
@@ -224,15 +233,14 @@ class Case(Part):
                 'kind = "event_driven", or a ParticleDamper',
                 ["method"],
             )
-        for field, signals in (("base", self.base), ("motion", self.shaker_motion)):
-            for index, signal in enumerate(signals):
-                if signal.direction != signals[0].direction:
-                    place = (*(("structure",) if field == "motion" else ()), field, index, "direction")
-                    raise Hint(
-                        "without particle dampers all motions are along one line",
-                        "the same direction for all, or none",
-                        place,
-                    )
+        motions = list(self._motions())
+        for place, signal in motions:
+            if signal.direction != motions[0][1].direction:
+                raise Hint(
+                    "without particle dampers all motions are along one line",
+                    "the same direction for all, or none",
+                    [*place, "direction"],
+                )
         if self.base and self.modes.spatial:
             raise Hint(
                 f"the point {min(self.modes.spatial)!r} moves in 3-D, and the base of a case without particle dampers"
@@ -281,10 +289,9 @@ class Case(Part):
                 "mode shapes of three components, or the same direction",
                 ["dampers"],
             )
-        for field, signals in (("base", self.base), ("motion", self.shaker_motion)):
-            for index, signal in enumerate(signals):
-                with at(*(("structure",) if field == "motion" else ()), field, index):
-                    direction_of_base(self.particle_dampers, signal)
+        for place, signal in self._motions():
+            with at(*place):
+                direction_of_base(self.particle_dampers, signal)
 
     def _check_snapshots(self) -> None:
         """Raise if a snapshot is after the end of the run."""
@@ -341,27 +348,6 @@ class Case(Part):
                     ["start"],
                 )
 
-    def _check_laws(self, damper: ImpactDamper) -> None:
-        """Check that the coefficients of the contact laws are finite for their pairs of bodies."""
-        for number, pair in enumerate(damper.pairs(self.modes.effective_mass(damper.point))):
-            between = 0 < number < len(damper.balls) and damper.ball_contact is not None
-            law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
-            with at("ball_contact" if between else "contact"), _raise_if_not_finite():
-                # A striker without a radius has one that is not a number, and so have laws that need it.
-                sized = not any(np.isnan(body.radius).any() for body in (pair.below, pair.above))
-                if sized or self.method.hard_restitution(law, pair) is None:
-                    _, values = law.coefficients(pair)
-                    if not sized and not all(np.isfinite(value).all() for value in values.values()):
-                        raise Hint(
-                            f"the contact law {law.kind!r} follows from the radius of the bodies, and the striker has none",
-                            'radius = "0.5 m" of the striker, or a law with a contact time or a stiffness',
-                        )
-                    _check_finite(values)
-                if law.impact_restitution is not None:
-                    with at("restitution"):
-                        _, values = law.impact_restitution.coefficients(pair)
-                        _check_finite(values)
-
     def _check_stops(self, names: set[str]) -> None:
         """Raise if a stop cannot be computed; `names` are those of the dampers."""
         for index, stop in enumerate(self.stops):
@@ -386,41 +372,11 @@ class Case(Part):
                         'gap = "1 um", or the EventDriven method, whose contacts have a duration',
                         ["gap"],
                     )
-                self._check_stop_law(stop)
+                check_stop_law(stop, self.modes, self.method)
                 for each in stop.each(index):
                     if each.name in names:
                         raise Hint(f"two dampers or stops are called {each.name!r}", "different names", ["name"])
                     names.add(each.name)
-
-    def _check_stop_law(self, stop: Stop) -> None:
-        """Check that the contact law of a stop is finite; laws of spheres need its radius and material."""
-        pair = stop.pair(self.modes)
-        with at("contact"):
-            try:
-                with _raise_if_not_finite():
-                    if self.method.hard_restitution(stop.contact, pair) is None:
-                        _check_finite(stop.contact.coefficients(pair)[1])
-            except Hint as hint:
-                if not hint.complaint.startswith(_NOT_COMPUTABLE) or stop.is_sized:
-                    raise
-                raise Hint(
-                    f"the contact law {stop.contact.kind!r} follows from radius and material, and the stop has not both",
-                    'radius = "20 mm" and material = "steel" of the stop, or a law with a stiffness',
-                ) from None
-            if stop.contact.impact_restitution is not None:
-                with at("restitution"), _raise_if_not_finite():
-                    _check_finite(stop.contact.impact_restitution.coefficients(pair)[1])
-
-    def _check_particle_laws(self, damper: ParticleDamper) -> None:
-        """Check that the coefficients of all laws of a particle damper are finite for their pairs of bodies."""
-        for entry in damper.contact_table.entries:
-            with at(*entry.place), _raise_if_not_finite():
-                _check_finite(damper.softened(entry)[1])
-                _check_finite(damper.softened_friction(entry)[1])
-                _check_finite(damper.rolling_of(entry).coefficients())
-                if entry.contact.impact_restitution is not None:
-                    with at("restitution"):
-                        _check_finite(entry.contact.impact_restitution.coefficients(entry.pair)[1])
 
     @property
     def impact_dampers(self) -> tuple[ImpactDamper, ...]:
@@ -620,7 +576,7 @@ class Case(Part):
         str
             Text in TOML.
         """
-        text = self._toml(name_of, _shortened)
+        text = self._toml(name_of, shortened)
         return text if len(text) <= most else f"{text[:most]}\n... {len(text) - most} more characters"
 
     def replaced(self, values: Mapping[str, object]) -> Case:
@@ -701,7 +657,7 @@ class Case(Part):
             If no space is left on the disk.
         """
         folder = Path(path).absolute().parent
-        text = self._toml(lambda file: _relative(file, folder), as_written=True)
+        text = self._toml(lambda file: relative(file, folder), as_written=True)
         with atomic_write(path, "make room and write the case again") as name:
             name.write_text(text, encoding="utf-8")
 
@@ -713,7 +669,7 @@ class Case(Part):
         data = self.model_dump(mode="json", exclude_none=True, exclude_defaults=False)
         if as_written:
             data = with_texts(self, data)
-        return tomli_w.dumps(change(_without_empty(with_files(data, name_of))))
+        return tomli_w.dumps(change(without_empty(with_files(data, name_of))))
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
@@ -752,43 +708,6 @@ def case_and_materials(
         raise translate(error, source, vocabulary(), given) from None
 
 
-@contextmanager
-def _raise_if_not_finite() -> Iterator[None]:
-    """Raise if a formula divides by zero or overflows."""
-    try:
-        with np.errstate(over="raise", divide="raise", invalid="raise"):
-            yield
-    except ArithmeticError:
-        raise Hint(_NOT_COMPUTABLE, _USUAL) from None
-
-
-def _check_finite(values: Mapping[str, Any]) -> None:
-    for name, value in values.items():
-        if not np.isfinite(value).all():
-            raise Hint(f"{_NOT_COMPUTABLE}: its {name.replace('_', ' ')} is not finite", _USUAL)
-
-
-def _without_empty(value: object) -> Any:
-    """Remove empty values, since TOML has no null."""
-    if isinstance(value, dict):
-        return {
-            key: _without_empty(item) for key, item in value.items() if item is not None and item not in ("", [], {})
-        }
-    if isinstance(value, list):
-        return [_without_empty(item) for item in value]
-    return value
-
-
-def _shortened(value: object) -> Any:
-    """Return tables and lists with a note in place of all but the first items of long lists and of long texts."""
-    if isinstance(value, dict):
-        return {key: _shortened(item) for key, item in value.items()}
-    if isinstance(value, list):
-        items = value if len(value) <= _LONG else [*value[:3], f"... {len(value)} in all"]
-        return [_shortened(item) for item in items]
-    return f"{value[:_LONG_TEXT]}..." if isinstance(value, str) and len(value) > _LONG_TEXT else value
-
-
 class _Library(Part):
     """The materials of a case file."""
 
@@ -804,29 +723,3 @@ class _Library(Part):
             if name in materials():
                 raise Hint("the library already has a material of this name", "another name", [name])
         return {name: {"name": name, **item} if isinstance(item, dict) else item for name, item in own.items()}
-
-
-def with_files(node: object, name_of: Callable[[str], str]) -> Any:
-    """Return a copy of a tree with `name_of` applied to the names of files, also to those of axes such as "base.file"."""
-    if isinstance(node, dict):
-        return {
-            key: _renamed(item, name_of) if str(key).rpartition(".")[2] == "file" else with_files(item, name_of)
-            for key, item in node.items()
-        }
-    return [with_files(item, name_of) for item in node] if isinstance(node, list) else node
-
-
-def _renamed(file: object, name_of: Callable[[str], str]) -> Any:
-    """Return `name_of` of the name of a file, or of each name in a table or a list."""
-    if isinstance(file, dict):
-        return {key: _renamed(item, name_of) for key, item in file.items()}
-    if isinstance(file, list):
-        return [_renamed(item, name_of) for item in file]
-    return name_of(file) if isinstance(file, str) else file
-
-
-def _relative(file: str, folder: Path) -> str:
-    try:
-        return Path(os.path.relpath(file, folder)).as_posix()
-    except ValueError:  # another drive
-        return file

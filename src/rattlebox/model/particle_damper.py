@@ -27,6 +27,7 @@ from .bodies import AnyBody
 from .cavities import Cavity
 from .cells import overlapping_cells, separation
 from .contacts import AnyContact, Linear
+from .crowds import Crowd, bed_density
 from .damper_base import Damper
 from .elementwise import Vector
 from .errors import Hint, at, several
@@ -34,13 +35,8 @@ from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, 
 from .interior import Interior
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
-from .packing import (
-    AnyPacking,
-    Crowd,
-    Lattice,
-    bed_density,
-    check_size,
-)
+from .overlaps import check_size
+from .packing import AnyPacking, Lattice
 from .pairs import Body, Pair
 from .particles import MAX_PARTICLES, Particles, as_species
 from .rotation import Rotation

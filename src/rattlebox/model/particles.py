@@ -14,11 +14,11 @@ from pydantic import BeforeValidator, Field, model_validator
 from rattlebox._util.narrow import present
 
 from .base import Part
+from .crowds import COMPACTED, Crowd
 from .elementwise import Vector
 from .errors import Hint, at
 from .kinds import AnyKind
 from .materials import AnyMaterial
-from .packing import COMPACTED, Crowd
 from .units import SI, Number, PositiveLength, PositiveMass, Whole, parse, radius_of_diameter
 
 MAX_PARTICLES = 100_000_000  # of one kind

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox.model.crowds import Crowd
 from rattlebox.model.errors import at
-from rattlebox.model.packing import Crowd, tree_of
+from rattlebox.model.overlaps import tree_of
 from rattlebox.prepare.settle import VOLUME_POINTS, start_positions
 
 if TYPE_CHECKING:

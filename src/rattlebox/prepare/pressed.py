@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import TOUCHING, overlapping
+from rattlebox.model.overlaps import TOUCHING, overlapping
 from rattlebox.prepare.time_step import pack_normal
 
 if TYPE_CHECKING:

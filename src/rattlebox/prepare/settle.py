@@ -5,24 +5,17 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from rattlebox._util.narrow import instance, present
 from rattlebox.core import _core
+from rattlebox.model.crowds import Crowd, fewer_at_random, holds_at_random, random_density
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import (
-    TOUCHING,
-    Bed,
-    Crowd,
-    check_packing,
-    fewer_at_random,
-    holds_at_random,
-    overlapping,
-    random_density,
-    tree_of,
-)
+from rattlebox.model.overlaps import TOUCHING, check_packing, overlapping, tree_of
+from rattlebox.model.packing import Bed
 from rattlebox.model.space import components_along, to_global, to_nearest_image
 
 if TYPE_CHECKING:
@@ -110,7 +103,7 @@ def compact(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) 
 
     Notes
     -----
-    Below the lid, particles have the density of `rattlebox.model.packing.random_density`. If they cannot be inserted, the
+    Below the lid, particles have the density of `rattlebox.model.crowds.random_density`. If they cannot be inserted, the
     volume below the lid grows by 3 % until they can. `push_apart` names the method and its source.
     """
     cavity, radii, seed = damper.interior, damper.contents.radius, instance(damper.packing, Bed).seed
@@ -194,6 +187,30 @@ def _overlap(places: Array, radii: Array, others: Array, other_radii: Array, per
     return overlaps
 
 
+@dataclass
+class _Descent:
+    """Steepest descent with inertia (FIRE); see `push_apart`."""
+
+    move: Array  # (n, 3)
+    stride: float = 0.3
+    mixing: float = 0.1
+    downhill: int = 0  # steps since the motion was last uphill
+
+    def step(self, force: Array) -> Array:
+        """Return the displacements of a step under forces, (n, 3)."""
+        # Downhill the motion speeds up and turns into the force; uphill it stops at once, so that long steps are safe.
+        if np.sum(force * self.move) > 0:
+            length = math.sqrt(np.sum(self.move**2) / np.sum(force**2))
+            self.move = (1 - self.mixing) * self.move + self.mixing * force * length
+            self.downhill += 1
+            if self.downhill > 5:
+                self.stride, self.mixing = min(1.1 * self.stride, 0.8), 0.99 * self.mixing
+        else:
+            self.move, self.stride, self.mixing, self.downhill = np.zeros_like(force), 0.5 * self.stride, 0.1, 0
+        self.move += self.stride * force
+        return self.stride * self.move
+
+
 def push_apart(
     cavity: AnyCavity,
     places: Array,
@@ -226,7 +243,7 @@ def push_apart(
     # Candidate pairs hold until something has moved by half of the margin; a search costs as much as many iterations.
     margin = 0.3 * float(grown.min())
     listed = np.full_like(places, np.inf)  # positions at the last search for candidate pairs
-    move, stride, mixing, downhill = np.zeros_like(places), 0.3, 0.1, 0
+    descent = _Descent(np.zeros_like(places))
     for iteration in range(MAX_ITERATIONS):
         if iteration % 50 == 0 and not proceed():
             raise _Stopped
@@ -256,18 +273,8 @@ def push_apart(
         around = np.bincount(first, minlength=radii.size) + np.bincount(second, minlength=radii.size)
         # The stiffness of the springs of many small spheres on a large one adds up, and steps would be unstable.
         force /= np.maximum(around / KISSING_NUMBER, 1.0)[:, None]
-        # Downhill the motion speeds up and turns into the force; uphill it stops at once, which makes FIRE safe with
-        # long steps.
-        if np.sum(force * move) > 0:
-            move = (1 - mixing) * move + mixing * force * math.sqrt(np.sum(move**2) / np.sum(force**2))
-            downhill += 1
-            if downhill > 5:
-                stride, mixing = min(1.1 * stride, 0.8), 0.99 * mixing
-        else:
-            move, stride, mixing, downhill = np.zeros_like(places), 0.5 * stride, 0.1, 0
-        move += stride * force
-        places += stride * move
-    # Failure: the number that would fit is computed, so that the advice can be followed.
+        places += descent.step(force)
+    # The number that would fit is computed, so that the advice can be followed.
     crowd = Crowd.of(radii)
     filled = crowd.count * crowd.volume / cavity.volume
     raise Hint(

@@ -10,7 +10,7 @@ import numpy as np
 
 from rattlebox._util.quantities import amount
 from rattlebox.model.base import Part
-from rattlebox.model.case import with_files
+from rattlebox.model.case_tree import with_files
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import unit_of_field
 from rattlebox.model.units import as_written

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rattlebox._util.phrases import joined
-from rattlebox.model.case import with_files
+from rattlebox.model.case_tree import with_files
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence

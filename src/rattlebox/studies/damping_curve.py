@@ -25,7 +25,7 @@ from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 from rattlebox.prepare.time_step import exceeded_limits
 from rattlebox.studies.grid.axes import no_random_packing
-from rattlebox.studies.grid.sampling import Spaced
+from rattlebox.studies.grid.sampling import Spaced, numbers_in
 from rattlebox.studies.run.runner import evaluate_cases
 from rattlebox.studies.work.particles import EXTENSIONS, SteadyRun, steady_run
 
@@ -301,16 +301,13 @@ def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = No
             )
         return number / omega**2
 
-    if isinstance(amplitudes, Spaced):
-        first, last = (displacement(end) for end in (amplitudes.start, amplitudes.stop))
-        return read_amplitudes(amplitudes.values(first, last).tolist(), omega)
-    if isinstance(amplitudes, str) or not np.ndim(np.asarray(amplitudes, dtype=object)):
-        raise Hint("at least two amplitudes are required", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]')
-    levels = np.array([displacement(amplitude) for amplitude in amplitudes])
+    advice = 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]'
+    is_list = isinstance(amplitudes, Spaced) or np.ndim(np.asarray(amplitudes, dtype=object))
+    if isinstance(amplitudes, str) or not is_list:
+        raise Hint("at least two amplitudes are required", advice)
+    levels = numbers_in(amplitudes, displacement)
     if levels.size < 2 or levels[0] <= 0 or np.any(np.diff(levels) <= 0):
-        raise Hint(
-            "amplitudes must be at least two, above zero and rising", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]'
-        )
+        raise Hint("amplitudes must be at least two, above zero and rising", advice)
     hertz = math.nan if omega is None else omega / (2 * math.pi)
     if omega is not None and (what := unusual_motion(levels[-1], hertz)):
         warnings.warn(

@@ -13,7 +13,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.core import _core
-from rattlebox.model.packing import check_packing
+from rattlebox.model.overlaps import check_packing
 from rattlebox.prepare.particles import pack_particles, prepare
 from rattlebox.results import Run
 

@@ -11,7 +11,7 @@ from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 import rattlebox as rb
 from rattlebox.core import _core
-from rattlebox.model.packing import check_packing
+from rattlebox.model.overlaps import check_packing
 from rattlebox.prepare.particles import prepare
 from rattlebox.prepare.settle import insert, push_apart
 from rattlebox.prepare.time_step import choose_step, expected_speeds, limits, step_diagnostics

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.model import records, text_rows
+from rattlebox.model import records, text_rows, text_table
 
 ROWS = 60
 
@@ -73,7 +73,8 @@ def test_the_quick_way_equals_the_slow_one(tmp_path: Path, monkeypatch: pytest.M
     for number in range(200):
         content, options, fault = as_text(rng)
         path.write_bytes(content)
-        monkeypatch.setattr(records, "_PROBED", 10)
+        for module in (records, text_table):
+            monkeypatch.setattr(module, "PROBED", 10)
         slow = result(path, options)
         monkeypatch.setattr(text_rows, "_HEAD", 16 * (len(content) // ROWS))
         monkeypatch.setattr(text_rows, "_TAIL", 6 * (len(content) // ROWS))

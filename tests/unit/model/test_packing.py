@@ -12,7 +12,7 @@ import pytest
 from support.particle_dampers import CAVITIES, balls, case, damper
 
 import rattlebox as rb
-from rattlebox.model.packing import check_packing
+from rattlebox.model.overlaps import check_packing
 from rattlebox.model.units import registry
 from rattlebox.prepare.settle import start_positions
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.model.packing import check_packing
+from rattlebox.model.overlaps import check_packing
 from rattlebox.prepare import settle as settling
 from rattlebox.prepare.settle import settle
 

@@ -20,7 +20,7 @@ import xarray as xr
 import rattlebox as rb
 from rattlebox._util.quantities import amount
 from rattlebox.report.page import typeset
-from rattlebox.studies.kinds.stability_lobes import answer
+from rattlebox.studies.maps.lobe_words import answer
 
 HOSTILE = '<script>alert("1")</script> & <b>'
 """A name that would run or change the page if it were not escaped."""

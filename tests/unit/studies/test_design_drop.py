@@ -16,8 +16,9 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.report.kinds.design import KIND
 from rattlebox.studies import damping_curve
 from rattlebox.studies.design import trials
+from rattlebox.studies.design.candidate import Candidate, Evaluation, pooled
 from rattlebox.studies.design.evidence import curves_of
-from rattlebox.studies.design.search import Candidate, DesignSearch, Evaluation, pooled
+from rattlebox.studies.design.search import DesignSearch
 from rattlebox.studies.design.trials import Trials
 from rattlebox.studies.kinds.design import Design
 from rattlebox.studies.run import runner
@@ -227,7 +228,9 @@ def test_a_kill_at_any_stage_changes_nothing(
         return usual(self, candidate, count)
 
     monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
-    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
+    monkeypatch.setattr(
+        "rattlebox.studies.kinds.design.predict", lambda search, trials: Estimate(trials, 1, 1.0, 1.0, 1)
+    )
     one = shaken(case, parameters, **options)
     evaluations = 10**9 - left[0]
     assert set(one.cycles_run.values.tolist()) <= counts and len(set(one.cycles_run.values.tolist())) > 1
@@ -324,7 +327,9 @@ def test_transients_do_not_decide(scatter: float, count: int, monkeypatch: pytes
         return Evaluation(some.mean(axis=1), half, some, drift=drift)
 
     monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
-    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
+    monkeypatch.setattr(
+        "rattlebox.studies.kinds.design.predict", lambda search, trials: Estimate(trials, 1, 1.0, 1.0, 1)
+    )
     few, wrong = [], 0
     for _ in range(count):
         planted, noise, factor = (
@@ -474,7 +479,9 @@ def test_the_answer_of_planted_searches_is_that_without_dropping(
         return Evaluation(some.mean(axis=1), half, some)
 
     monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
-    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
+    monkeypatch.setattr(
+        "rattlebox.studies.kinds.design.predict", lambda search, trials: Estimate(trials, 1, 1.0, 1.0, 1)
+    )
     ran = []
     for repetition in range(100):
         scatter = generator.normal(size=(9, 12))
@@ -510,7 +517,7 @@ def test_a_budget_suffices_for_the_least_time(
 ) -> None:
     """A budget below the time of all packings and cycles is refused only if trials that end early need more, too."""
     estimate = Estimate(3, 1, 100.0, 100.0, 1, least=least)
-    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: estimate)
+    monkeypatch.setattr("rattlebox.studies.kinds.design.predict", lambda search, trials: estimate)
     options: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "packings": 4, "drop": True, "progress": True}
     if least > 60:
         with pytest.raises(CaseError, match=r"budget = 60 s is less than predicted for .* if trials end as early"):

@@ -11,7 +11,8 @@ import xarray as xr
 from scipy.stats import t
 
 import rattlebox as rb
-from rattlebox.studies.design.search import Candidate, DesignSearch, Evaluation
+from rattlebox.studies.design.candidate import Candidate, Evaluation
+from rattlebox.studies.design.search import DesignSearch
 from rattlebox.studies.run.estimate import Estimate
 
 GAP = "damper.gap"
@@ -68,7 +69,9 @@ def search(plan: Plan, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
         return Evaluation(some.mean(axis=1), half, some)
 
     monkeypatch.setattr(DesignSearch, "evaluate", evaluate)
-    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, 1, 1.0, 1.0, 1))
+    monkeypatch.setattr(
+        "rattlebox.studies.kinds.design.predict", lambda search, trials: Estimate(trials, 1, 1.0, 1.0, 1)
+    )
     usual: dict[str, Any] = {"amplitudes": ["0.5 mm", "0.6 mm"], "way": "shaking", "packings": 12, "progress": False}
     found = rb.design(CASE, {GAP: gaps}, plan.objective, drop=plan.drop, robust="mean", **usual)
     found = found.sortby(GAP)

@@ -13,7 +13,7 @@ from rattlebox.plots.stability_lobes import plot_stability_lobes
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
 from rattlebox.report.parts import Limit, Table
-from rattlebox.studies.kinds.stability_lobes import depth_with_interval
+from rattlebox.studies.maps.lobe_words import depth_with_interval
 
 if TYPE_CHECKING:
     import xarray as xr

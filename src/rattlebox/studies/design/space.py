@@ -13,6 +13,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.studies.grid.axes import materials_in, parse_axes
 from rattlebox.studies.grid.grid import Parameter, labels
 from rattlebox.studies.grid.grid import Values as Column
+from rattlebox.studies.work.measures import about
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -172,6 +173,17 @@ class Objective:
     def sign(self) -> float:
         """Factor with which the measure is minimised."""
         return -1.0 if self.maximise else 1.0
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Unit and label in a result."""
+        declared = about(self.measure)
+        return {"units": "1" if self.name == DAMPING_RATIO else declared.units, "long_name": declared.long_name}
+
+    @property
+    def attributes_with_goal(self) -> dict[str, str]:
+        """Unit, label and direction in a result."""
+        return self.attributes | {"goal": "max" if self.maximise else "min"}
 
 
 def read_objectives(objective: object) -> list[Objective]:

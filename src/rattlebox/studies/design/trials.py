@@ -20,18 +20,10 @@ from rattlebox._util.narrow import instance
 from rattlebox._util.owned_folder import read_marker
 from rattlebox.model.differences import differences
 from rattlebox.results.provenance import with_version
+from rattlebox.studies.design.candidate import Candidate, Curves, Evaluation, pooled
 from rattlebox.studies.design.evidence import DROPPED, certainly_worse
-from rattlebox.studies.design.search import (
-    MOST_COMBINATIONS,
-    MOST_PAUSED,
-    Candidate,
-    Curves,
-    DesignSearch,
-    Evaluation,
-    Values,
-    padded,
-    pooled,
-)
+from rattlebox.studies.design.result import padded
+from rattlebox.studies.design.search import MOST_COMBINATIONS, MOST_PAUSED, DesignSearch, Values
 from rattlebox.studies.design.space import ADDED_MASS, DesignVariable
 from rattlebox.studies.run.estimate import Estimate
 from rattlebox.studies.run.store import JOURNAL, exclusive_writer

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
@@ -50,6 +50,13 @@ class Spaced:
         if not start * stop > 0:
             raise Hint("the ends of geometric spacing must not be zero and must have the same sign", "linear spacing")
         return np.geomspace(start, stop, count)
+
+
+def numbers_in(given: Spaced | Iterable[Any], read: Callable[[Any], float]) -> Vector:
+    """Return the numbers that `read` gives for values, or the numbers between those of the ends."""
+    if isinstance(given, Spaced):
+        return given.values(read(given.start), read(given.stop))
+    return np.array([read(value) for value in given], dtype=np.float64)
 
 
 def linspace(start: Quantity, stop: Quantity, count: int) -> Spaced:

@@ -17,7 +17,10 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import announce, progress_bar
 from rattlebox.model.errors import Hint
 from rattlebox.studies.damping_curve import Way, mode_of, read_amplitudes
-from rattlebox.studies.design.search import FIRST, Curve, DesignSearch, Robust
+from rattlebox.studies.design.candidate import Curve
+from rattlebox.studies.design.cost import predict
+from rattlebox.studies.design.result import result_of
+from rattlebox.studies.design.search import FIRST, DesignSearch, Robust
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO, DesignVariable, read_objectives
 from rattlebox.studies.design.trials import LAYOUT, Trials, load_study, number_of_trials, quiet, trial_storage
 from rattlebox.studies.grid.axes import ParsedAxes, packing_axis, parse_axes, robust_axes
@@ -280,7 +283,7 @@ class Design(Study):
         """Return the estimate of all trials; see `Study.estimate`."""
         optional_import("optuna", "design")  # the import is no part of the trials
         search = self._search.on(self.where)
-        return search.predict(number_of_trials(search, self.trials))
+        return predict(search, number_of_trials(search, self.trials))
 
     def compute(self) -> xr.Dataset:
         """Run the trials; see `Study.compute`."""
@@ -307,7 +310,7 @@ class Design(Study):
                 if time.monotonic() < end:
                     raise _stopped(trials, store) from None
                 stopped = self._out_of_time(trials)
-            found = search.result(trials.finished)
+            found = result_of(search, trials.finished)
         for line in found.attrs.get("warnings", ()):
             warnings.warn(line.removeprefix("warning: "), stacklevel=4)
         return save_result(
@@ -319,7 +322,7 @@ class Design(Study):
         left = trials.total - trials.done
         if not left:
             return
-        predicted = search.predict(left)
+        predicted = predict(search, left)
         line, wall = f"design: {predicted}", predicted.wall_time
         least = wall if predicted.least is None else wall * predicted.least / predicted.cpu_time
         allowed = math.inf if self.budget is None else float(self.budget)

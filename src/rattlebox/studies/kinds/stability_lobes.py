@@ -15,10 +15,10 @@ from pydantic import BeforeValidator, Field, InstanceOf
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.phrases import counted, joined
-from rattlebox._util.quantities import amount, with_interval
+from rattlebox._util.quantities import amount
 from rattlebox.analysis.chatter import SampledResponse
 from rattlebox.analysis.chatter import stability_lobes as lobes_of
-from rattlebox.analysis.describing_function import MassTable, damping_of_modes, solve
+from rattlebox.analysis.describing_function import MassTable, damping_of_modes
 from rattlebox.analysis.signals import FloatArray
 from rattlebox.model.case import Case
 from rattlebox.model.damper_base import Damper
@@ -29,8 +29,9 @@ from rattlebox.model.stops import refuse_stops
 from rattlebox.model.structures import Shaker, StructurePart
 from rattlebox.model.tuned_mass import TunedMass
 from rattlebox.model.units import Number, parse
-from rattlebox.studies.grid.sampling import Spaced
+from rattlebox.studies.grid.sampling import numbers_in
 from rattlebox.studies.kinds.loss_map import LossMap
+from rattlebox.studies.maps.lobe_words import answer
 from rattlebox.studies.maps.map_response import (
     HEAVY,
     LEAST_SHARE,
@@ -39,6 +40,7 @@ from rattlebox.studies.maps.map_response import (
     first_harmonic_share,
 )
 from rattlebox.studies.maps.response_from_map import DamperPoints, default_frequencies, modes_of, points_of_dampers
+from rattlebox.studies.maps.tool_response import ComplexArray, LoadedTool, Tool, space_shape
 from rattlebox.studies.run.store import save_finished, save_result
 from rattlebox.studies.run.study import CONFIG, Count, Cycles, Study, Values, study_function
 from rattlebox.studies.work.work import Work
@@ -46,12 +48,11 @@ from rattlebox.studies.work.work import Work
 if TYPE_CHECKING:
     import xarray
 
-ComplexArray = NDArray[np.complex128]
 
 _LEAST_COEFFICIENT, _MOST_COEFFICIENT = 1e6, 1e12
 """Smallest and largest cutting coefficient that is accepted [N/m^2]; those of materials are 1e8 to 1e10."""
-_MODE_POINTS, _BASE_POINTS = 41, 400
-"""Numbers of frequencies around each natural frequency, and over the whole range, from which sampling starts."""
+_SPEEDS = 'speeds = rb.linspace("500 rpm", "6000 rpm", 200)'
+"""Example of speeds in messages."""
 _MAP_SIZE = (24, 8)
 """Numbers of amplitudes and frequencies of a map that is computed for a damper."""
 _MAP_RANGE = (0.8, 1.8)
@@ -62,8 +63,21 @@ _WIDER = 1.25
 """Margin of its amplitudes around those of the tip."""
 _MOST_WAVES = 1e6
 """Largest number of waves between two teeth: 1e6 lobes differ from the limit of all speeds by less than a millionth."""
-_FALL = 0.98
-"""Limit at a larger amplitude over the largest one, below which the limit counts as falling."""
+
+
+def _rpm(value: object) -> float:
+    """Return a spindle speed [rpm]."""
+    speed, unit = parse(value, ("rad/s",))
+    if unit is None:
+        raise Hint("speeds have no unit, and rpm and rad/s differ by 9.55", _SPEEDS, ["speeds"])
+    return speed * 30 / math.pi
+
+
+def _rising(values: FloatArray, name: str, advice: str) -> FloatArray:
+    """Return values; raise unless they are greater than zero and rising."""
+    if not values.size or np.any(values <= 0) or np.any(np.diff(values) <= 0):
+        raise Hint(f"{name} must be greater than zero and rising", advice, [name])
+    return values
 
 
 def _as_case(value: object) -> Any:
@@ -255,16 +269,7 @@ class StabilityLobes(Study):
         """Spindle speeds [rpm]."""
         if self.speeds is None:
             return np.zeros(0)
-        given, advice = self.speeds, 'speeds = rb.linspace("500 rpm", "6000 rpm", 200)'
-        spaced = isinstance(given, Spaced)
-        pairs = [parse(each, ("rad/s",)) for each in ((given.start, given.stop) if spaced else list(given))]
-        if any(unit is None for _, unit in pairs):
-            raise Hint("speeds have no unit, and rpm and rad/s differ by 9.55", advice, ["speeds"])
-        values = np.array([value for value, _ in pairs]) * 30 / math.pi
-        speeds = np.asarray(given.values(*values)) if spaced else values
-        if not speeds.size or np.any(speeds <= 0) or np.any(np.diff(speeds) <= 0):
-            raise Hint("speeds must be greater than zero and rising", advice, ["speeds"])
-        return speeds
+        return _rising(numbers_in(self.speeds, _rpm), "speeds", _SPEEDS)
 
     @cached_property
     def _damper(self) -> Any:
@@ -298,27 +303,20 @@ class StabilityLobes(Study):
         return self.case.model_copy(update={"tuned_masses": tuned}).modes if tuned else self._bare_model
 
     @cached_property
-    def _bare(self) -> _Tool:
-        return _Tool.of(self._bare_model, self.point, self.direction, self.directional_factor)
+    def _bare(self) -> Tool:
+        return Tool.of(self._bare_model, self.point, self.direction, self.directional_factor)
 
     @cached_property
-    def _tool(self) -> _Tool:
-        return _Tool.of(self._model, self._bare.point, self.direction, self.directional_factor)
+    def _tool(self) -> Tool:
+        return Tool.of(self._model, self._bare.point, self.direction, self.directional_factor)
 
     @cached_property
     def _own_amplitudes(self) -> FloatArray | None:
         """Given amplitudes of the tip [m]."""
         if self.amplitudes is None:
             return None
-        given = self.amplitudes
-        spaced = isinstance(given, Spaced)
-        found = [parse(each, ("m",))[0] for each in ((given.start, given.stop) if spaced else list(given))]
-        values = np.asarray(given.values(*found) if spaced else found, float)
-        if not values.size or np.any(values <= 0) or np.any(np.diff(values) <= 0):
-            raise Hint(
-                "amplitudes must be greater than zero and rising", 'amplitudes = ["5 um", "20 um"]', ["amplitudes"]
-            )
-        return values
+        values = numbers_in(self.amplitudes, lambda value: parse(value, ("m",))[0])
+        return _rising(values, "amplitudes", 'amplitudes = ["5 um", "20 um"]')
 
     @cached_property
     def _map(self) -> LossMap:
@@ -338,7 +336,7 @@ class StabilityLobes(Study):
             frequencies = np.geomspace(hertz * _MAP_RANGE[0], hertz * _MAP_RANGE[1], _MAP_SIZE[1]).tolist()
         # The amplitude of a damper away from the tip differs from that of the tip by the ratio of the motions, which for
         # one in a tuned mass changes much with the frequency.
-        shapes = np.array([_space_shape(self._model, name) for name in points])
+        shapes = np.array([space_shape(self._model, name) for name in points])
         among = np.geomspace(hertz * _MAP_RANGE[0], hertz * _MAP_RANGE[1], _RATIOS)
         ratio = np.abs(self._tool.motion_ratio(2 * math.pi * among, shapes))
         ends = amplitudes[0] * ratio.min() / _WIDER, amplitudes[-1] * ratio.max() * _WIDER
@@ -415,7 +413,7 @@ class StabilityLobes(Study):
             "amplitudes": [] if self._own_amplitudes is None else self._own_amplitudes.tolist(),
         }
 
-    def _limits(self, tool: _Tool, samples: list[SampledResponse], amplitudes: object) -> _Limits:
+    def _limits(self, tool: Tool, samples: list[SampledResponse], amplitudes: object) -> _Limits:
         """Return the limits of a tool for the response at each amplitude."""
         period = 60 / (self._speeds * self.teeth)
         smallest, lobes = [], []
@@ -442,7 +440,7 @@ class StabilityLobes(Study):
         table = LossTable.read(self._map.evaluate(self.run_work(self._map.work)) if self._runs_map else source)
         points = DamperPoints(self._model, self._points_of_dampers, table, self._damper_direction)
         number = self.number or (source.number if self._runs_map else 1)
-        loaded = _Loaded(self._tool, points.shapes, table.masses, number, table.clearance, 0.0)
+        loaded = LoadedTool(self._tool, points.shapes, table.masses, number, table.clearance, 0.0)
         amplitudes = self._own_amplitudes
         if amplitudes is None:
             amplitudes = loaded.amplitudes_of_tip(self._bare_samples.smallest_real_part()[1])
@@ -513,7 +511,7 @@ class StabilityLobes(Study):
         return np.asarray((depth < found.depth) | ~np.isfinite(found.depth))
 
     def _errors(
-        self, table: LossTable, loaded: _Loaded, samples: list[SampledResponse], found: _Limits
+        self, table: LossTable, loaded: LoadedTool, samples: list[SampledResponse], found: _Limits
     ) -> dict[str, FloatArray]:
         """Return the effect of the interval and of the resolution of the map on the limit."""
 
@@ -533,7 +531,7 @@ class StabilityLobes(Study):
         return {"limit_interval": interval, "interpolation_error": np.where(np.isnan(found.limit), np.nan, error)}
 
     def _share(
-        self, table: LossTable, loaded: _Loaded, points: DamperPoints, number: int, found: _Limits
+        self, table: LossTable, loaded: LoadedTool, points: DamperPoints, number: int, found: _Limits
     ) -> FloatArray:
         """Return the share of the motion of the dampers in the first harmonic at the limit, over the amplitude."""
         model = self._model
@@ -616,130 +614,6 @@ class StabilityLobes(Study):
 stability_lobes = study_function(StabilityLobes)
 
 
-# ---- responses
-
-
-def _space_shape(model: ModalModel, name: str) -> FloatArray:
-    """Return the mode shapes of a point, (m,): along the direction in which it moves most if it moves in 3-D."""
-    shape = np.asarray(model.shapes[name])
-    return shape if shape.ndim == 1 else shape[:, int(np.argmax((shape**2).sum(axis=0)))]
-
-
-@plain_dataclass(frozen=True, eq=False)
-class _Tool:
-    """Structure without dampers, and the mode shapes of the cutting point along its direction, (m,)."""
-
-    model: ModalModel
-    point: str
-    tip: FloatArray
-    factor: float
-
-    @classmethod
-    def of(cls, model: ModalModel, point: str | None, direction: Any, factor: float) -> _Tool:
-        name = model.point(point)
-        return cls(model, name, np.asarray(model.shape(name, direction)), factor)
-
-    def response(self, omega: FloatArray) -> ComplexArray:
-        """Return the directional response at angular frequencies, (F,) [m/N]."""
-        return np.asarray(self.factor * (self.model.harmonic_response(omega, self.tip[:, None])[:, :, 0] @ self.tip))
-
-    def motion_ratio(self, omega: FloatArray, shapes: FloatArray) -> ComplexArray:
-        """Return the displacement of points over that of the tip, under a force at the tip, (F, P)."""
-        modal = self.model.harmonic_response(omega, self.tip[:, None])[:, :, 0]
-        return np.asarray((modal @ shapes.T) / (modal @ self.tip)[:, None])
-
-    def natural(self) -> FloatArray:
-        """Return frequencies around the natural ones [Hz]."""
-        parts = [np.zeros(0)]
-        for squared, decay in zip(self.model.stiffness, self.model.decay, strict=True):
-            if squared > 0:
-                width = max(float(decay), 1e-6 * math.sqrt(squared))
-                near = math.sqrt(squared) + width * np.tan(np.linspace(-1.5, 1.5, _MODE_POINTS))
-                parts.append(near[near > 0] / (2 * math.pi))
-        return np.concatenate(parts)
-
-    def frequencies(self, passes: FloatArray) -> FloatArray:
-        """Return the angular frequencies from which sampling starts; passes of teeth in a minute, (N,)."""
-        own = np.sqrt(self.model.stiffness[self.model.stiffness > 0])
-        low, high = 0.01 * own.min(), 4 * own.max()
-        if passes.size:
-            # The first lobe, of less than one wave, reaches up to the frequency of the teeth.
-            rate = 2 * math.pi * passes / 60
-            low, high = min(low, 0.01 * rate.min()), max(high, 1.01 * rate.max())
-        return np.unique(np.concatenate([np.geomspace(low, high, _BASE_POINTS), 2 * math.pi * self.natural()]))
-
-
-@plain_dataclass(frozen=True, eq=False)
-class _Loaded:
-    """Directional response of a tool whose tip vibrates with a given amplitude [m], with dampers at P points."""
-
-    tool: _Tool
-    shapes: FloatArray
-    table: MassTable
-    number: int
-    clearance: float
-    amplitude: float
-
-    @cached_property
-    def _is_at_tip(self) -> bool:
-        """Whether all dampers move like the tip, so that their amplitude is known."""
-        return bool(np.all(self.shapes == self.tool.tip))
-
-    def motions(self, omega: FloatArray) -> ComplexArray:
-        """Return the accelerations of the dampers, (F, S, P); NaN outside of the map."""
-        hertz = omega / (2 * math.pi)
-        if self._is_at_tip:
-            size = self.amplitude * (omega**2 if self.table.is_acceleration else np.ones_like(omega))
-            inside = self.table.covers(hertz) & (size >= self.table.amplitude[0] * (1 - 1e-9))
-            inside &= size <= self.table.amplitude[-1] * (1 + 1e-9)
-            moved = np.where(inside, -(omega**2) * self.amplitude, np.nan).astype(complex)
-            return np.repeat(moved[:, None, None], len(self.shapes), axis=2)
-        # The motion of the tip is prescribed: the dampers are on a structure that is held there, and driven by it.
-        tip, damper, across = self._receptances(omega)
-        squared = -(omega**2)[:, None]
-        drive = squared * across / tip[:, None]
-        gain = squared[:, :, None] * (damper - across[:, :, None] * across[:, None, :] / tip[:, None, None])
-        found = solve(self.table, hertz, self.number * gain, drive, np.array([self.amplitude]))
-        moved = found.acceleration[0]
-        lost = (found.is_below | found.is_above | found.is_lost)[0]
-        return np.where(lost[:, None, None], np.nan, moved)
-
-    def _receptances(self, omega: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Return the displacements per force: tip on tip, (F,), dampers on dampers, (F, P, P), and on the tip, (F, P)."""
-        forces = np.column_stack([self.tool.tip, self.shapes.T])
-        modal = self.tool.model.harmonic_response(omega, forces)
-        return modal[:, :, 0] @ self.tool.tip, self.shapes @ modal[:, :, 1:], modal[:, :, 0] @ self.shapes.T
-
-    def __call__(self, omega: FloatArray) -> ComplexArray:
-        """Return the directional response, (F,) [m/N]: of all motions that with the smallest real part."""
-        moved = self.motions(omega)
-        tip, _, across = self._receptances(omega)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            logs = np.log(np.abs(moved)) - self.table.log_acceleration(omega)[:, None, None]
-            mass, _ = self.table.curves(omega / (2 * math.pi), store=False).evaluate(
-                np.arange(omega.size), np.nan_to_num(logs, nan=self.table.limits[0])
-            )
-            reaction = np.einsum("fsp,fp->fs", -self.number * mass * moved, across)
-            force = (self.amplitude - reaction) / tip[:, None]
-            alone = np.where(self.can_rest(omega), tip, np.nan)
-            responses = self.tool.factor * np.column_stack([self.amplitude / force, alone])
-        worst = np.where(np.isfinite(responses), responses.real, np.inf).argmin(axis=1)
-        return np.asarray(responses[np.arange(omega.size), worst])
-
-    def can_rest(self, omega: FloatArray) -> NDArray[np.bool_]:
-        """Return whether balls that no wall reaches may stay at rest, a motion that no map contains, (F,)."""
-        tip, _, across = self._receptances(omega)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            reach = 2 * self.amplitude * np.abs(across / tip[:, None]).max(axis=1)
-        return np.asarray((reach < self.clearance) & self.table.covers(omega / (2 * math.pi)))
-
-    def amplitudes_of_tip(self, omega: float) -> FloatArray:
-        """Return the amplitudes of the tip that belong to those of the table at an angular frequency [m]."""
-        ratio = np.abs(self.tool.motion_ratio(np.array([omega]), self.shapes)).max()
-        squared = omega**2 if self.table.is_acceleration else 1.0
-        return np.asarray(self.table.amplitude / (ratio * squared))
-
-
 @plain_dataclass(frozen=True, eq=False)
 class _Limits:
     """Limits over A amplitudes, and over these and N speeds; see `StabilityLobes`."""
@@ -762,7 +636,7 @@ class _Limits:
 
 
 def _map_warnings(
-    table: LossTable, about: dict[str, Any], loaded: _Loaded, points: DamperPoints, number: int, found: _Limits
+    table: LossTable, about: dict[str, Any], loaded: LoadedTool, points: DamperPoints, number: int, found: _Limits
 ) -> Iterator[str]:
     """Yield warnings about limits of the method that the result exceeds."""
     heavy = number * table.mass * float((points.shapes**2).sum(axis=1).max())
@@ -790,66 +664,3 @@ def _map_warnings(
         if near:
             names = table.limits.replace(" ", ", ")
             yield f"{near} of {counted(size, 'limit')} use runs of the map that exceeded a validity limit ({names})"
-
-
-# ---- words
-
-
-def answer(result: xarray.Dataset) -> Iterator[str]:
-    """Yield sentences about the result of the study."""
-    frequency = amount(float(result.bare_limit_frequency), "Hz")
-    if np.isfinite(result.bare_limit):
-        yield (
-            "The structure alone is stable at all spindle speeds up to a depth of cut of "
-            f"{amount(float(result.bare_limit), 'm')}; deeper cuts chatter at {frequency}."
-        )
-    else:
-        yield "The structure alone does not chatter: its real part is not negative anywhere."
-    linear = bool((result.amplitude == 0).all())
-    limit = result.limit.values
-    if linear:
-        if system := str(result.attrs.get("system", "")):
-            ratio = float(limit[0] / result.bare_limit)
-            yield (
-                f"With {system} it is stable up to {amount(float(limit[0]), 'm')}, {ratio:.3g} times as deep, and chatters "
-                f"at {amount(float(result.limit_frequency[0]), 'Hz')}."
-            )
-        best = 0
-    else:
-        if not np.isfinite(limit).any():
-            yield "With the dampers the limit is unknown: the map does not cover the chatter of this tool."
-            return
-        best = int(np.nanargmax(limit))
-        yield from _contained(result, best)
-    if "depth" in result and np.isfinite(depth := result.depth.values[best]).any():
-        k = int(np.nanargmax(np.where(np.isfinite(depth), depth, -np.inf)))
-        where = "" if linear else f", with vibrations of {amount(float(result.amplitude[best]), 'm', 3)}"
-        speed = amount(float(result.speed[k]), "rpm")
-        if result.speed.size > 1 and k in (0, result.speed.size - 1):
-            speed += f", the {'highest' if k else 'lowest'} of them"
-        yield f"The deepest stable cut at the given speeds is {amount(float(depth[k]), 'm')}, at {speed}{where}."
-
-
-def depth_with_interval(one: xarray.Dataset) -> str:
-    """Return the stable depth at an amplitude, with its 95 % interval where that is above a thousandth of it."""
-    depth, half = float(one.limit), float(one.limit_interval)
-    return with_interval(depth, half, "m") if half > 1e-3 * depth else amount(depth, "m", 3)
-
-
-def _contained(result: xarray.Dataset, best: int) -> Iterator[str]:
-    """Yield sentences about the amplitudes at which chatter is contained."""
-    limit, sizes = result.limit.values, result.amplitude.values
-    known = np.flatnonzero(np.isfinite(limit))
-
-    def at(k: int) -> str:
-        return f"at {amount(float(sizes[k]), 'm', 3)} up to {depth_with_interval(result.isel(amplitude=k))}"
-
-    others = [int(k) for k in (known[0], known[-1]) if k != best]
-    more = f"; {joined([at(k) for k in others])}" if others else ""
-    yield f"With the dampers chatter is contained {at(best)} depth of cut at all spindle speeds{more}."
-    last = int(known[-1])
-    if limit[last] < _FALL * limit[best]:
-        yield (
-            f"The limit falls above {amount(float(sizes[best]), 'm', 3)}: between {amount(float(limit[last]), 'm', 3)} and "
-            f"{amount(float(limit[best]), 'm', 3)} a disturbance beyond the amplitude with that limit grows."
-        )
