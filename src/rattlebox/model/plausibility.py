@@ -69,7 +69,7 @@ def plausibility_notes(case: Case, *, signals: bool = True) -> tuple[str, ...]:
     )
     distant = (warning for damper, places in case.cell_groups for warning in _check_places(damper, places))
     loads = (*_check_amplitudes(case), *(_check_signals(case) if signals else ()))
-    warnings = (*_check_structure(case), *loads, *dampers, *distant, *room)
+    warnings = (*_check_structure(case), *loads, *dampers, *_check_packings(case), *distant, *room)
     about_structure = (*case.structure.notes(), *(case.structure.base_notes() if case.base else ()))
     notes = (*(f"note: {note}" for note in about_structure), *_note_assumptions(case))
     return (*notes, *(f"warning: {warning}" for warning in warnings))
@@ -325,6 +325,22 @@ def _check_places(damper: ParticleDamper, places: Vector) -> Iterator[str]:
     if away > _FARTHEST * _ROUNDING:
         what, fields = ("axis", "arm and offsets") if turns else ("point", "offsets")
         yield f"a cavity is {away:.4g} m from its {what}, more than usual; try: check {fields}, and their unit"
+
+
+def _check_packings(case: Case) -> Iterator[str]:
+    """Yield a warning about each damper whose particles begin and move like those of another one."""
+    first: dict[tuple[str, ...], str] = {}
+    starts = [(damper.point, damper.packing.model_dump_json()) for damper in case.particle_dampers]
+    for index, (damper, start) in enumerate(zip(case.particle_dampers, starts, strict=True)):
+        if not damper.packing.is_random or starts.count(start) == 1:  # text of a large surface takes long
+            continue
+        name = " ".join(damper.label(index).split())
+        other = first.setdefault((*map(str, start), damper.model_copy(update={"name": ""}).model_dump_json()), name)
+        if other != name:
+            yield (
+                f"the particles of {name} have the same random packing as those of {other}, at the same point, and move"
+                f" exactly like them; try: another packing.seed, or number = 2 in one damper"
+            )
 
 
 def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:

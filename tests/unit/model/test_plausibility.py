@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 import rattlebox as rb
@@ -278,3 +279,36 @@ def test_a_record_in_milliseconds_is_noted():
     assert (
         result[0].startswith("warning: load is a record of 600 s") and "0.1 s" in result[0] and "seconds" in result[0]
     )
+
+
+def test_dampers_with_one_packing_are_noted():
+    """Two dampers with one random seed at one point have a warning, whose two pieces of advice remove it.
+
+    Only the cells of one damper were tested for different packings; two listed dampers moved as one, without a note.
+    """
+    cup = grains(packing=rb.Settled(seed=4), softening=200)
+    structure = rb.SDOF(mass=2, frequency=25, damping_ratio=0.01, velocity="0.3 m/s")
+
+    def pair(*dampers, structure=structure):
+        return rb.Case(structure=structure, dampers=dampers, duration="2 ms")
+
+    run = rb.simulate(pair(cup, cup), progress=False)
+    assert np.array_equal(run.arrays.centre_of_mass[:, 0], run.arrays.centre_of_mass[:, 1])
+    (note,) = (note for note in run.notes if "packing" in note)
+    assert note.startswith("warning: the particles of damper2 have the same random packing as those of damper, ")
+    other = cup.model_copy(update={"packing": rb.Settled(seed=5)})
+    twice = cup.model_copy(update={"number": 2})
+    spots = [cup.model_copy(update={"point": point}) for point in ("light", "heavy")]
+    grid = [[x, y, z] for x in (-6e-3, 0, 6e-3) for y in (-4e-3, 4e-3) for z in (-4e-3, 4e-3)]
+    even = grains(packing=rb.Positions(positions=grid))
+    turned = rb.Rotation(speed="90 rpm", axis="y", arm=("50 mm", 0, 0))
+    angles = [cup.model_copy(update={"rotation": turned.model_copy(update={"angle": angle})}) for angle in (0.0, 2.0)]
+    for dampers, options in (
+        ((cup, other), {}),
+        ((twice,), {}),
+        (spots, {"structure": TWO_POINTS}),
+        ((even, even), {}),
+        (angles, {}),
+    ):
+        assert not any("random packing" in note for note in plausibility_notes(pair(*dampers, **options)))
+    assert any("those of damper," in note for note in plausibility_notes(pair(twice, cup)))
