@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import Any, TypeVar
+
+import numpy as np
 
 Value = TypeVar("Value")
 
@@ -19,3 +21,8 @@ def instance(value: object, kind: type[Value]) -> Value:
     if not isinstance(value, kind):
         raise TypeError(f"{value!r:.60} is not a {kind.__name__}, which an earlier check should have excluded")
     return value
+
+
+def unmasked(values: Any) -> Any:
+    """Return the values with NaN in place of masked ones, which are invalid and would become numbers in an array."""
+    return np.ma.filled(values.astype(float), np.nan) if isinstance(values, np.ma.MaskedArray) else values

@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rattlebox._util.narrow import unmasked
+
 if TYPE_CHECKING:
     import xarray
 
 FloatArray = NDArray[np.float64]
+_LARGEST_ROUNDING = 0.01
+"""Largest rounding error of times with single precision, in sampling intervals."""
 TIME = {"units": "s", "long_name": "time"}
 
 
 def finite(name: str, values: ArrayLike, least: int = 1) -> FloatArray:
     """Return a signal as (N,) floats; raise for NaN, infinity, other shapes and fewer than `least` samples."""
-    array = np.asarray(values, dtype=np.float64)
+    array = np.asarray(unmasked(values), dtype=np.float64)
     if array.ndim != 1:
         raise ValueError(f"{name} has shape {array.shape}, but one signal (N,) is needed; try: one point or ball")
     if array.size < least:
@@ -48,22 +52,24 @@ def evenly_sampled(time: ArrayLike, least: int = 2, **signals: ArrayLike) -> tup
     A run with a sampling rate always records its end, which is rarely a multiple of the sampling interval.
     """
     t, *arrays = sampled(time, least, **signals)
-    if t.size > 2 and not is_even(t) and t[-1] - t[-2] < t[-2] - t[-3] and is_even(t[:-1]):
+    single = float(np.spacing(np.float32(np.max(np.abs(t))))) if getattr(time, "dtype", None) == np.float32 else 0.0
+    if t.size > 2 and not is_even(t, single) and t[-1] - t[-2] < t[-2] - t[-3] and is_even(t[:-1], single):
         t, *arrays = sampled(t[:-1], least, **{name: array[:-1] for name, array in zip(signals, arrays, strict=True)})
-    if not is_even(t):
+    if not is_even(t, single):
         steps = np.diff(t)
         raise ValueError(
             f"time must be evenly spaced, but its steps range from {steps.min():g} s to {steps.max():g} s; only the last "
             "one may be shorter; try: a run with Output(rate=...), or interpolation"
         )
-    return t, *arrays
+    return np.linspace(t[0], t[-1], t.size) if single else t, *arrays
 
 
-def is_even(time: FloatArray) -> bool:
-    """Return whether times are evenly spaced."""
+def is_even(time: FloatArray, single: float = 0.0) -> bool:
+    """Return whether times are evenly spaced; `single` is the spacing of numbers near them in single precision [s]."""
     step = step_of(time)
-    # The second term is for the rounding of times that are large compared with their step.
-    return bool(np.max(np.abs(np.diff(time) - step)) <= 1e-6 * step + 4 * np.spacing(np.max(np.abs(time))))
+    # The other terms are for the rounding of times that are large compared with their step.
+    rounding = 4 * np.spacing(np.max(np.abs(time))) + min(single, _LARGEST_ROUNDING * step)
+    return bool(np.max(np.abs(np.diff(time) - step)) <= 1e-6 * step + rounding)
 
 
 def step_of(time: FloatArray) -> float:

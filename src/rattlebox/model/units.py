@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
 
+from rattlebox._util.narrow import unmasked
 from rattlebox._util.quantities import STANDARD_GRAVITY as STANDARD_GRAVITY
 
 from .errors import Hint, at, nearest
@@ -415,7 +416,7 @@ def radius_of_diameter(values: object) -> Any:
 def numbers(value: object) -> NDArray[np.float64]:
     """Read an array of finite numbers."""
     try:
-        array = np.asarray(value, dtype=float)
+        array = np.asarray(unmasked(value), dtype=float)
     except (TypeError, ValueError, OverflowError):
         _raise_at_invalid_number(value)
         raise Hint("rows of numbers of one length are needed") from None

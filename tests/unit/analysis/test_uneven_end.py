@@ -81,3 +81,31 @@ def test_too_few_samples_without_the_end() -> None:
     """A signal whose even part is too short is refused with the number of its even samples."""
     with pytest.raises(ValueError, match="time has 3 samples, but at least 4"):
         analysis.amplitude_spectrum([0.0, 1.0, 2.0, 2.5], np.zeros(4))
+
+
+@pytest.mark.parametrize("begin", [0.0, -3.0, 40.0])
+@pytest.mark.parametrize("name", ANALYSES)
+def test_times_of_single_precision(name: str, begin: float) -> None:
+    """Times that a logger stored with seven digits are even; all earlier tests had times of double precision."""
+    time = begin + 2e-3 * np.arange(1500)
+    motion = 1e-3 * np.exp(-2 * (time - begin)) * np.sin(2 * np.pi * 21 * (time - begin))
+    rounded = ANALYSES[name](time.astype(np.float32), motion)
+    exact = ANALYSES[name](time, motion)
+    values, others = (each.to_array() if hasattr(each, "to_array") else each for each in (rounded, exact))
+    np.testing.assert_allclose(values, others, rtol=2e-3, atol=2e-3 * float(abs(others).max()))
+
+
+def test_times_too_large_for_single_precision_are_refused() -> None:
+    """A day after the start, single precision has steps of 8 ms, so that a step of 20 ms has no even times."""
+    time = (86_400 + 0.02 * np.arange(400)).astype(np.float32)
+    with pytest.raises(ValueError, match="evenly spaced"):
+        evenly_sampled(time, values=np.zeros(400))
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_masked_samples_are_refused(name: str) -> None:
+    """A sample that is masked, as an invalid one of a measurement, is refused and never taken for a number."""
+    time = 2e-3 * np.arange(900)
+    motion = np.ma.masked_array(1e-3 * np.sin(2 * np.pi * 21 * time), mask=np.arange(900) == 450)
+    with pytest.raises(ValueError, match=r"\[450\] is nan, but all samples must be finite"):
+        ANALYSES[name](time, motion)

@@ -143,3 +143,17 @@ def test_a_record_is_an_array() -> None:
     assert case != case.replaced({"base": other})
     assert case.replaced({"base.values[1]": 2.0}).base[0].evaluate(record.times[1]) == pytest.approx(2.0)
     assert rb.simulate(case) == rb.simulate(rb.Case.from_toml(case.to_toml()))
+
+
+def test_masked_numbers_are_refused() -> None:
+    """Masked numbers are invalid and refused like NaN; no test had an array with a mask, whose numbers were taken."""
+    values = np.ma.masked_array([0.0, 900.0, 0.2, 0.1], mask=[False, True, False, False])
+    for unit in ("m/s^2", "g"):
+        with pytest.raises(rb.CaseError, match="number 2 of 4 is not finite"):
+            rb.Record(dt="5 ms", values=values, unit=unit)
+    whole = rb.Record(dt="5 ms", values=np.ma.masked_array([0, 1, 2]), unit="m/s^2")
+    assert whole.values.tolist() == [0, 1, 2]
+    with pytest.raises(rb.CaseError, match="number 4 of 4 is not finite"):
+        rb.Matrices(
+            M=np.eye(2), K=np.ma.masked_array([[3e4, -1e4], [-1e4, 1e4]], mask=[[0, 0], [0, 1]]), points={"a": 0}
+        )
