@@ -237,7 +237,9 @@ class Part(BaseModel, metaclass=_PartMeta):
         """
         for other, name in cls.aliases.items():
             if other in values and name in values:
-                raise Hint(f"give {other} or {name}, not both")
+                if values[other] is not None:
+                    raise Hint(f"give {other} or {name}, not both", f"all of them in {name}")
+                values = {field: value for field, value in values.items() if field != other}
         return {cls.aliases.get(name, name): value for name, value in values.items()}
 
     @classmethod

@@ -594,7 +594,10 @@ class TabulatedNormal(Contact):
                         "the point at which the measurement turned from loading to unloading",
                     )
                 if self._returned_share(top) > 1.001:
-                    raise Hint("unloading returns more energy than loading absorbed", "swap the two curves")
+                    raise Hint(
+                        "unloading returns more energy than loading absorbed",
+                        "an unloading curve below the loading curve, and more points of both if they are close",
+                    )
         return self
 
     @cached_property

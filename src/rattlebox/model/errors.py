@@ -252,6 +252,7 @@ _PLAIN = {
     "float_parsing": "a number is needed",
     "int_type": "an integer is needed",
     "int_parsing": "an integer is needed",
+    "int_parsing_size": "an integer of usual size is needed",
     "int_from_float": "an integer is needed",
     "string_type": "text is needed",
     "bool_type": "true or false is needed",

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import ResourceError, named
 from rattlebox._util.frozen import complete
@@ -69,7 +69,12 @@ def _two_names(value: object) -> Any:
 
 def _softening(value: object) -> Any:
     """Return "auto", or a number within the limits."""
-    return value if value == "auto" else _FACTOR.validate_python(value)
+    try:
+        return value if value == "auto" else _FACTOR.validate_python(value)
+    except ValidationError:
+        if isinstance(value, str):
+            raise Hint('a factor is a number of at least 1, or "auto"', 'softening = "auto"') from None
+        raise
 
 
 def _rows(value: object) -> Any:

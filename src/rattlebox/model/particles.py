@@ -221,6 +221,12 @@ class Particles(Part):
     @model_validator(mode="before")
     @classmethod
     def _radius_of_diameter(cls, values: object) -> Any:
+        given = values if isinstance(values, dict) else {}
+        for size in ("radius", "diameter"):
+            if isinstance(given.get(size), (dict, Distribution)):
+                raise Hint(
+                    "sizes that differ are a distribution, which has its own field", "distribution = ...", [size]
+                )
         return radius_of_diameter(values)
 
     @model_validator(mode="after")

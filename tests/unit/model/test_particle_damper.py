@@ -396,3 +396,13 @@ def test_a_case_without_its_dampers_runs() -> None:
     )
     hard = rb.Case(damper=ball, method=rb.Newton(), **rest)
     assert hard.without_dampers() == rb.Case(method=rb.Newton(), **rest)
+
+
+@pytest.mark.parametrize("word", ["automatic", "aut", ""])
+def test_a_word_that_is_no_softening(word: str) -> None:
+    """A misspelt "auto" is refused with the word; the message said only that a number is needed."""
+    with pytest.raises(
+        rb.CaseError, match=r'softening.*\n  a factor is a number of at least 1, or "auto"\n  try: soft'
+    ):
+        damper(softening=word)
+    assert damper(softening="20").softening == 20

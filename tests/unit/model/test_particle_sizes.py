@@ -82,3 +82,17 @@ def test_sizes_of_a_symmetric_distribution_are_symmetric(count: int) -> None:
     diameters = rb.Particles(material="steel", distribution=sizes, count=count).diameters(count)
     assert np.all(np.diff(diameters) > 0)
     assert diameters + diameters[::-1] == pytest.approx(np.full(count, 8e-3), rel=1e-12)
+
+
+@pytest.mark.parametrize("size", ["diameter", "radius"])
+@pytest.mark.parametrize("given", [WIDE["log-normal"], {"kind": "normal", "mean": "4 mm"}])
+def test_a_distribution_is_no_diameter(size: str, given: object) -> None:
+    """A distribution in the field of a length is refused with its own field; the message asked for a length before."""
+    with pytest.raises(rb.CaseError, match=rf"{size}.*\n.*has its own field\n  try: distribution = "):
+        rb.Particles(material="steel", count=9, **{size: given})
+
+
+def test_a_count_of_absurd_size() -> None:
+    """A count that no integer holds has a plain message, and not the one of the library that reads it."""
+    with pytest.raises(rb.CaseError, match=r"count.*\n  an integer of usual size is needed"):
+        rb.Particles(material="steel", count=1e300, diameter="4 mm")
