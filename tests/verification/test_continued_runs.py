@@ -306,6 +306,8 @@ def test_what_is_refused() -> None:
     assert "the case has no impact damper, the run 1" in refusal(first, case(damper=None))
     assert "is closed at the end of the run" in refusal(touching, case(damper=damper(gap="1.2 mm")))
     assert "another kind of law" in refusal(touching, case(damper=damper(SOFT["linear"])))
+    renamed = rb.Modal(frequencies=[20.0], damping_ratios=[0.01], shapes={"tip": [0.5]})
+    assert "1 point (tip), that of the run 1 mode and 1 point (mass)" in refusal(first, case(structure=renamed))
     assert "TwoStep" in refusal(first, case(method=rb.TwoStep()))
     two_step = rb.simulate(case(duration="10 ms", method=rb.TwoStep()))
     assert "TwoStep" in refusal(two_step, case())
@@ -434,10 +436,44 @@ def test_what_a_bed_cannot_follow() -> None:
     first = rb.simulate(bed(duration="20 ms"))
     changes: dict[str, Any] = {
         "stiffness of contacts": {"softening": 100},
-        "particles and their start": {"particles": rb.Particles(material="aluminium", diameter="5 mm", count=50)},
+        "the particles of the run cannot change": {
+            "particles": rb.Particles(material="aluminium", diameter="5 mm", count=50)
+        },
         "the cavity": {"cavity": rb.Box(size=("25 mm", "25 mm", "30 mm"))},
+        # another number ended in a ValueError of NumPy: the other particles here were as many
+        "has 51 particles, that of the run 50": {
+            "particles": rb.Particles(material="steel", diameter="5 mm", count=51)
+        },
     }
     for what, change in changes.items():
         assert what in refusal(first, bed(damper=fifty_balls(**change))), what
     assert "both have particle dampers" in refusal(first, case())
+    assert "mode shapes of the structure differ" in refusal(first, bed().replaced({"structure.mass": "1.5 kg"}))
     assert rb.simulate(bed(damper=fifty_balls(friction=0.2), duration="30 ms"), start=first).ok
+
+
+def test_a_bed_takes_another_time_step() -> None:
+    """A time step that the case states is taken, also if nothing else changes; only other changes had a test."""
+    first = rb.simulate(bed(duration="20 ms"))
+    dt = first.diagnostics["step"] / 2
+    finer = bed(duration="40 ms", method=rb.Dem(dt=dt))
+    rest = rb.simulate(finer, start=first)
+    assert rest.diagnostics["step"] <= dt * (1 + 1e-9)
+    assert rest.ok
+    again = rb.simulate(finer.replaced({"duration": "60 ms"}), start=rest)
+    whole = rb.simulate(finer.replaced({"duration": "60 ms"}), start=first)
+    common = whole.arrays.time > again.arrays.time[0] - 1e-9
+    assert again.diagnostics["step"] == rest.diagnostics["step"]
+    largest = np.abs(whole.arrays.displacement).max()
+    np.testing.assert_allclose(again.arrays.displacement, whole.arrays.displacement[common], atol=1e-9 * largest)
+
+
+def test_a_settled_bed_floats_without_gravity() -> None:
+    """A bed that has settled continues without gravity, with the packing that such a case needs: its place was refused."""
+    first = rb.simulate(bed(duration="20 ms"))
+    floating = bed(duration="40 ms").replaced({"damper.gravity": [0, 0, 0], "damper.packing": rb.Lattice()})
+    rest = rb.simulate(floating, start=first)
+    assert rest.ok
+    np.testing.assert_array_equal(rest.arrays.displacement[0], first.arrays.displacement[-1])
+    np.testing.assert_array_equal(rest.arrays.momentum[0], first.arrays.momentum[-1])
+    assert not rest.ledger.gravity.any()

@@ -36,6 +36,8 @@ _WITHOUT_HISTORY = (_core.HertzTsujiForce, _core.LinearForce, _core.PowerForce)
 """Laws whose coefficients may change while a contact is closed."""
 _SAME_MOTION = 1e-9
 """Largest error of the motion of a point with other modes, over its largest displacement or velocity."""
+_NAMED = 4
+"""Number of points that a message names."""
 _PHASES = {1: "touching", 2: "closed", 3: "recovering from a contact"}
 _SUMS = ("load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss")
 _AGAIN = "run the case again with rb.simulate, and continue that run"
@@ -242,7 +244,10 @@ def modal_start(
     """Return modal displacements and velocities with which all points continue to move as in the modes before."""
     old, new = before.lines(), after.lines()
     if old.keys() != new.keys() or before.decay.size != after.decay.size:
-        had, have = (f"{several(m.decay.size, 'mode')} and {several(len(m.lines()), 'point')}" for m in (before, after))
+        had, have = (
+            f"{several(model.decay.size, 'mode')} and {several(len(lines), 'point')} ({_names(list(lines))})"
+            for model, lines in ((before, old), (after, new))
+        )
         raise Hint(
             f"the structure has {have}, that of the run {had}; modes and points must be the same in number and name",
             "the same structure with other masses, stiffnesses or damping",
@@ -264,6 +269,11 @@ def modal_start(
             )
         starts.append(np.ascontiguousarray(start))
     return starts[0], starts[1]
+
+
+def _names(points: list[str]) -> str:
+    """Return the first names of points."""
+    return ", ".join(points[:_NAMED]) + (", ..." if len(points) > _NAMED else "")
 
 
 def from_start(raw: _core.Result, start: float, stops: int) -> _core.Result:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _SAME = 1e-6
 """Part of a time step, or of an interval between samples, to which times must agree."""
-_PARTICLES = ("position", "spin", "radius", "mass", "inertia", "species")
+_PARTICLES = ("radius", "mass", "inertia", "species")
 _LIMITS = {"tangential": "friction", "rolling": "coefficient"}
 """Number of a law of friction or rolling that may change, but not from or to zero."""
 
@@ -70,15 +70,24 @@ def pack_continued(case: Case, before: Case, end: RunEnd) -> Continuation:
     if state is None:
         raise DataError("the run has the state of another kind of run", "run the case again with rb.simulate")
     first = int(step)
-    prepared = prepare(_softened(case, softening), state.positions)
+    case = _softened(case, softening)
+    for index, (damper, positions) in enumerate(zip(case.particle_dampers, state.positions, strict=True)):
+        count = damper.contents.radius.size
+        if count != len(positions):
+            raise Hint(
+                f"the bed has {several(count, 'particle')}, that of the run {len(positions)}; both must be the same",
+                "the same particles and cavity",
+                ["dampers", index, "particles"],
+            )
+    prepared = prepare(case, state.positions)
     # The step of the run, if samples fall on it; a case that is the same continues bit by bit then.
     own = _with_step(prepared, state.dt, end.time)
-    if own is not None:
+    chosen = instance(case.method, Dem).dt
+    if own is not None and chosen in ("auto", instance(before.method, Dem).dt):
         packed = pack_particles(own)
         if _numbers(packed) == end.numbers:
             packed = packed.replace(steps=first + packed.steps, first_step=first, origin=float(origin))
             return Continuation(own, packed, state, is_same=True)
-    chosen = instance(case.method, Dem).dt
     longest = min(state.dt, prepared.step.limit.step) if chosen == "auto" else float(chosen)
     if own is None or longest < state.dt * (1 - _SAME) or longest > state.dt * (1 + _SAME):
         own = replace(prepared, step=_divided(prepared, longest, end.time))
@@ -127,11 +136,11 @@ def _divided(prepared: Prepared, longest: float, start: float) -> Step:
 
 def _check_changes(case: Case, before: Case, new: _core.DemProblem, old: _core.DemProblem) -> None:
     """Raise if a case differs from that of the run in what a bed cannot follow."""
-    start = np.asarray(old.mode_displacement)
+    start = np.ones(np.shape(old.mode_displacement))  # of all modes, so that any other shape changes it
     q, _ = modal_start(before.modes, case.modes, start, start)
     if not np.array_equal(q, start):
         raise Hint(
-            "the mode shapes of the structure differ from those of the run",
+            "the mode shapes of the structure differ from those of the run, as with other masses",
             "changes that leave them as they are: frequencies, damping, loads",
             ["structure"],
         )
@@ -158,7 +167,7 @@ def _differences(cavity: _core.Cavity, other: _core.Cavity) -> Iterator[tuple[st
     """Yield the fields of a cavity that differ, and what they are."""
     for name in _PARTICLES:
         if not np.array_equal(getattr(cavity, name), getattr(other, name)):
-            yield name, "the particles and their start"
+            yield name, "the particles"
     own, others = ({"": [each.walls, each.solids, each.period]} for each in (cavity, other))
     if fingerprint(own) != fingerprint(others):
         yield "walls", "the cavity"
