@@ -35,6 +35,7 @@ _TRANSIENT = 0.05  # part by which the force in a sweep may exceed its limit wit
 _AROUND = 1.3  # of the notches, in which the sweep is computed, over their ends
 _POINTS = 24  # of a cycle at the highest frequency there
 _HALVINGS = 16  # of an interval between frequencies
+_ABOVE = 1e-9  # of a limit that is not reached, so that rounding makes no notch
 _PASSES = 60  # halvings of an interval of the limit for an RMS force
 _UNITS = ("N", "m/s^2")
 _PAIRS = '[("5 Hz", "1 g"), ("100 Hz", "1 g")]'
@@ -373,7 +374,7 @@ def _density_for(square: float, frequency: FloatArray, before: FloatArray, gain:
 
     low, high = 0.0, float((before * gain).max())
     if reached(high) <= square:
-        return high
+        return high * (1 + _ABOVE)
     for _ in range(_PASSES):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if reached(middle) <= square else (low, middle)
