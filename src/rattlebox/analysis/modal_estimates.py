@@ -147,7 +147,7 @@ def damping_as(value: T, wanted: Damping, *, given: Damping = "damping_ratio") -
     Raises
     ------
     ValueError
-        If a measure is unknown, or a value is negative.
+        If a measure is unknown, a value is negative, or a motion without oscillation is to have a decrement.
 
     Notes
     -----
@@ -177,6 +177,8 @@ def damping_as(value: T, wanted: Damping, *, given: Damping = "damping_ratio") -
         if wanted == "quality_factor":
             found = 0.5 / zeta
         elif wanted == "logarithmic_decrement":
+            if np.any(zeta >= 1):
+                raise ValueError("with a damping ratio of 1 or more a motion does not oscillate and has no decrement")
             found = 2 * math.pi * zeta / np.sqrt(1 - zeta**2)
         else:
             found = _PER_RATIO[wanted] * zeta

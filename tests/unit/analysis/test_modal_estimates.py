@@ -140,6 +140,7 @@ def test_measures_of_damping_lead_back(name: Any) -> None:
         (lambda: analysis.circle_fit(oscillator(0.01, samples=7)), "at least 5"),
         (lambda: analysis.damping_as(0.01, "Q"), "quality_factor"),
         (lambda: analysis.damping_as(-0.01, "loss_factor"), "negative"),
+        (lambda: analysis.damping_as([0.9, 1.2], "logarithmic_decrement"), "does not oscillate"),
     ],
 )
 def test_wrong_arguments_are_refused(call: Any, message: str) -> None:
