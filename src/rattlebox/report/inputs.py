@@ -153,7 +153,8 @@ def _text(value: Any, unit: str | None = None) -> str:
         return items[0]
     if len(items) > _MAX_NUMBERS:
         if all(isinstance(item, (int, float)) for item in value):
-            return f"{len(items)} numbers, {items[0]} to {items[-1]}"
+            low, high = (_text(each(value), unit) for each in (min, max))
+            return f"{len(items)} numbers from {low} to {high}"
         return f"{'; '.join(items[:_MAX_NUMBERS])}; and {len(items) - _MAX_NUMBERS} more"
     numbers, units = zip(*(item.partition(" ")[::2] for item in items), strict=True)
     if len(set(units)) == 1 and all(isinstance(item, float) for item in value):

@@ -295,7 +295,7 @@ def read_amplitudes(amplitudes: Sequence[Any] | Spaced, omega: float | None = No
             return number
         if omega is None:
             raise Hint(
-                f"{amplitude!r} is an acceleration, but the parameters change the frequency: displacements (m) are needed",
+                f"{amplitude!r} is an acceleration, but parameters or levels change the structure: lengths (m) are needed",
                 f"a / (2 pi f)^2, such as {quantity(number / (2 * math.pi * 50) ** 2, 'm', 3)!r} at 50 Hz",
                 ["amplitudes"],
             )

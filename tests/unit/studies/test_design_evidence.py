@@ -45,7 +45,7 @@ def test_the_curve_of_every_trial_is_that_of_the_damping_curve() -> None:
     """Each trial has its damping curve with interval, at each level; before, only the least value of it was kept."""
     amplitudes = ["1 mm", "2 mm"]
     levels = {"damper.gravity": [[0, 0, -9.81], [-9.81, 0, 0]]}
-    result = searched({NUMBER: [1, 2]}, amplitudes, levels=levels)
+    result = searched({NUMBER: [1, 2]}, amplitudes, levels=levels or None)
     for trial, number in enumerate((1, 2)):
         for level, gravity in enumerate(levels["damper.gravity"]):
             case = shaken_bed(number=number, gravity=gravity)
@@ -79,7 +79,9 @@ def test_a_trial_without_all_values_keeps_its_curve() -> None:
 
 def test_the_structure_alone_decides_at_a_small_amplitude(tmp_path: Path) -> None:
     """A bed that is locked at the worst amplitude is stated; before, the scatter of locked beds made a ranking."""
-    with pytest.warns(UserWarning, match=r"at 10 µm, which decides.*2 of 2 trials.*structure alone \(2 %\)"):
+    with pytest.warns(
+        UserWarning, match=r"at 10 µm \(0\.403 g\), which decides.*2 of 2 trials.*structure alone \(2 %\)"
+    ):
         result = searched({NUMBER: [1, 2]}, ["10 um", "2 mm"], store=tmp_path / "design")
     assert result.bare_decides.all()
     rb.write_report(result, tmp_path / "report.html")
@@ -106,10 +108,25 @@ def test_trials_that_cannot_be_told_apart_are_named(tmp_path: Path, capsys: pyte
     assert any("cannot be told apart" in line for line in KIND.answer(result))
     table = list(KIND.tables(result))[-1]
     assert table.title == "Damping ratio over the amplitude" and len(table.rows) == 6
-    assert table.header == ("trial", "1 mm", "2 mm", "structure alone")
+    assert table.header == ("trial", "1 mm (40.3 g)", "2 mm (80.5 g)", "structure alone")
     assert sum("±" in cell for row in table.rows for cell in row) == np.isfinite(result.damping_curve_interval).sum()
     *_, picture = KIND.pictures(result)
-    picture.draw().savefig(tmp_path / "curves.png")
+    figure = picture.draw()
+    figure.savefig(tmp_path / "curves.png")
+    assert figure.axes[0].child_axes[0].get_xlabel() == "Acceleration (g)"  # amplitudes were lengths only
+
+
+def test_amplitudes_in_g_need_one_structure() -> None:
+    """Amplitudes in g are refused where parameters or levels change the structure; only numbers of it as parameters were."""
+    stiffer = rb.SDOF(mass="0.05 kg", frequency="200 Hz", damping_ratio=0.02)
+    for parameters, levels in (
+        ({"structure.frequency": [100, 200]}, {}),
+        ({"structure": [shaken_bed().structure, stiffer]}, {}),
+        ({NUMBER: [1, 2]}, {"structure.frequency": [100, 200]}),
+    ):
+        with pytest.raises(rb.CaseError, match="change the structure"):
+            searched(parameters, ["20 g", "60 g"], levels=levels or None)
+        assert "frequency" not in searched(parameters, ["1 mm", "2 mm"], levels=levels or None, packings=1).attrs
 
 
 def planted(values: Any, half: Any, front: list[int], goals: tuple[str, ...]) -> xr.Dataset:

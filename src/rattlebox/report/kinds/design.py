@@ -19,7 +19,7 @@ from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
 from rattlebox.report.parts import Call, Limit, Picture, Table
-from rattlebox.studies.design.evidence import CURVE, CYCLES_RUN, DROPPED, LEVEL, PACKINGS_RUN, curves_of
+from rattlebox.studies.design.evidence import CURVE, CYCLES_RUN, DROPPED, LEVEL, PACKINGS_RUN, amplitude_text, curves_of
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.run.estimate import duration
 from rattlebox.studies.work.measures import INTERVAL, MEASURES
@@ -170,7 +170,7 @@ def _curve_table(study: xr.Dataset) -> Table:
     header = (
         "trial",
         *ran.values(),
-        *(amount(each, "m") for each in study.amplitude.values.tolist()),
+        *(amplitude_text(study, each) for each in study.amplitude.values.tolist()),
         "structure alone",
     )
     left = int(study.feasible.sum()) - len(trials)

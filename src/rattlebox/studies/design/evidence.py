@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.phrases import counted, joined
-from rattlebox._util.quantities import amount
+from rattlebox._util.quantities import STANDARD_GRAVITY, amount
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.work.measures import INTERVAL
 
@@ -124,7 +125,7 @@ def deciding_note(found: xr.Dataset) -> str:
     if not bool(best[BARE_DECIDES]):
         return ""
     curve = best[CURVE].min(LEVEL) if LEVEL in best[CURVE].dims else best[CURVE]
-    where = amount(float(curve.amplitude[int(np.nanargmin(curve.values))]), "m")
+    where = amplitude_text(found, float(curve.amplitude[int(np.nanargmin(curve.values))]))
     count, usable = int(found[BARE_DECIDES].sum()), int(found.feasible.sum())
     which = "the only trial" if usable == 1 else f"{count} of {usable} trials, the best one included,"
     alone = amount(float(best[BARE].min()), "%", 3)
@@ -178,5 +179,14 @@ def curves_of(found: xr.Dataset, trials: list[int]) -> dict[str, xr.Dataset]:
             mean, half = each[CURVE].reset_coords(drop=True), each[CURVE + INTERVAL].reset_coords(drop=True)
             parts = {"damping_ratio": mean, "lower": mean - half, "upper": mean + half}
             bare = each[BARE].reset_coords(drop=True).broadcast_like(mean)
-            curves[name] = mean.to_dataset(name="damping_ratio").assign({**parts, "bare": bare})
+            curve = mean.to_dataset(name="damping_ratio").assign({**parts, "bare": bare})
+            curves[name] = curve.assign_attrs({"frequency": found.attrs.get("frequency", math.nan)})
     return curves
+
+
+def amplitude_text(found: xr.Dataset, amplitude: float) -> str:
+    """Return an amplitude as length and, at the frequency of the mode, in g."""
+    frequency, text = found.attrs.get("frequency"), amount(amplitude, "m")
+    if frequency is None:
+        return text
+    return f"{text} ({amount(amplitude * (2 * math.pi * frequency) ** 2 / STANDARD_GRAVITY, 'g', 3)})"

@@ -104,6 +104,8 @@ def _with_evidence(search: DesignSearch, found: xr.Dataset, trials: Sequence[Any
             levels,
             [np.shape(each)[-1] if each is not None else search.count for each in ratios],
         )
+        if search.frequency is not None:
+            found.attrs["frequency"] = search.frequency
     if not found.front.size:
         found.attrs["warnings"] = [_none_feasible([str(reason) for reason in found.reason.values])]
     elif note := deciding_note(found):

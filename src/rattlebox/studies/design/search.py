@@ -82,6 +82,7 @@ class DesignSearch:
     options: dict[str, Any]
     drop: bool = False
     precision: float | None = None  # Half width over mean below which no packings are added
+    frequency: float | None = None  # Natural frequency of the mode [Hz]; None if it may vary
     where: dict[str, Any] = field(default_factory=dict)
     part: tuple[int, int] | None = None  # Cycles to skip and to evaluate after which runs stop; None for all
 

@@ -224,11 +224,12 @@ class Design(Study):
         objectives = read_objectives(self.objective)
         names = [each.name for each in objectives]
         measured = [name for name in names if name not in (ADDED_MASS, DAMPING_RATIO)]
-        curve = None
+        curve = mode = None
         if self.amplitudes is not None:
-            fixed = not any("structure." in path for path in map(str, parameters))  # a path, or a tuple of several
-            omega = mode_of(self.case, self.mode, self.point).omega if fixed else None
-            amplitudes = tuple(read_amplitudes(self.amplitudes, omega).tolist())
+            # Keys are paths or tuples of several; amplitudes in g need one frequency of the mode for all trials and levels.
+            if "structure" not in f"{list(parameters)} {list(self.levels or ())}":
+                mode = mode_of(self.case, self.mode, self.point)
+            amplitudes = tuple(read_amplitudes(self.amplitudes, None if mode is None else mode.omega).tolist())
             curve = Curve(amplitudes, self.way, self.mode, self.cycles)
         if (curve is None) == (DAMPING_RATIO in names):
             raise (
@@ -250,6 +251,7 @@ class Design(Study):
             robust=self.robust,
             limit=None if self.max_added_mass is None else float(self.max_added_mass),
             curve=curve,
+            frequency=None if mode is None else mode.frequency,
             options={
                 "skip": float(self.skip),
                 "cycles": self.cycles,
