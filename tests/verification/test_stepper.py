@@ -392,6 +392,24 @@ def test_another_gravity_keeps_the_balance() -> None:
         assert stepper.energy_residual < 3e-3
 
 
+@pytest.mark.parametrize(("method", "events"), [(rb.EventDriven, 2), (rb.Newton, 1)])
+def test_max_events_bounds_the_contacts_of_a_step(method: Any, events: int) -> None:
+    """A step with n contacts needs 2 n + 1 events, or n + 1 with hard impacts; the page said n, and no test counted."""
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="8 mm", material="steel"), gap="0.4 mm", contact=rb.Tsuji(restitution=0.7)
+    )
+    # At 0.4 m/s the walls meet the ball at 1 ms, 3.9 ms and 7.9 ms.
+    for contacts, end in enumerate((0.5e-3, 2e-3, 6e-3, 9e-3)):
+        enough = events * contacts + 1
+        for limit in range(1, enough + 1):
+            stepper = rb.Stepper(damper, structure_mass="2 kg", velocity=0.4, method=method(max_events=limit))
+            if limit == enough:
+                assert (stepper.advance(end, velocity=0.4).force != 0) == (contacts > 0)
+            else:
+                with pytest.raises(rb.StepError):
+                    stepper.advance(end, velocity=0.4)
+
+
 @pytest.mark.parametrize(
     ("system", "given", "status", "named"),
     [
