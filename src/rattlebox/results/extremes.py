@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
@@ -23,14 +24,13 @@ if TYPE_CHECKING:
     from .record import Record
 
 FloatArray = NDArray[np.float64]
+_FLOOR = re.compile(r"storey [1-9]\d*")
 
 
 def storeys_in(points: Iterable[str]) -> list[str]:
-    """Return the points of a building that are floors, from the ground up: "storey 1", "storey 2", ..."""
-    known, storeys = set(points), list[str]()
-    while (storey := f"storey {len(storeys) + 1}") in known:
-        storeys.append(storey)
-    return storeys
+    """Return the points of a building that are floors, from the ground up; none if a floor between them is missing."""
+    floors = {int(name.removeprefix("storey ")): name for name in points if _FLOOR.fullmatch(name)}
+    return [floors[k] for k in sorted(floors)] if sorted(floors) == list(range(1, len(floors) + 1)) else []
 
 
 def peak_drifts(arrays: RunArrays) -> dict[str, float]:
@@ -71,10 +71,10 @@ def own_points(case: Case) -> list[str]:
 
 
 def require_storeys(points: Iterable[str]) -> None:
-    """Raise if a structure has no floors, between which there could be a drift."""
+    """Raise if a structure has no floors, between which there could be a drift, or not all of them."""
     if not storeys_in(points):
         raise Hint(
-            'largest_drift needs the floors of a building, points "storey 1", "storey 2", ...',
+            'largest_drift needs all floors of a building, points "storey 1", "storey 2", ...',
             'ShearBuilding; or point = "a - b", whose peak is the drift between two points',
         )
 

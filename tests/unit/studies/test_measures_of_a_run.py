@@ -94,11 +94,18 @@ def test_drifts_need_storeys_and_continuations_refuse_them() -> None:
     """A drift without storeys raises before anything runs, and so does a continuation; an acceleration needs one point."""
     mass = rb.SDOF(mass="20 kg", frequency="10 Hz")
     box = rb.Case(structure=mass, base=QUAKE, duration="1 s")
-    with pytest.raises(rb.CaseError, match="needs the floors of a building"):
+    with pytest.raises(rb.CaseError, match="needs all floors of a building"):
         rb.sweep(box, {"base.amplitude": [1.0]}, ["largest_drift"], progress=False)
-    with pytest.raises(rb.CaseError, match="needs the floors of a building"):
+    with pytest.raises(rb.CaseError, match="needs all floors of a building"):
         largest_drift(rb.simulate(box))
     assert float(rb.sweep(box, {"base.amplitude": [1.0]}, ["largest_acceleration"]).largest_acceleration[0]) > 0.5
+    for upper in (3, 10):  # of a model with some floors, that of the first one counted as the largest of all
+        shapes = {"storey 1": [0.01, 0.02], f"storey {upper}": [0.02, -0.01]}
+        some = rb.Modal(frequencies=[2, 6], damping_ratio=0.02, shapes=shapes, participation=[60, 20])
+        run = rb.simulate(box.model_copy(update={"structure": some}), progress=False)
+        with pytest.raises(rb.CaseError, match="needs all floors of a building"):
+            largest_drift(run)
+        assert "drift" not in str(run.summary())
     shaken = rb.reference_case(duration=1.0).model_copy(
         update={"structure": rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="5 Hz")), "loads": ()}
     )
@@ -126,7 +133,7 @@ def test_structures_of_an_axis_without_the_point() -> None:
     mass = rb.SDOF(mass="1 t", frequency="2 Hz")
     for options, message in (
         ({"point": "storey 1"}, "has no point 'storey 1'"),
-        ({}, "needs the floors of a building"),
+        ({}, "needs all floors of a building"),
     ):
         measures = ["peak"] if options else ["largest_drift"]
         with pytest.raises(rb.CaseError, match=message):
