@@ -32,6 +32,7 @@ from rattlebox.model.cavities import Box as Box
 from rattlebox.model.cavities import Cylinder as Cylinder
 from rattlebox.model.cavities import SphericalCavity as SphericalCavity
 from rattlebox.model.contact_pairs import contact_pairs as contact_pairs
+from rattlebox.model.contact_table import PairLaws as PairLaws
 from rattlebox.model.contacts import Curve as Curve
 from rattlebox.model.contacts import Linear as Linear
 from rattlebox.model.contacts import PowerLaw as PowerLaw
@@ -66,7 +67,6 @@ from rattlebox.model.packing import Positions as Positions
 from rattlebox.model.packing import Settled as Settled
 from rattlebox.model.pairs import Body as Body
 from rattlebox.model.pairs import Pair as Pair
-from rattlebox.model.particle_damper import PairLaws as PairLaws
 from rattlebox.model.particle_damper import ParticleDamper as ParticleDamper
 from rattlebox.model.particles import LogNormal as LogNormal
 from rattlebox.model.particles import NormalSizes as NormalSizes

@@ -18,8 +18,9 @@ from rattlebox.prepare.time_step import MIN_STEPS_PER_CONTACT, contact_limits
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
+    from rattlebox.model.contact_table import ContactTable
     from rattlebox.model.dampers import ImpactDamper
-    from rattlebox.model.particle_damper import ContactTable, ParticleDamper
+    from rattlebox.model.particle_damper import ParticleDamper
     from rattlebox.model.stops import Stop
     from rattlebox.prepare.particles import Prepared
     from rattlebox.results.arrays import Table

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, WithJsonSchema, model_validator
 
-from rattlebox._util.exceptions import ResourceError, named
+from rattlebox._util.exceptions import ResourceError
 from rattlebox._util.frozen import complete
 from rattlebox._util.narrow import present
 from rattlebox._util.phrases import counted, joined
@@ -22,16 +22,16 @@ from rattlebox._util.quantities import amount
 
 from .also_accepts import AlsoAccepts
 from .any_cavity import AnyCavity
-from .base import Part
 from .bodies import AnyBody
 from .cavities import Cavity
 from .cells import overlapping_cells, separation
-from .contacts import AnyContact, Linear
+from .contact_table import WALL, ContactTable, Entry, PairLaws, check_alike
+from .contacts import AnyContact
 from .crowds import Crowd, bed_density
 from .damper_base import Damper
 from .elementwise import Vector
 from .errors import Hint, at, several
-from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
+from .friction import AnyFriction, AnyRolling, Mindlin, Rolling
 from .interior import Interior
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
@@ -44,7 +44,6 @@ from .space import AXES, Accelerations, Direction, Lengths, Velocities, unit_vec
 from .units import Number, Whole
 from .walls import AnyFace, Wall
 
-WALL = "wall"
 MAX_DAMPERS = 10_000  # identical ones at a point
 _BYTES = 1000  # smallest memory of a particle and its contacts
 
@@ -55,16 +54,6 @@ def memory() -> float:
         return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
     except (AttributeError, OSError, ValueError):  # not on every system
         return math.inf
-
-
-def _two_names(value: object) -> Any:
-    """Raise if a pair has one name; a pair of equal particles has the same name twice."""
-    names = [value] if isinstance(value, str) else value
-    if isinstance(names, (list, tuple)) and len(names) == 1 and isinstance(names[0], str):
-        one = names[0]
-        like = f'["{one}", "{WALL}"], or ["{one}", "{one}"] among themselves' if one != WALL else f'["steel", "{WALL}"]'
-        raise Hint("two names are needed", like)
-    return value
 
 
 def _softening(value: object) -> Any:
@@ -83,24 +72,6 @@ def _rows(value: object) -> Any:
 
 
 _FACTOR: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=1, le=1e6)])
-
-
-class PairLaws(Part):
-    """Laws between two species, or a species and the wall, in place of the laws of the damper.
-
-    Parameters
-    ----------
-    between
-        Names of two species, or of a species and "wall".
-    contact, friction, rolling
-        Laws of the pair; default those of the damper. friction = 0 is no friction.
-    """
-
-    field_names: ClassVar[tuple[str, ...]] = ("pairs",)
-    between: Annotated[tuple[str, str], BeforeValidator(_two_names)] = Field(examples=[["shot", "wall"]])
-    contact: AnyContact | None = None
-    friction: AnyFriction | None = None
-    rolling: AnyRolling | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,46 +93,6 @@ class Start:
     position: Vector
     velocity: Vector
     spin: Vector
-
-
-@dataclass(frozen=True)
-class Entry:
-    """Laws of one kind of pair."""
-
-    pair: Pair
-    contact: AnyContact
-    friction: Friction | None
-    rolling: Rolling | None
-    names: tuple[str, str]
-    at_wall: bool
-    place: tuple[str | int, ...]
-    friction_place: tuple[str | int, ...]
-    rolling_place: tuple[str | int, ...]
-
-
-@dataclass(frozen=True)
-class ContactTable:
-    """Entries of all kinds of pairs in a damper."""
-
-    entries: tuple[Entry, ...]
-    particle_entry: NDArray[np.int64]  # Index of the entry of two species, (k, k)
-    wall_entry: NDArray[np.int64]  # Index of the entry of a species and a kind of wall, (k, w)
-    wall_kind: NDArray[np.int64]  # Kind of each wall, (walls,)
-
-    def at_wall(self, species: int, wall: int) -> Entry:
-        """Return the entry of a species and a wall."""
-        return self.entries[int(self.wall_entry[species, self.wall_kind[wall]])]
-
-
-def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:
-    """Raise if the given words, each with its place, differ: such laws cannot be combined in a damper."""
-    for word, place in given:
-        if word != given[0][0]:
-            raise Hint(
-                f"{word} and {given[0][0]} cannot be combined: one {what} is needed among particles, and one at walls",
-                f"{given[0][0]} in both",
-                place,
-            )
 
 
 class ParticleDamper(Damper):
@@ -460,37 +391,12 @@ class ParticleDamper(Damper):
         for walls in (False, True):
             entries = [entry for entry in self._laws() if entry.at_wall == walls]
             contacts = [(entry.contact, entry.place) for entry in entries]
-            _check_alike("kind of law", [(law.kind, place) for law, place in contacts])
-            _check_alike("ending", [(law.ending, place) for law, place in contacts if hasattr(law, "ending")])
+            check_alike("kind of law", [(law.kind, place) for law, place in contacts])
+            check_alike("ending", [(law.ending, place) for law, place in contacts if hasattr(law, "ending")])
             for entry in entries:
-                self._check_friction(entry)
+                entry.check_friction()
             frictions = [(entry.friction, entry.friction_place) for entry in entries]
-            _check_alike("kind of friction", [(law.kind, place) for law, place in frictions if law and law.coefficient])
-
-    def _check_friction(self, entry: Entry) -> None:
-        between = " and ".join(entry.names)
-        if (
-            entry.rolling is not None
-            and entry.rolling.coefficient
-            and not (entry.friction and entry.friction.coefficient)
-        ):
-            raise Hint(
-                f"rolling resistance needs friction, and there is none between {between}",
-                f"{named(entry.friction_place)} = 0.3, or no rolling",
-                entry.rolling_place,
-            )
-        if isinstance(entry.friction, Mindlin) and entry.friction.coefficient and isinstance(entry.contact, Linear):
-            raise Hint(
-                f"Mindlin's stiffness needs a Hertz contact, but that of {between} is linear",
-                f'friction = {{ kind = "spring", coefficient = {entry.friction.coefficient:g}, ratio = 0.286 }}',
-                entry.friction_place,
-            )
-        if isinstance(entry.friction, LinearSpring) and entry.friction.ratio and not isinstance(entry.contact, Linear):
-            raise Hint(
-                f"a ratio of stiffnesses needs a linear contact, but that of {between} is not linear",
-                "friction = 0.3, for Mindlin's stiffness, or stiffness",
-                entry.friction_place,
-            )
+            check_alike("kind of friction", [(law.kind, place) for law, place in frictions if law and law.coefficient])
 
     def _check_rotation(self) -> None:
         """Raise if images of a periodic cavity would be in another field than the particles."""

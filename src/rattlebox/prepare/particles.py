@@ -39,7 +39,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
-    from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
+    from rattlebox.model.contact_table import ContactTable, Entry
+    from rattlebox.model.particle_damper import ParticleDamper
     from rattlebox.model.rotation import Rotation
 
     Array = NDArray[np.float64]

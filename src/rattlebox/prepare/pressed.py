@@ -13,7 +13,8 @@ from rattlebox.prepare.time_step import pack_normal
 
 if TYPE_CHECKING:
     from rattlebox.core._core import NormalForce
-    from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
+    from rattlebox.model.contact_table import ContactTable, Entry
+    from rattlebox.model.particle_damper import ParticleDamper
 
 DEEPER = 3.0
 """Accepted overlap over that of an impact of two particles at the largest expected speed. Particles that others press

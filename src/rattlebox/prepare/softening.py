@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
-    from rattlebox.model.particle_damper import Entry, ParticleDamper
+    from rattlebox.model.contact_table import Entry
+    from rattlebox.model.particle_damper import ParticleDamper
 
 PACKED = 0.58
 """Volume fraction of particles in a settled bed."""

@@ -20,7 +20,8 @@ from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE, CavityMo
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
-    from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
+    from rattlebox.model.contact_table import ContactTable, Entry
+    from rattlebox.model.particle_damper import ParticleDamper
 
 BOUND = 0.2
 """Longest step over the duration of the shortest contact. The integration of a single Hertz contact is stable up to half of
