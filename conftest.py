@@ -1,7 +1,10 @@
 """Settings of all tests."""
 
+import doctest
 import gc
 import os
+import pydoc
+import re
 import signal
 import sys
 from collections.abc import Iterator
@@ -31,26 +34,29 @@ def examples_write_into_an_own_folder(request: pytest.FixtureRequest, monkeypatc
         monkeypatch.chdir(request.getfixturevalue("tmp_path"))
 
 
-@cache
-def _examples_of_orbits() -> dict[str, object]:
-    """Return the periodic motion of the example of `find_orbit`, and the branch of that of `continue_orbit`."""
-    import doctest
-
-    import rattlebox as rb
-
-    (example,) = doctest.DocTestFinder(recurse=False).find(rb.find_orbit, "find_orbit")
+def _names_before(text: str) -> dict[str, object]:
+    """Return the names from which the example of a docstring goes on: those of "the example of `rattlebox.find_orbit`"."""
     names: dict[str, object] = {}
-    for line in example.examples[:-1]:
-        exec(line.source, names)
-    branch = rb.continue_orbit(names["orbit"], "load.frequency", ("32 Hz", "38 Hz"), progress=False)
-    return {"orbit": names["orbit"], "branch": branch}
+    for name in re.findall(r"example\s+of\s+`(rattlebox\.[\w.]+)`", text):
+        names |= _names_of_example(name)
+    return names
+
+
+@cache
+def _names_of_example(name: str) -> dict[str, object]:
+    """Return the names of the example of a public function."""
+    (example,) = doctest.DocTestFinder(recurse=False).find(pydoc.locate(name), name)
+    scope = example.globs | _names_before(example.docstring or "")
+    for line in example.examples:
+        exec(line.source, scope)
+    return {key: value for key, value in scope.items() if key not in example.globs}
 
 
 @pytest.fixture(autouse=True)
 def examples_go_on_from_others(request: pytest.FixtureRequest, doctest_namespace: dict[str, object]) -> None:
-    """Give examples about periodic motions the motion and the branch of the examples to which they refer."""
-    if isinstance(request.node, pytest.DoctestItem) and ".studies.orbits." in request.node.name:
-        doctest_namespace.update(_examples_of_orbits())
+    """Give an example the names of the examples to which its docstring refers."""
+    if isinstance(request.node, pytest.DoctestItem):
+        doctest_namespace.update(_names_before(request.node.dtest.docstring or ""))
 
 
 @pytest.fixture(autouse=True)

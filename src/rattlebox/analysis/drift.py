@@ -40,10 +40,8 @@ def drift(run: Run, upper: str, lower: str | None = None) -> xarray.DataArray:
 
     Examples
     --------
-    >>> import rattlebox as rb
-    >>> tower = rb.ShearBuilding(masses=["50 t"] * 2, stiffnesses=["60 MN/m"] * 2, damping_ratio=0.02)
-    >>> push = rb.HalfSine(amplitude="0.2 g", duration="0.2 s")
-    >>> run = rb.simulate(rb.Case(structure=tower, base=push, duration="2 s"))
+    The run of the example of `rattlebox.analysis.largest_drift`:
+
     >>> float(abs(drift(run, "storey 1")).max()) > float(abs(drift(run, "storey 2", "storey 1")).max())
     True
     """

@@ -141,10 +141,8 @@ def largest_acceleration(run: Record) -> float:
 
     Examples
     --------
-    >>> import rattlebox as rb
-    >>> tower = rb.ShearBuilding(masses=["50 t"] * 2, stiffnesses=["60 MN/m"] * 2, damping_ratio=0.02)
-    >>> push = rb.HalfSine(amplitude="0.2 g", duration="0.2 s")
-    >>> run = rb.simulate(rb.Case(structure=tower, base=push, duration="2 s"))
+    The run of the example of `rattlebox.analysis.largest_drift`:
+
     >>> largest_acceleration(run) == run.summary().values["peak_acceleration[storey 2]"]
     True
     """
