@@ -31,6 +31,7 @@ def check_mat(content: bytes) -> None:
     if 0 in content[:4]:
         _check_level_4(content)
         return
+    # The header ends with the order of bytes; version 7.3 is HDF5, which its own library checks.
     order = {b"IM": "<", b"MI": ">"}.get(content[126:128])
     if order is None:
         raise ValueError("it has no header of a MAT file")
@@ -47,6 +48,7 @@ def check_mat(content: bytes) -> None:
         offset += 8
         if size > len(content) - offset:
             raise ValueError("the file is cut off")
+        # Variables follow each other, compressed or not, and must fill the size that they state.
         element = content[offset : offset + size]
         if kind == _COMPRESSED:
             unpacker = zlib.decompressobj()

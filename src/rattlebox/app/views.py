@@ -42,6 +42,7 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     time = motion.time.values
     rows = _rows(time.size)
     arrays: Arrays = {"time": time[rows]}
+    # A shaker has no point of its own that moves: its base is shown.
     points = (
         [str(point) for point in motion.point.values] if "displacement" in motion and run.case.modes.decay.size else []
     )
@@ -50,6 +51,7 @@ def view_of_run(run: rb.Run, bare: rb.Run | None = None) -> bytes:
     if not points:
         arrays["displacement base"] = 1e3 * _base(run)[rows]
         points = ["base"]
+    # One unit for all energies, so that curves can be compared.
     energies = {name: _total(energy[name])[rows] for name in _ENERGIES if name in energy}
     unit, scale = prefixed("J", energies.values())
     arrays |= {name: scale * values for name, values in energies.items()}

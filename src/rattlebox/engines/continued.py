@@ -15,7 +15,6 @@ from rattlebox._util.quantities import amount
 from rattlebox.core import _core
 from rattlebox.core.choose import instructions
 from rattlebox.engines.fingerprint import fingerprint
-from rattlebox.engines.status import contact_name
 from rattlebox.model.errors import Hint, several
 from rattlebox.model.units import in_si
 from rattlebox.prepare.pack import pack
@@ -75,6 +74,7 @@ def checked_end(case: Case, run: Run) -> RunEnd:
         if not method.has_stepper:
             name = type(method).__name__
             raise Hint(f"runs of the method {name} cannot be continued", "another method from the start", ["method"])
+    # The run has a state at its end, of the program that would continue it.
     end = run.end
     if run.status not in ("finished", "interrupted"):
         raise Hint(f"the run has the status {run.status} and cannot be continued", "a run that reached its end")
@@ -93,6 +93,7 @@ def checked_end(case: Case, run: Run) -> RunEnd:
             f"{here[0]} with the core {here[1]}",
             _AGAIN,
         )
+    # The case is one that the same engine computes further.
     if bool(case.particle_dampers) != bool(before.particle_dampers):
         raise Hint("the run and the case must both have particle dampers, or none", "the same kind of dampers")
     if case.method.kind != before.method.kind:
@@ -164,8 +165,7 @@ def _check_changes(
     m, stops = old.mode_decay.size, len(case.each_stop)
     places: list[tuple[str | int, ...]] = [("dampers", index) for index in range(len(case.impact_dampers))]
     places += [("stops", index) for index in range(stops)]
-    names = [damper.label(index) for index, damper in enumerate(case.impact_dampers)]
-    names += [stop.name for stop in case.each_stop]
+    # The same number of balls in each damper.
     counts, before_counts = ([damper.mass.size for damper in packed.dampers] for packed in (new, old))
     if counts != before_counts:
         have, had = (_row_words(each) for each in (counts, before_counts))
@@ -176,13 +176,14 @@ def _check_changes(
     before_q = motion[: 2 * m : 2]
     q, p = modal_start(run.case.modes, case.modes, before_q, motion[1 : 2 * m : 2])
     position = motion[2 * m :]
-    contact = first = 0
+    names, contact, first = case.contact_names, 0, 0
     for damper, earlier, place in zip(new.dampers, old.dampers, places, strict=True):
         row = position[first : first + damper.mass.size]
         gaps, before_gaps = _gaps(damper, row, q), _gaps(earlier, row, before_q)
         size = float(damper.clearance) + float(np.abs(damper.shape * q).sum())
         for gap, before_gap in zip(gaps, before_gaps, strict=True):
-            where, phase = contact_name(names, counts, contact), _PHASES.get(int(phases[contact]), "")
+            where, phase = names[contact], _PHASES.get(int(phases[contact]), "")
+            # Bodies that touch keep their overlap; those that do not must have room in the new case.
             if phase and abs(gap - before_gap) > _SAME_MOTION * size:
                 raise Hint(
                     f"{where} is {phase} at the end of the run, and with the gap of the case its overlap would change "

@@ -250,10 +250,12 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
     dampers, time = case.particle_dampers, raw.time
     shapes = [cavity.shape for cavity in packed.cavities]
     displacement = np.stack([raw.q @ shape for shape in shapes], axis=1)
+    # Positions and forces in a cavity that turns are those in its axes; the structure feels them in those of the machine.
     inside, turning_force, on_structure, torque = _in_turning_cavities(case, raw, displacement)
     base = np.zeros((3, time.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.multiply.outer(acceleration.motion(time), direction_of_base(dampers, signal))
+    # Particles at the end, from which another run can continue.
     ends = dem.state().cavities
     contents = [damper.contents for damper in dampers]
     fixed = {name: np.concatenate([getattr(part, name) for part in contents]) for name in ("radius", "mass", "species")}

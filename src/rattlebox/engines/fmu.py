@@ -221,6 +221,7 @@ def _variables(
         for number, end in enumerate(ends):
             yield Variable(name + end, reference + number, unit, description, **more)
 
+    # Parameters, then inputs, then outputs: importers show them in this order.
     for number, end in enumerate(ends):
         yield Variable(
             f"gravity{end}", GRAVITY + number, "m/s2", "gravity", "parameter", "tunable", float(stepper.gravity[number])

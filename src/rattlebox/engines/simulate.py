@@ -26,7 +26,7 @@ from rattlebox.engines.continued import (
 )
 from rattlebox.engines.responses import structure_arrays
 from rattlebox.engines.run_notes import extrapolation_notes, impact_notes, simultaneous_notes, vibration_notes
-from rattlebox.engines.status import contact_name, describe, final_status
+from rattlebox.engines.status import describe, final_status
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Output
@@ -301,8 +301,7 @@ def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tup
         if raw.status == Status.finished or end != Status.finished:
             time = case.duration if raw.status == Status.finished else raw.stopped_at
             return describe(end, time, "", ledger.energy_residual if end else 0.0, case.method.kind)
-    counts = [*(len(damper.balls) for damper in case.impact_dampers), *(0 for _ in case.each_stop)]
-    contact = contact_name(arrays.dampers, counts, raw.stopped_contact)
+    contact = case.contact_names[raw.stopped_contact] if raw.stopped_contact >= 0 else ""
     return describe(raw.status, raw.stopped_at, contact, raw.stopped_value, case.method.kind)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -90,18 +89,6 @@ def final_status(
     floor = mass * _core.speed_at_rest**2 + held
     balanced = ledger.is_balanced(limit, permitted=permitted, floor=floor, rounding=rounding)
     return Status.finished if balanced else Status.energy_error
-
-
-def contact_name(dampers: Sequence[str], counts: Sequence[int], contact: int) -> str:
-    """Return damper and place of a contact, numbered over all dampers with these counts of balls; "" if there is none."""
-    for name, balls in zip(dampers, counts, strict=True):
-        if 0 <= contact <= balls:
-            between = f"ball {contact} - {contact + 1}"
-            if balls == 0:
-                return name
-            return f"{name} ({'trailing wall' if contact == 0 else 'leading wall' if contact == balls else between})"
-        contact -= balls + 1
-    return ""
 
 
 def describe(

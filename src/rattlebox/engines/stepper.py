@@ -23,7 +23,7 @@ from rattlebox.prepare.component import damper_case, pack_component
 from rattlebox.prepare.time_step import step_diagnostics
 
 from .run_notes import component_notes, table_notes
-from .status import contact_name, describe
+from .status import describe
 
 
 @dataclass(frozen=True)
@@ -358,7 +358,7 @@ class Stepper:
     def _reason(self) -> str:
         """Return the message of the status with which the core has stopped."""
         status, (damper, member, value) = self._core.status, self._core.stopped
-        particles, balls = self._case.particle_dampers, self._case.impact_dampers
+        particles = self._case.particle_dampers
         if status == _core.Status.energy_error:
             shorter = "lower `fraction` of Dem, or give a larger `motion`" if particles else "lower the tolerance"
             return (
@@ -371,7 +371,6 @@ class Stepper:
             number = member + sum(each.contents.radius.size for each in particles[:damper])
             where = f"Particle {number}, in {particles[damper].label(damper)!r},"
         else:
-            counts = [len(each.balls) for each in balls] + [0] * len(self._case.each_stop)
-            where = contact_name([self._packed.dampers[damper]], [counts[damper]], member)
+            where = self._case.contact_names[self._case.first_contacts[damper] + member]
         softened = damper >= 0 and bool(particles) and particles[damper].softening_factor > 1
         return describe(status, self.time, where, value, self._case.method.kind, softened=softened)[1]

@@ -188,8 +188,7 @@ class Flow:
             *(f"position of {ball}" for ball in balls),
             *(f"velocity of {ball}" for ball in balls),
         )
-        counts = [len(damper.balls) + 1 for damper in case.impact_dampers] + [1] * len(case.each_stop)
-        flow = cls(whole, tuple(parameters), np.array(values), names, tuple(np.cumsum([0, *counts])[:-1].tolist()))
+        flow = cls(whole, tuple(parameters), np.array(values), names, tuple(case.first_contacts))
         # Compares a batch with cases that are packed one by one: formulas must take arrays.
         pack_parts(whole, {path: np.full(2, value) for path, value in zip(parameters, values, strict=True)}, (2,))
         flows = (replace(flow, _step=step) for step in _STEPS)

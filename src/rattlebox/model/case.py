@@ -388,6 +388,21 @@ class Case(Part):
         """The stops, those on both sides (`Stop.side`) one by one."""
         return tuple(each for index, stop in enumerate(self.stops) for each in stop.each(index))
 
+    @property
+    def contact_names(self) -> list[str]:
+        """Damper and place of each contact of a 1-D run, counted over all impact dampers; then the names of the stops."""
+        names = []
+        for index, damper in enumerate(self.impact_dampers):
+            between = (f"ball {k} - {k + 1}" for k in range(1, len(damper.balls)))
+            names += [f"{damper.label(index)} ({place})" for place in ("trailing wall", *between, "leading wall")]
+        return [*names, *(stop.name for stop in self.each_stop)]
+
+    @property
+    def first_contacts(self) -> list[int]:
+        """Number of the first contact of each impact damper and stop in `contact_names`."""
+        counts = [*(len(damper.balls) + 1 for damper in self.impact_dampers), *(1 for _ in self.each_stop)]
+        return [0, *np.cumsum(counts).tolist()][:-1]
+
     def cavity_displacement(self, damper: ImpactDamper) -> Any:
         """Return the displacement of the cavity of an impact damper at the start [m], an array in a batch of variants."""
         shape, displacement = self.modes.shape(damper.point), self.modes.q0

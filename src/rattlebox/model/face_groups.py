@@ -179,6 +179,7 @@ def select_groups(
     rest = [name for name, group in groups.items() if group.rest]
     if len(rest) > 1:
         raise Hint(f"{rest[0]} and {rest[1]} are both the rest of the surface", "one of them", [rest[1]])
+    # Each triangle has one group, and each group a triangle.
     for k, (name, group) in enumerate(groups.items()):
         chosen, across = group.select(points, normals)
         twice = np.flatnonzero(chosen & (number >= 0))
@@ -206,6 +207,7 @@ def select_groups(
                 "finer surface"
             )
         number[chosen] = k
+    # Triangles that no group has chosen.
     names = list(groups)
     left = number < 0
     if rest and not left.any():

@@ -223,6 +223,7 @@ def _densities(path: Path, given: str) -> FileContents | None:
             names = density_names(path)
     if not names:
         return None
+    # The first density that can be read is the one of the example.
     lines = []
     fields: dict[str, Any] = {}
     notes: tuple[str, ...] = ()
@@ -244,6 +245,7 @@ def _densities(path: Path, given: str) -> FileContents | None:
             table = "load" if random.unit == "N" else "base" if random.unit == "m/s^2" else "motion"
     if len(names) > _LISTED:
         lines.append(f"... and {len(names) - _LISTED} more")
+    # None can be read as it is, mostly for want of a unit: the example shows where it stands.
     if not fields:
         fields, table = {"duration": _ASSUMED_DURATION, "unit": "g"}, "base"
         fields.update({} if len(names) == 1 else {"columns": (1,)})

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .elementwise import Vector, inverse, total
 from .errors import Hint, nearest
 from .space import AXES, Triple, unit_vector
+from .units import whole_number
 
 
 def main_axis(vectors: Vector) -> str:
@@ -62,6 +63,15 @@ class ModalModel:
         if name not in self.shapes:
             raise Hint(f"the structure has no point {name!r}", nearest(name, self.shapes))
         return name
+
+    def elastic(self, number: object) -> int:
+        """Return the index of a mode with a natural frequency from its number, counted from 1."""
+        index = whole_number(number, "mode", 1) - 1
+        elastic = np.flatnonzero(self.stiffness > 0)
+        if index not in elastic:
+            known = ", ".join(str(k + 1) for k in elastic)
+            raise Hint(f"mode = {number} is not a mode with a natural frequency", f"one of these: {known or 'none'}")
+        return index
 
     def shape(self, name: str | None, direction: str | Triple | None = None) -> Vector:
         """Return the mode shapes at a point, (m,); along a direction if the point moves in 3-D."""

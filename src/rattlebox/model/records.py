@@ -363,6 +363,7 @@ def _column_indices(
     what = "column" if variables is None else "variable"
     listed = enumerate(variables or names, start=1)
     available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in listed)
+    # The advice for other numbers of columns depends on what the first rows show.
     if columns is None:
         if len(names) != needed:
             is_time = bool(TIMES.fullmatch(without_unit(names[0]))) if names else False
@@ -382,6 +383,7 @@ def _column_indices(
                 advice or f"a file of {needed} columns of numbers",
             )
         columns = range(1, needed + 1)
+    # By name, if it stands once, or by number.
     indices = []
     for column in columns:
         if isinstance(column, str) and names.count(column) > 1:

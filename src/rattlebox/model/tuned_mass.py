@@ -213,14 +213,12 @@ class TunedMass(Part):
         """Return mass over modal mass, and the natural frequency [Hz]."""
         trial = cls(mass=mass, frequency=1.0, **options)
         modes = structure.modes()
-        elastic = np.flatnonzero(modes.stiffness > 0)
-        if not (isinstance(mode, int) and 1 <= mode <= modes.stiffness.size and mode - 1 in elastic):
-            known = ", ".join(str(k + 1) for k in elastic) or "none"
-            raise Hint(f"mode is {mode!r}, which is not a mode with a frequency", f"one of these: {known}", ["mode"])
-        shape = float(modes.shape(trial.point, trial.direction)[mode - 1])
+        with at("mode"):
+            index = modes.elastic(mode)
+        shape = float(modes.shape(trial.point, trial.direction)[index])
         if shape == 0:
             raise Hint(f"mode {mode} does not move the point", "another point or direction", ["point"])
-        return trial.mass * shape**2, math.sqrt(modes.stiffness[mode - 1]) / (2 * math.pi)
+        return trial.mass * shape**2, math.sqrt(modes.stiffness[index]) / (2 * math.pi)
 
 
 def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalModel:

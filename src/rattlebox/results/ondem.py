@@ -88,12 +88,14 @@ def _write_block(file: Node, frame: Frame, places: NDArray[np.float64], material
     root = file.create_group("VTKHDF", track_order=True)
     root.attrs.create("Version", np.array(_VERSION, np.int64))
     _write_type(root, "MultiBlockDataSet")
+    # The block of the particles, which the assembly names.
     assembly = root.create_group("Assembly", track_order=True)
     block = root.create_group(_BLOCK, track_order=True)
     block.attrs.create("Version", np.array(_VERSION, np.int64))
     _write_type(block, "PolyData")
     block["NumberOfPoints"] = np.array([count], np.int64)
     block["Points"] = frame.position + places[frame.cavity]
+    # PolyData needs all four kinds of cells, also those without any.
     for kind in ("Vertices", "Lines", "Polygons", "Strips"):
         cells = count if kind == "Vertices" else 0
         group = block.create_group(kind, track_order=True)

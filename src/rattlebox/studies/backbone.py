@@ -233,10 +233,7 @@ class _Target:
                     "rb.frequency_response, or rb.damping_curve with way = 'decay'",
                 )
         modes = case.structure.modes()
-        index = whole_number(mode, "mode", 1) - 1
-        if index >= modes.stiffness.size or modes.stiffness[index] <= 0:
-            known = ", ".join(str(k + 1) for k in np.flatnonzero(modes.stiffness > 0))
-            raise Hint(f"mode = {mode} is not a mode with a natural frequency", f"one of these: {known or 'none'}")
+        index = modes.elastic(mode)
         shape = float(modes.shape(load.point, load.direction)[index])
         if shape == 0:
             raise Hint(f"the load does not excite mode {mode}", "another point or direction of the load")

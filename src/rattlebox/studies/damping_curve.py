@@ -323,10 +323,7 @@ def mode_of(case: Case, number: int, point: str | None) -> CurveMode:
     modes = case.structure.modes()
     if not modes.stiffness.size:
         raise Hint(f"a {case.structure.kind} structure has no modes", "SDOF, Modal, Matrices or a built-in structure")
-    index = whole_number(number, "mode", 1) - 1
-    if index >= modes.stiffness.size or modes.stiffness[index] <= 0:
-        known = ", ".join(str(k + 1) for k in np.flatnonzero(modes.stiffness > 0))
-        raise Hint(f"mode = {number} is not a mode with a natural frequency", f"one of these: {known or 'none'}")
+    index = modes.elastic(number)
     own = next((damper.point for damper in case.dampers if damper.point in modes.shapes), None)
     name = modes.point(point or own)
     shape = np.atleast_1d(modes.shapes[name][index])

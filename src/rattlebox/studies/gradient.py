@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.quantities import quantity
-from rattlebox.engines.status import contact_name
 from rattlebox.engines.transition import Flow, Transition
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest
@@ -279,12 +278,7 @@ class _Motion(ABC):
 
     def _place(self, damper: int, contact: int) -> str:
         case = self.flow.case
-        names = [
-            *(each.label(k) for k, each in enumerate(case.impact_dampers)),
-            *(stop.name for stop in case.each_stop),
-        ]
-        counts = [*(len(each.balls) for each in case.impact_dampers), *(0 for _ in case.each_stop)]
-        return contact_name(names, counts, sum(count + 1 for count in counts[:damper]) + contact)
+        return case.contact_names[case.first_contacts[damper] + contact]
 
     def _refusal(self, end: Transition) -> CaseError:
         """Return the error of a motion without derivatives."""

@@ -63,6 +63,7 @@ def _segment(
 ) -> list[SignalInFile]:
     """Return the channels between a line of Channels, the end of its header, and the next segment."""
     start, end, stop = place
+    # The header of the segment: a word and a value for each channel.
     header = {
         cells[0].strip(): [cell.strip() for cell in cells[1:]]
         for k in range(start, end)
@@ -86,6 +87,7 @@ def _segment(
     signals = []
     rows = [(k, [cell.strip() for cell in lines[k].split(mark)]) for k in range(end + 2, stop) if lines[k].strip()]
     for channel in range(count):
+        # Each channel has its own times, or all have those of the first column; a shorter one ends in empty cells.
         of_x, of_y = (2 * channel, 2 * channel + 1) if width == 2 else (0, channel + 1)
         kept = [(k, cells) for k, cells in rows if len(cells) > of_y and cells[of_y]]
         dimension = header.get("X_Dimension", [])
@@ -100,6 +102,7 @@ def _segment(
                 f"{path} states {stated[channel][:_SHOWN]} samples of {names[of_y][:_SHOWN]!r}, but contains {len(kept)}",
                 _WHOLE,
             )
+        # Without times the header has the first one and the step.
         if columns == "no":
             first, step = (
                 number(header.get(key, [])[channel] if channel < len(header.get(key, [])) else "", start)

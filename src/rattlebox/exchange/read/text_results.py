@@ -269,6 +269,7 @@ def _tables_of_dat(path: Path) -> tuple[dict[str, dict[int, list[float]]], list[
     table, mode, is_shape = "", 0, False
     for number, line in enumerate(_lines(path), start=1):
         cells = line.split()
+        # Headings: of a mode, of a table, and of displacements of the present mode.
         if found := re.match(r"^ +E I G E N V A L U E    N U M B E R +(\d+)", line):
             table, mode, is_shape = "", int(found[1]), False
         elif re.match(r"^ +[A-Z] [A-Z] ", line):

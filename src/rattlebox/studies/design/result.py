@@ -36,12 +36,14 @@ def result_of(search: DesignSearch, trials: Sequence[Any]) -> xr.Dataset:
 
     about = {name: value if isinstance(value, str) else json.dumps(value) for name, value in search.describe().items()}
     found = xr.Dataset(attrs={"title": "Rattlebox design", **about})
+    # Coordinates of the trials: the values of the parameters.
     for variable in search.variables:
         columns = variable.coordinates([trial.params[variable.name] for trial in trials])
         found = found.assign_coords({path: ("trial", *column) for path, column in columns.items()})
     values = _rows([trial.values for trial in trials], len(search.objectives))
     halves = _rows([trial.user_attrs["intervals"] for trial in trials], len(search.computed))
     packings = padded([trial.user_attrs["packings"] for trial in trials], search.count, len(search.computed))
+    # The added mass follows from the case, so that it has neither an interval nor packings.
     for number, each in enumerate(search.objectives):
         attrs = each.attributes
         found[each.name] = ("trial", values[:, number], each.attributes_with_goal)
@@ -56,6 +58,7 @@ def result_of(search: DesignSearch, trials: Sequence[Any]) -> xr.Dataset:
             found[f"{each.name}_packings"] = (("trial", PACKING), packings[:, own], single)
     if search.count > 1:
         found = found.assign_coords({PACKING: np.arange(search.count)})
+    # What limits, runs and their warnings say about each trial.
     mass = np.array([trial.user_attrs[ADDED_MASS] for trial in trials], dtype=float)
     attrs = {"units": "kg", "long_name": "added mass"}
     found[ADDED_MASS] = ("trial", mass, found[ADDED_MASS].attrs | attrs if ADDED_MASS in found else attrs)
@@ -68,6 +71,7 @@ def result_of(search: DesignSearch, trials: Sequence[Any]) -> xr.Dataset:
     found["warnings"] = ("trial", exceeded, flags)
     reasons = np.array([trial.user_attrs["reason"] for trial in trials], dtype=object)
     found["reason"] = ("trial", reasons, {"long_name": "why a trial is not feasible"})
+    # Trials that may end early have run different numbers of packings and cycles.
     if search.drop or search.precision is not None:
         dropped = np.array([trial.user_attrs[DROPPED] for trial in trials], bool)
         found[DROPPED] = "trial", dropped, {"long_name": "ended early, because certainly worse than another trial"}
@@ -76,6 +80,7 @@ def result_of(search: DesignSearch, trials: Sequence[Any]) -> xr.Dataset:
     if search.parts:
         cycles = {"units": "1", "long_name": "number of cycles of each run, before those until it is steady"}
         found[CYCLES_RUN] = "trial", [trial.user_attrs["cycles"] for trial in trials], cycles
+    # The front last: it ignores trials that are not feasible.
     front = pareto_front(values * np.array([each.sign for each in search.objectives]), feasible)
     if notes := [_exceeded(number, exceeded[number]) for number in front if exceeded[number]]:
         found.attrs["flagged"] = "; ".join(notes)

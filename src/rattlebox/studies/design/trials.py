@@ -208,6 +208,7 @@ class Trials:
             self._study.sampler = _fixed(samplers, values)
         else:
             self._study.sampler = samplers.TPESampler(seed=trial_seed(self._seed, self.done))
+        # The sampler proposes values through the variables of the trial.
         trial = self._study.ask()
         for variable in self._search.variables:
             variable.suggest(trial)
@@ -217,6 +218,7 @@ class Trials:
         excess = mass / limit - 1 if limit is not None and mass > limit else 0.0
         trial.set_constraint("missing", found.missing)
         trial.set_constraint(ADDED_MASS, excess)
+        # All that a restart needs, since trials are not computed again.
         attributes = {
             ADDED_MASS: mass,
             "intervals": found.intervals.tolist(),

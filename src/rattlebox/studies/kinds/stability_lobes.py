@@ -215,6 +215,7 @@ class StabilityLobes(Study):
                 f"teeth_in_cut = {self.teeth_in_cut:g} is more than the number of teeth, {self.teeth}",
                 f"teeth = {math.ceil(self.teeth_in_cut)}, or teeth_in_cut = {self.teeth}",
             )
+        # A tool without damping chatters at every depth, and one that is not held as well.
         elastic = (self._tool.tip != 0) & (np.asarray(self._model.stiffness) > 0)
         for model, shape in ((self._bare_model, self._bare.tip), (self._model, self._tool.tip)):
             undamped = (shape != 0) & (model.stiffness > 0) & (model.decay <= 0)

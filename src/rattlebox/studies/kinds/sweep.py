@@ -249,6 +249,7 @@ def compared(
             f"the case has no particle damper, and only these have a {long_name}", "a case with rb.ParticleDamper"
         )
     case, _ = resolve_softening(case)
+    # The same packings for each value, so that their scatter cancels in part.
     seeds = packing_axis(case, packings)
     variants = variants_of(case, seeds)
     names = [measures] if isinstance(measures, str) else list(measures)
@@ -270,6 +271,7 @@ def compared(
             ("change_error", change_error, "standard error of the change of the {}"),
         ):
             data[f"{name}_{suffix}"] = along, part, {"units": units, "long_name": words.format(quantity)}
+        # A change counts beyond its scatter and beyond the tolerance; it is small if it is within this with certainty.
         allowed = tolerance * abs(mean[-1])
         changed = np.abs(change) > np.maximum(2 * change_error, allowed)
         kept = np.abs(change) + 2 * change_error <= allowed
@@ -451,19 +453,8 @@ def check_step(
 
     Examples
     --------
-    >>> import rattlebox as rb
-    >>> case = rb.Case(
-    ...     structure=rb.Shaker(motion=rb.Harmonic(amplitude="30 m/s^2", frequency="80 Hz", direction="z")),
-    ...     damper=rb.ParticleDamper(
-    ...         particles=rb.Particles(material="steel", diameter="5 mm", count=20),
-    ...         cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
-    ...         contact=rb.Tsuji(restitution=0.8),
-    ...         direction="z",
-    ...         packing=rb.Settled(seed=1),
-    ...         softening=1000,
-    ...     ),
-    ...     duration="0.5 s",
-    ... )
+    The case of the example of `rattlebox.check_softening`:
+
     >>> result = rb.check_step(case, "reduced_loss", packings=2, cycles=(3, 5), progress=False)
     >>> float((result.step[0] / result.step[1]).round(12))
     2.0

@@ -399,6 +399,7 @@ def _dataset(
         arrays = [[getattr(part, name) for part in row] for row in parts]
         return np.array([[_padded(array, count) for array in row] for row in arrays] if motions else arrays)
 
+    # Arrangements, numbers and levels have different numbers of coexisting motions.
     amplitude, flags = gather("amplitude", motions=True), gather("flags")
     computed = {
         "solutions": np.isfinite(amplitude).sum(axis=-1),
@@ -412,6 +413,7 @@ def _dataset(
     for name, dims, unit, text in _VARIABLES:
         values = computed[name] if name in computed else gather(name, motions=dims == _MOTION)
         data[name] = dims, values, _described(units.get(unit, unit), text) if unit else {"long_name": text}
+    # Warnings of all responses, once each.
     data["flags"][2].update(flag_masks(FLAGS))
     notes = [*_warnings(flags), *_softening_warnings(data["peak_softening_error"][1], about)]
     if table.interval is not None:

@@ -90,13 +90,8 @@ class Corrector:
 
     def point(self, state: Vector, value: float, scale: Vector, toward: Vector | float) -> Point | None:
         """Return the fixed point near a state at a value of the parameter, with the tangent nearest to `toward`."""
-        n = state.size
-        fixed = np.append(np.zeros(n), 1.0)
-        corrected = self.correct(self.returns, state, value, scale, fixed)
-        if corrected is None:
-            return None
-        state, value, shot, _ = corrected
-        return self.finish(self.returns, state, value, shot, scale, toward)
+        corrected = self.correct(self.returns, state, value, scale)
+        return None if corrected is None else self.finish(self.returns, *corrected[:3], scale, toward)
 
     def distance(self, point: Point, after: Point) -> float:
         """Return the distance between two points along the tangent of the first one."""
@@ -124,11 +119,11 @@ class Corrector:
         return None if after is None else (after, count)
 
     def correct(
-        self, returns: ReturnMap, state: Vector, value: float, scale: Vector, normal: Vector
+        self, returns: ReturnMap, state: Vector, value: float, scale: Vector, normal: Vector | None = None
     ) -> tuple[Vector, float, Shot, int] | None:
-        """Return the fixed point in the plane through a guess that is normal to a direction."""
+        """Return the fixed point in the plane through a guess that is normal to a direction; default at the same value."""
         n = state.size
-        border = normal * self.weights(n)
+        border = (np.append(np.zeros(n), 1.0) if normal is None else normal) * self.weights(n)
         for count in range(1, _CORRECTIONS + 1):
             if not self.limits[0] - self.width < value < self.limits[1] + self.width or value <= 0 < self.limits[0]:
                 return None
@@ -210,27 +205,17 @@ class Corrector:
         dx = by_state @ (point.tangent[:n] * point.scale) + by_value * point.tangent[n] * self.width
         guide = np.append(dx / point.scale, point.tangent[n])
         new = returns.with_(phase=moved.phase)
-        corrected = self.correct(new, end_state, point.value, point.scale, np.append(np.zeros(n), 1.0))
-        if corrected is None:
-            corrected = self.correct(new, end_state, point.value, point.scale, guide)
-        if corrected is None:
-            return point
-        state, value, shot, _ = corrected
-        return self.finish(new, state, value, shot, point.scale, guide) or point
+        # At a fold the value of the parameter does not hold a point.
+        corrected = self.correct(new, end_state, point.value, point.scale)
+        corrected = corrected or self.correct(new, end_state, point.value, point.scale, guide)
+        return point if corrected is None else self.finish(new, *corrected[:3], point.scale, guide) or point
 
     def is_near(self, point: Point, after: Point) -> bool:
-        """Return whether the branch has turned little between two points, and does not jump to another one."""
+        """Return whether the branch has turned little between two points."""
+        scaled = after.tangent * np.append(after.scale / point.scale, 1.0)
         weights = self.weights(point.scale.size)
-
-        def is_along(direction: Vector) -> bool:
-            size = np.sqrt(np.sum(weights * direction**2) * np.sum(weights * point.tangent**2))
-            return bool(np.sum(weights * direction * point.tangent) > _TURN * size)
-
-        # The chord leaves the tangent where the branch jumps, though both tangents may be parallel.
-        chord = np.append(
-            (after.orbit.state - point.orbit.state) / point.scale, (after.value - point.value) / self.width
-        )
-        return is_along(after.tangent * np.append(after.scale / point.scale, 1.0)) and is_along(chord)
+        size = np.sqrt(np.sum(weights * scaled**2) * np.sum(weights * point.tangent**2))
+        return bool(np.sum(weights * scaled * point.tangent) > _TURN * size)
 
     def at_limit(self, point: Point, after: Point) -> Point | None:
         """Return the point at the limit that lies between two points, or at the second one."""
@@ -242,8 +227,7 @@ class Corrector:
         """Return the point at a value of the parameter between a point and a fixed point beyond it."""
         share = (between - point.value) / (value - point.value) if value != point.value else 0.0
         state = point.orbit.state + share * (state - point.orbit.state)
-        fixed = np.append(np.zeros(state.size), 1.0)
-        corrected = self.correct(point.returns, state, between, point.scale, fixed)
+        corrected = self.correct(point.returns, state, between, point.scale)
         if corrected is None:
             return None
         return self.finish(point.returns, corrected[0], between, corrected[2], point.scale, point.tangent)

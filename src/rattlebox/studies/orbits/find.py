@@ -8,11 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.phrases import joined
-from rattlebox._util.quantities import quantity
 from rattlebox.engines.simulate import require_case, simulate
 from rattlebox.model.errors import Hint, several
-from rattlebox.model.methods import Newton, Output
 from rattlebox.model.units import whole_number
 from rattlebox.results.run import Run
 from rattlebox.studies.orbits.forcing import Forcing
@@ -130,12 +127,6 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
             "in place of equal dampers one with a ball of the mass of all, which moves in the same way; gaps that differ; "
             "or method = rb.EventDriven(), whose contacts last",
         )
-    if found is None and (free := _untouched(returns, state)):
-        raise Hint(
-            f"the motion near this state has no impact in {joined(free)}; a ball that touches no wall may be at any place, "
-            "so that no single periodic motion exists",
-            "a larger load, a smaller gap, or gravity along the row",
-        )
     if found is None:
         raise Hint(
             f"no periodic motion of {several(cycles, 'cycle')} was found near this state; Newton's method did not converge",
@@ -177,11 +168,11 @@ def _state_near(returns: ReturnMap, near: object) -> Vector:
     """Return the state at which a search begins, at the phase of the loads at t = 0."""
     case, period = returns.forcing.case, returns.forcing.period
     if near is None:
-        near = simulate(case.model_copy(update={"output": Output()}), progress=False)
+        near = simulate(case, progress=False)
     if isinstance(near, Orbit):
         start, state = near.phase * period, near.state
     elif isinstance(near, Run):
-        start, state = _end_of(near, LONGEST * period)
+        start, state = _end_of(near)
     else:
         start, state = 0.0, state_of(near)
     check_state(returns, state)
@@ -219,8 +210,8 @@ def check_state(returns: ReturnMap, state: Vector) -> None:
         )
 
 
-def _end_of(run: Run, last: float) -> tuple[float, Vector]:
-    """Return time and state of the last sample of a run with all contacts open, if it is within the last part [s]."""
+def _end_of(run: Run) -> tuple[float, Vector]:
+    """Return time and state of the last sample of a run with all contacts open."""
     arrays = run.arrays
     if arrays.engine == "dem":
         raise Hint("near is a run with particles", "a run of the same impact damper")
@@ -235,16 +226,6 @@ def _end_of(run: Run, last: float) -> tuple[float, Vector]:
         gaps.append(np.diff(row, axis=1).min(axis=1))
     open_ = np.flatnonzero(np.min(gaps, axis=0) > 0)
     k = int(open_[-1]) if open_.size else -1
-    if not open_.size or arrays.time[k] < arrays.time[-1] - last:
-        # The state within a hard contact is complete, as where a ball rests on a wall; that within a soft one is not.
-        k = -1
-        if not isinstance(run.case.method, Newton):
-            raise Hint(
-                f"contacts are closed at all samples of the last {quantity(last, 's', 3)} of the run, as where a ball rests "
-                "on a wall, and a motion cannot start within a contact that has a duration",
-                "method = rb.Newton(), with which bodies rest on each other; or more samples of the run",
-                ["method"],
-            )
     modal = np.stack([arrays.modal_displacement[k], arrays.modal_velocity[k]], axis=1).ravel()
     state = np.concatenate([modal, arrays.ball_position[k] - arrays.ball_centre, arrays.ball_velocity[k]])
     return float(arrays.time[k]), state
@@ -300,16 +281,6 @@ def _search(returns: ReturnMap, state: Vector) -> tuple[ReturnMap, Vector, Shot,
                 return one, *again, size
             return divided, *found, scale
     return None
-
-
-def _untouched(returns: ReturnMap, state: Vector) -> list[str]:
-    """Return the names of the dampers without an impact in the motion from a state."""
-    case = returns.forcing.case
-    motion = motion_of(case, state, returns.cycles * returns.forcing.period)
-    if motion is None or motion.sticks:
-        return []
-    hit = set(motion.impacts.damper.tolist())
-    return [damper.label(index) for index, damper in enumerate(case.impact_dampers) if index not in hit]
 
 
 def away_from_impacts(returns: ReturnMap, state: Vector) -> tuple[ReturnMap, Vector]:

@@ -54,6 +54,7 @@ class Forcing:
                 "method = rb.EventDriven(), or rb.Newton()",
                 ["method"],
             )
+        # Each load repeats, and acts from the start to the end.
         harmonics = case.harmonics
         groups = {"loads": case.loads, "base": case.base, "structure.motion": case.shaker_motion}
         for name, group in groups.items():
@@ -73,6 +74,7 @@ class Forcing:
                     "no start and no stop of the load",
                     place_of(case, path),
                 )
+        # A load without amplitude has no effect on the period.
         varied = [place_of(case, axis) for axis in axes]
         acting = {
             path: signal

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from rattlebox.model.errors import several
-from rattlebox.studies.orbits.motion import GapLines
 from rattlebox.studies.orbits.shooting import solve
 from rattlebox.studies.orbits.unfolding import aimed, touch_at, touches, unfolding_at
 
@@ -116,7 +115,7 @@ def approach(corrector: Corrector, before: Point, point: Point, length: float) -
 
 def _size(point: Point, key: Indicator) -> float:
     """Return the size of the gaps [m] or of their rates [m/s] of a contact in a motion."""
-    lines = GapLines.of(point.returns.problem.dampers, point.returns.modes)
+    lines = point.returns.lines
     row = lines.by_state if key.kind == "miss" else lines.rate_by_state
     return float(np.abs(row[key.contact]) @ point.scale)
 
@@ -218,8 +217,7 @@ def _limit(corrector: Corrector, point: Point, contact: int) -> float:
             return located
         here, ahead = near.without(touch.gap), near.without(_SMALLER * touch.gap)
         located = value - here[1]
-        fixed = np.append(np.zeros(state.size), 1.0)
-        found = corrector.correct(returns, state + ahead[0] - here[0], located + ahead[1], scale, fixed)
+        found = corrector.correct(returns, state + ahead[0] - here[0], located + ahead[1], scale)
         if found is None:
             return located
         state, value = found[:2]

@@ -12,7 +12,6 @@ from rattlebox._util.narrow import present
 from rattlebox.model.errors import Hint
 from rattlebox.studies.orbits.curve import Row, SmoothCurve
 from rattlebox.studies.orbits.find import size_of
-from rattlebox.studies.orbits.motion import GapLines
 from rattlebox.studies.orbits.shooting import ReturnMap, Shot
 from rattlebox.studies.orbits.unfolding import (
     Touch,
@@ -64,7 +63,7 @@ class GrazingCurve(SmoothCurve):
                 "chatter, or a ball has no other impact",
                 "a point of kind 'grazing' or 'sticking'",
             )
-        lines = GapLines.of(self.returns.problem.dampers, self.returns.modes)
+        lines = self.returns.lines
         size = float(np.abs(lines.by_state[touch.contact]) @ scale)
         self._size = max(size, 2 * float(lines.offset[touch.contact]))
         self._share = self._started = self._absolute(self.returns, touch)

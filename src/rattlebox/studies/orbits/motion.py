@@ -80,6 +80,11 @@ class Motion:
     modes: int
     sticks: bool  # whether bodies stick together for a time
 
+    def impact_contacts(self) -> NDArray[np.int64]:
+        """Return the number of the contact of each impact, counted over all dampers."""
+        first = np.cumsum([0, *(int(np.size(damper.mass)) + 1 for damper in self.dampers)])
+        return np.asarray(first[np.asarray(self.impacts.damper)] + self.impacts.contact)
+
     def extremes(self, shape: Vector) -> tuple[float, float]:
         """Return the smallest and the largest displacement of a point with mode shapes (m,) [m]."""
         x, v = self.state[:, 0 : 2 * self.modes : 2] @ shape, self.state[:, 1 : 2 * self.modes : 2] @ shape

@@ -15,7 +15,6 @@ from rattlebox._util.html import code_block
 from rattlebox._util.quantities import amount, digits, quantity
 from rattlebox.core import _core
 from rattlebox.engines.simulate import run_from_core
-from rattlebox.engines.status import contact_name
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.pack import pack
 from rattlebox.studies.orbits.forcing import Forcing
@@ -143,8 +142,8 @@ class Orbit:
 
     @property
     def is_stable(self) -> bool:
-        """Whether no multiplier is outside of the unit circle by more than rounding."""
-        return bool((np.abs(self.multipliers) < 1 + ON_CIRCLE).all())
+        """Whether all multipliers are inside of the unit circle."""
+        return bool((np.abs(self.multipliers) < 1).all())
 
     @property
     def stability(self) -> str:
@@ -275,38 +274,33 @@ def orbit_and_motion(
 ) -> tuple[Orbit, Motion] | None:
     """Return the periodic motion of a fixed point, and its samples; None if its motion cannot be computed."""
     case = returns.forcing.case
+    # The motion at these values of the parameters, with its contacts.
     if len(returns.parameters):
         case = case.replaced(dict(zip(returns.parameters, map(float, values), strict=True)))
     period = returns.cycles * returns.forcing.period_of(returns.parameters, values)[0]
     motion = motion_of(Forcing.of(case, returns.parameters).shifted(returns.phase), state, period)
     if motion is None:
         return None
+    # A mirrored map covers half of a period.
     matrix = shot.monodromy()
     multipliers = np.linalg.eigvals(matrix).astype(complex)
     if returns.mirrored:
         multipliers = multipliers**2
         matrix = matrix @ matrix
     order = np.lexsort((-multipliers.imag, -np.abs(multipliers).round(12)))
-    names, counts = _names(case)
+    # Times of contacts are shares of the period, from the phase of the loads at t = 0.
+    names = case.contact_names
     shift = returns.phase / returns.cycles
-    offsets = np.concatenate([[0], np.cumsum([count + 1 for count in counts])])
+    log = motion.impacts
+    columns = motion.impact_contacts(), log.time, log.approach_speed, log.restitution
     impacts = [
-        _impact(names, counts, int(offsets[damper] + contact), (time / period + shift) % 1.0, speed, ratio)
-        for damper, contact, time, speed, ratio in zip(
-            motion.impacts.damper,
-            motion.impacts.contact,
-            motion.impacts.time,
-            motion.impacts.approach_speed,
-            motion.impacts.restitution,
-            strict=True,
-        )
+        OrbitImpact(names[contact], (time / period + shift) % 1.0, speed, ratio, contact)
+        for contact, time, speed, ratio in zip(*(column.tolist() for column in columns), strict=True)
     ]
-    misses = motion.near_misses()
     nearest = None
-    if misses:
-        miss = misses[0]
+    for miss in motion.near_misses()[:1]:
         phase = (miss.time / period + shift) % 1.0
-        nearest = Approach(contact_name(names, counts, miss.contact), phase, miss.gap, miss.contact)
+        nearest = Approach(names[miss.contact], phase, miss.gap, miss.contact)
     orbit = Orbit(
         case=case,
         cycles=returns.cycles,
@@ -323,19 +317,6 @@ def orbit_and_motion(
         sticks=motion.sticks,
     )
     return orbit, motion
-
-
-def _impact(
-    names: Sequence[str], counts: Sequence[int], contact: int, phase: float, speed: float, ratio: float
-) -> OrbitImpact:
-    return OrbitImpact(contact_name(names, counts, contact), phase, float(speed), float(ratio), contact)
-
-
-def _names(case: Case) -> tuple[list[str], list[int]]:
-    """Return the names of dampers and stops, and their numbers of balls."""
-    dampers = case.impact_dampers
-    names = [damper.label(index) for index, damper in enumerate(dampers)] + [stop.name for stop in case.each_stop]
-    return names, [len(damper.balls) for damper in dampers] + [0] * len(case.each_stop)
 
 
 def _amplitudes(case: Case, motion: Motion) -> dict[str, float]:

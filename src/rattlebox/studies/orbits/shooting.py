@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from rattlebox.model.paths import replaced
 from rattlebox.prepare.pack import pack
 from rattlebox.studies.orbits.flow import Flow
+from rattlebox.studies.orbits.motion import GapLines
 
 if TYPE_CHECKING:
     from rattlebox.studies.orbits.flow_end import End
     from rattlebox.studies.orbits.forcing import Forcing
-    from rattlebox.studies.orbits.motion import GapLines
 
 Vector = NDArray[np.float64]
 
@@ -100,6 +100,11 @@ class ReturnMap:
         """Number of components of the state."""
         return 2 * (self.modes + sum(self.rows))
 
+    @property
+    def lines(self) -> GapLines:
+        """Gaps as functions of the state."""
+        return GapLines.of(self.problem.dampers, self.modes)
+
     def length(self, period: float) -> float:
         """Return the duration of one segment for a period of the forcing."""
         return self.cycles * period / (2 if self.mirrored else 1) / self.segments
@@ -158,13 +163,12 @@ class ReturnMap:
         slope = self.forcing.period_of(self.parameters, (value,))[1][0]
         return end.state, end.matrix, end.by_parameter[:, 0] + end.by_time * share * slope
 
-    def states_from(self, state: Vector, values: Sequence[float] = ()) -> Vector:
+    def states_from(self, state: Vector) -> Vector:
         """Return the states at the beginnings of the segments of the motion from one state."""
-        length = self.length(self.forcing.period_of(self.parameters, values)[0])
-        chosen = tuple(map(float, values)) if self.parameters else None
+        length = self.length(self.forcing.period)
         states = [state]
         for flow in self._flows[:-1]:
-            states.append(flow.over(states[-1], length, chosen, derivatives=False).state)
+            states.append(flow.over(states[-1], length, derivatives=False).state)
         return np.array(states)
 
 

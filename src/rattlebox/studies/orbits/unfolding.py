@@ -105,8 +105,7 @@ def touches(returns: ReturnMap, state: Vector, values: Sequence[float], *, impac
     if not impact:
         count = log.time.size
         return [Touch(miss.contact, miss.time / length, miss.gap, 0.0, count) for miss in motion.near_misses()]
-    first = np.cumsum([0, *(int(np.size(damper.mass)) + 1 for damper in motion.dampers)])
-    contacts, shares = first[np.asarray(log.damper)] + log.contact, log.time / length
+    contacts, shares = motion.impact_contacts(), log.time / length
     spans = np.nan_to_num(log.duration) / length
     return [
         Touch(int(contacts[k]), float(shares[k]), 0.0, float(log.approach_speed[k]), shares.size, float(spans[k]))
