@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from difflib import get_close_matches
 from pathlib import Path
 
 from .exceptions import DataError, RattleboxError, ResourceError
@@ -48,16 +49,35 @@ def require_folder(path: Path) -> None:
         raise DataError(f"{path} cannot be written: there is no folder {path.parent}", "another folder, or create it")
 
 
+def existing(path: str | os.PathLike[str]) -> Path:
+    """Return the file at a path."""
+    file = Path(path)
+    if file.is_file():
+        return file
+    if file.is_dir():
+        names = sorted(other.name for other in file.iterdir() if other.is_file())[:2]
+        advice = " or ".join(str(file / name) for name in names) or "a file; the folder contains none"
+        raise DataError(f"{file} is a folder, not a file", advice)
+    folder = file.parent
+    if not folder.is_dir():
+        raise DataError(
+            f"there is no file {file}: there is no folder {folder}", f"a path from {Path.cwd()}, or a full one"
+        )
+    like = get_close_matches(file.name, [other.name for other in folder.iterdir() if other.is_file()], n=2)
+    advice = " or ".join(str(folder / name) for name in like) or f"another name; no file in {folder} has a similar one"
+    raise DataError(f"there is no file {file}", advice)
+
+
 def require_readable(path: Path) -> None:
     """Raise if a file cannot be read, with the reason, which HDF5 does not report."""
     if path.is_dir():
-        raise DataError(f"{path} is a folder, not a file")
+        results = sorted(path.glob("*.nc"))
+        raise DataError(f"{path} is a folder, not a file", str(results[0]) if results else "a file")
     if path.exists() and not path.is_file():  # opening a pipe would wait for somebody to write to it
         raise DataError(f"{path} is a pipe or a device, not a file", "a file")
+    existing(path)
     try:
         path.open("rb").close()
-    except FileNotFoundError:
-        raise DataError(f"there is no file {path}") from None
     except OSError as error:
         raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
 

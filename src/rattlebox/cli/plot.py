@@ -58,7 +58,7 @@ def plot_study(study: Path, out: Path | None, options: PlotOptions) -> None:
         elif kind in (None, "map", "lines"):
             figure = plot_map(data, kind=kind, at=at, **chosen)  # type: ignore[arg-type]
         else:
-            raise CaseError(f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *figures))}")
+            raise CaseError(f"--kind {kind}: unknown kind of figure", nearest(kind, ("map", "lines", *figures)))
         figure.savefig(file)
         for line in nearest_value_notes(data, at):
             terminal().print(line, soft_wrap=True)

@@ -137,7 +137,7 @@ def _draw(run: Run | Snapshots, kind: str | None, number: int, options: dict[str
     kinds = ["particles"] if isinstance(run, Snapshots) else dir(run.plot)
     wanted = kind or ("particles" if isinstance(run, Snapshots) else "motion")
     if wanted not in kinds:
-        raise CaseError(f"--kind {kind}: this run has no such figure\n  {nearest(str(kind), kinds)}")
+        raise CaseError(f"--kind {kind}: this run has no such figure", nearest(str(kind), kinds))
     if isinstance(run, Snapshots):
         return plot_particles(run, number=number, **options)
     if wanted != "particles":

@@ -7,13 +7,13 @@ import os
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.atomic_io import existing as existing
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.mat_check import check_mat
 from rattlebox.exchange.read.guarded import arrays_from_child, errors_of
@@ -36,25 +36,6 @@ def absolute(path: object) -> str:
     if not isinstance(path, (str, os.PathLike)):
         raise Hint("a path must be text", 'file = "push.csv"')
     return os.path.abspath(os.fspath(path))
-
-
-def existing(path: str | os.PathLike[str]) -> Path:
-    """Return the file at a path."""
-    file = Path(path)
-    if file.is_file():
-        return file
-    if file.is_dir():
-        names = sorted(other.name for other in file.iterdir() if other.is_file())[:2]
-        advice = " or ".join(str(file / name) for name in names) or "a file; the folder contains none"
-        raise DataError(f"{file} is a folder, not a file", advice)
-    folder = file.parent
-    if not folder.is_dir():
-        raise DataError(
-            f"there is no file {file}: there is no folder {folder}", f"a path from {Path.cwd()}, or a full one"
-        )
-    like = get_close_matches(file.name, [other.name for other in folder.iterdir() if other.is_file()], n=2)
-    advice = " or ".join(str(folder / name) for name in like) or f"another name; no file in {folder} has a similar one"
-    raise DataError(f"there is no file {file}", advice)
 
 
 def read_text(path: str | os.PathLike[str]) -> str:

@@ -248,7 +248,7 @@ def _is_row_of_parts(value: object) -> bool:
 def _only(row: Sequence[object], path: str, name: str) -> int:
     """Return the index of the only item of a list, 0."""
     if not row:
-        raise Hint(f"{path}: there is no {name} in this case")
+        raise Hint(f"{path}: there is no {name} in this case", f"a case with a {name}, or another path")
     if len(row) > 1:
         raise Hint(
             f"{path}: the case has {len(row)} of {name}, and an index is needed", f"{name}[0] to {name}[{len(row) - 1}]"

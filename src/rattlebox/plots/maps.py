@@ -74,7 +74,7 @@ def plot_map(
     >>> figure = rb.plot_map(rb.sweep(rb.reference_case(duration=1.0), gaps, ["impact_share"]))
     """
     if kind not in (None, "map", "lines"):
-        raise CaseError(f"kind = {kind!r}: unknown kind of figure\n  {nearest(str(kind), ('map', 'lines'))}")
+        raise CaseError(f"kind = {kind!r}: unknown kind of figure", nearest(str(kind), ("map", "lines")))
     # First everything that can be refused, before a figure is made.
     name = _measure_name(study, of)
     selected, title = select(study, at or {})
@@ -111,7 +111,7 @@ def _measure_name(study: xr.Dataset, of: str | None) -> str:
             raise CaseError("this study has no measure to draw", "name one as measure in the study")
         return measures[0]
     if of not in study.data_vars:
-        raise CaseError(f"of = {of!r}: the study has no such measure\n  {nearest(of, measures)}")
+        raise CaseError(f"of = {of!r}: the study has no such measure", nearest(of, measures))
     return of
 
 

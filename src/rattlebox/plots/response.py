@@ -66,7 +66,7 @@ def plot_frequency_response(
     for name in names:
         if name not in response or response[name].dims != ("direction", "level", "frequency"):
             known = [str(n) for n, v in response.items() if v.dims == ("direction", "level", "frequency")]
-            raise CaseError(f"the response has no measure {name!r}\n  {nearest(name, known)}")
+            raise CaseError(f"the response has no measure {name!r}", nearest(name, known))
     with figure_style(size):
         figure = StyledFigure(size, 0.3 + (0.4 if size == "column" else 0.2) * len(names))
         panels = np.atleast_1d(figure.subplots(len(names), 1, sharex=True, height_ratios=[2] + [1] * (len(names) - 1)))

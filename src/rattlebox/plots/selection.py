@@ -23,7 +23,7 @@ def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:
     for name, value in at.items():
         names = [str(other) for other, coord in study.coords.items() if coord.ndim == 1]
         if name not in names:
-            raise CaseError(f"at = {name!r}: the study has no such axis\n  {nearest(name, names)}")
+            raise CaseError(f"at = {name!r}: the study has no such axis", nearest(name, names))
         coord = study[name]
         index = _nearest_index(coord, name, value)
         texts.append(f"{name_of(coord)} {value_of(coord, coord.values[index])}")
@@ -57,7 +57,7 @@ def _nearest_index(coord: xr.DataArray, name: str, value: Any) -> int:
     values = coord.values
     if values.dtype.kind not in "fiu":
         if value not in values.tolist():
-            raise CaseError(f"at: {name} = {value!r} is not in the study\n  {nearest(str(value), map(str, values))}")
+            raise CaseError(f"at: {name} = {value!r} is not in the study", nearest(str(value), map(str, values)))
         return int(values.tolist().index(value))
     number = _in_si(coord, name, value)
     low, high = float(values.min()), float(values.max())

@@ -25,6 +25,16 @@ from rattlebox.studies.kinds import study_kind, study_kinds
 from rattlebox.studies.run.study import Axes, SpacedTable, Study, Table, make_study, table_shape
 
 _EXAMPLE = '[axes]\n       "damper.gap" = { from = "0.1 mm", to = "2 mm", count = 20 }'
+_REQUIRED = {
+    "case": '{ file = "case.toml" }',
+    "axes": '{ "damper.gap" = ["0.2 mm", "0.4 mm"] }',
+    "parameters": '{ "damper.gap" = ["0.2 mm", "0.4 mm"] }',
+    "path": '"load.frequency"',
+    "values": '["30 Hz", "31 Hz"]',
+    "amplitudes": '["0.5 mm", "1 mm"]',
+    "frequencies": '["30 Hz", "60 Hz"]',
+}
+"""Examples of fields that studies need, for messages about missing ones."""
 _ROOTS = {*Case.model_fields, *Case.aliases}
 
 
@@ -83,7 +93,9 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
         for name in cls.files:
             if isinstance(given.get(name), str):
                 given[name] = str((folder or Path()) / given[name])
-        study = make_study(cls, given, source, {"": {"": examples(cls)}, "spaced": {"": examples(SpacedTable)}})
+        study = make_study(
+            cls, given, source, {"": {"": examples(cls) | _REQUIRED}, "spaced": {"": examples(SpacedTable)}}
+        )
         study.validate()
     except Hint as hint:
         raise hint.restated(CaseError, source) from None

@@ -250,7 +250,10 @@ def test_stopped_study(kind: str, after: int, progress: str, run_cli: RunCli) ->
         (study("bifurcation").replace("bifurcation", "bifurcations"), "did you mean 'bifurcation'"),
         (study("bifurcation").replace("show", "shown"), "did you mean 'show'"),
         (study("bifurcation") + '[axes]\n"damper.gap" = ["1 mm"]', "there is no such field"),
-        (study("bifurcation").split("path")[0], "path"),
+        (study("bifurcation").split("path")[0], 'try: path = "load.frequency"'),
+        ('kind = "sweep"', 'try: case = { file = "case.toml" }'),
+        ('kind = "stability_lobes"', 'try: case = { file = "case.toml" }'),
+        (study("loss_map").replace("frequencies", "# "), 'try: frequencies = ["30 Hz", "60 Hz"]'),
         (study("bifurcation").replace("[40, 16]", "[40.5, 16]"), "two whole numbers"),
         (study("bifurcation").replace('"0.5 mm"', '"0.5 kg"'), "not a mass"),
         (study("frequency_response").replace("frequencies", "frequency"), "did you mean 'frequencies'"),
@@ -274,11 +277,27 @@ def test_stopped_study(kind: str, after: int, progress: str, run_cli: RunCli) ->
     ],
 )
 def test_mistakes_in_study_files(content: str, message: str, run_cli: RunCli) -> None:
-    """A mistake ends with exit code 2 and the allowed values; nothing is written."""
+    """A mistake ends with exit code 2, the allowed values and advice; nothing is written. Missing fields had no advice."""
     Path("study.toml").write_text(content)
     before = sorted(Path().iterdir())
     code, _, errors = run_cli("sweep", "study.toml")
     assert code == 2
-    assert message in errors
+    assert message in errors and ("\n  try: " in errors or "must be" in errors)
     assert len(errors.splitlines()) < 24
     assert sorted(Path().iterdir()) == before
+
+
+def test_mistyped_names_of_starts_figures_and_measures_have_advice(run_cli: RunCli) -> None:
+    """Names of what does not exist end with exit code 2 and what there is; the lists were printed without "try:"."""
+    Path("study.toml").write_text(study("bifurcation"))
+    assert run_cli("sweep", "study.toml")[0] == run_cli("run", "rig.toml", "-o", "out")[0] == 0
+    for words, advice in (
+        (("run", "rig.toml", "--start", "out/rum.nc", "-o", "more"), "out/run.nc"),
+        (("run", "rig.toml", "--start", "out", "-o", "more"), "out/run.nc"),
+        (("plot", "out", "--kind", "energies"), "did you mean 'energy'?"),
+        (("plot", "study.zarr", "--kind", "line"), "did you mean 'lines'?"),
+        (("plot", "study.zarr", "--kind", "lines", "--of", "perio"), "did you mean 'period'?"),
+        (("plot", "study.zarr", "--kind", "lines", "--at", "load.phase=1"), "known: "),
+    ):
+        code, _, errors = run_cli(*words)
+        assert code == 2 and f"\n  try: {advice}" in errors, errors

@@ -309,7 +309,7 @@ def test_an_interrupted_film_does_not_replace_the_earlier_one(
         (["run.nc", "--number", "1"], "--number 1: run.nc has no snapshots\n  try: run.vtkhdf"),
         (
             ["run.nc", "--kind", "impacts"],
-            "--kind impacts: this run has no such figure\n  known: case, energy, motion, particles, phase_portrait",
+            "--kind impacts: this run has no such figure\n  try: known: case, energy, motion, particles, phase_portrait",
         ),
         (["run.vtkhdf", "--number", "5"], "holds 5 snapshots; 5 is not from 0 to 4"),
         (["run.vtkhdf", "-o", "a.jpg"], "the suffix must be one of .png, .svg, .pdf, .gif, .mp4"),
@@ -335,7 +335,7 @@ def test_an_interrupted_film_does_not_replace_the_earlier_one(
         ([".", "--kind", "particles", "--view", "below"], "view 'below' is not one of 'oblique', 'front'"),
         (
             [".", "--kind", "impacts"],
-            "--kind impacts: this run has no such figure\n  known: case, energy, motion, particles, phase_portrait",
+            "--kind impacts: this run has no such figure\n  try: known: case, energy, motion, particles, phase_portrait",
         ),
     ],
 )

@@ -264,9 +264,7 @@ def make_study(cls: type[Study], values: Mapping[str, Any], source: str = "", vo
     names = [field.name for field in dataclasses.fields(cls)]
     for name in values:
         if name not in names:
-            raise CaseError(
-                f"{source}: {name} = {values[name]!r:.60}\n  there is no such field\n  {nearest(name, names)}"
-            )
+            raise CaseError(f"{source}: {name} = {values[name]!r:.60}\n  there is no such field", nearest(name, names))
     try:
         study = cls(**values)
     except ValidationError as error:
