@@ -146,3 +146,22 @@ def test_figure():
     """The figure of a motion has its period and its multipliers."""
     figure = rb.find_orbit(case()).plot(size="column")
     assert len(figure.axes) == 2
+
+
+def test_a_ball_that_floats_is_named() -> None:
+    """A motion that touches no ball is refused with this reason, and the advice finds one; it was "not converged"."""
+    case = rb.Case(
+        structure=rb.SDOF(mass="60 t", frequency="1.7 Hz", damping_ratio=0.02),
+        damper=rb.ImpactDamper(
+            ball=rb.Striker(mass="1.5 t"), gap="30 mm", contact=rb.Linear(restitution=0.5, stiffness=3e7)
+        ),
+        load=rb.Harmonic(amplitude="4 kN", frequency="1.7 Hz"),
+        method=rb.Newton(restitution=0.5),
+        duration="90 s",
+    )
+    with pytest.raises(
+        rb.CaseError, match=r"no ball touches anything in 1 cycle.*\n  try: a larger load or a smaller gap"
+    ):
+        rb.find_orbit(case)
+    assert len(rb.find_orbit(case.replaced({"load.amplitude": "40 kN"})).impacts) >= 2
+    assert rb.find_orbit(case.replaced({"dampers": ()})).stability == "stable"

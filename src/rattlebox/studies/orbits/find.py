@@ -127,6 +127,12 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
             "in place of equal dampers one with a ball of the mass of all, which moves in the same way; gaps that differ; "
             "or method = rb.EventDriven(), whose contacts last",
         )
+    if found is None and _floats(returns, state):
+        raise Hint(
+            f"no ball touches anything in {several(cycles, 'cycle')}: a ball that floats has no place of its own in its "
+            "cavity, and no isolated periodic motion",
+            "a larger load or a smaller gap; the case without dampers has this motion of the structure",
+        )
     if found is None:
         raise Hint(
             f"no periodic motion of {several(cycles, 'cycle')} was found near this state; Newton's method did not converge",
@@ -138,6 +144,13 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
     if orbit is None:
         raise Hint("the periodic motion cannot be simulated over its period", "rb.simulate(case), to see where")
     return orbit
+
+
+def _floats(returns: ReturnMap, state: Vector) -> bool:
+    """Return whether no ball touches anything in a period from a state, and there is one."""
+    case = returns.forcing.case
+    motion = motion_of(returns.forcing.shifted(returns.phase), state, returns.cycles * returns.forcing.period)
+    return bool(case.impact_dampers) and motion is not None and len(motion.impacts.time) == 0
 
 
 def state_at_zero(orbit: Orbit) -> Vector:
