@@ -15,7 +15,7 @@ from rattlebox._util.exceptions import named
 from .base import Part
 from .contacts import AnyContact, Linear
 from .errors import Hint
-from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
+from .friction import AnyFriction, AnyRolling, Friction, Rolling
 from .pairs import Pair
 
 WALL = "wall"
@@ -72,18 +72,11 @@ class Entry:
                 f"{named(self.friction_place)} = 0.3, or no rolling",
                 self.rolling_place,
             )
-        if isinstance(self.friction, Mindlin) and self.friction.coefficient and isinstance(self.contact, Linear):
-            raise Hint(
-                f"Mindlin's stiffness needs a Hertz contact, but that of {between} is linear",
-                f'friction = {{ kind = "spring", coefficient = {self.friction.coefficient:g}, ratio = 0.286 }}',
-                self.friction_place,
-            )
-        if isinstance(self.friction, LinearSpring) and self.friction.ratio and not isinstance(self.contact, Linear):
-            raise Hint(
-                f"a ratio of stiffnesses needs a linear contact, but that of {between} is not linear",
-                "friction = 0.3, for Mindlin's stiffness, or stiffness",
-                self.friction_place,
-            )
+        linear = isinstance(self.contact, Linear)
+        if self.friction is not None and (found := self.friction.unsuited(linear=linear)) is not None:
+            need, advice = found
+            kind = "linear" if linear else "not linear"
+            raise Hint(f"{need}, but that of {between} is {kind}", advice, self.friction_place)
 
 
 @dataclass(frozen=True)

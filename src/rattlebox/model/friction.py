@@ -34,6 +34,10 @@ class Friction(Part):
     coefficient: NotNegative = Field(examples=[0.3])
     damping: NotNegative = 1.0
 
+    def unsuited(self, *, linear: bool) -> tuple[str, str] | None:
+        """Return what it needs and advice if it does not suit a contact law, which is linear or not; None if it does."""
+        return None
+
     @abstractmethod
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
         """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
@@ -72,6 +76,13 @@ class Mindlin(Friction):
     if TYPE_CHECKING:  # The first field is also a positional argument.
 
         def __init__(self, coefficient: object = ..., **values: Any) -> None: ...
+
+    def unsuited(self, *, linear: bool) -> tuple[str, str] | None:
+        """Return the need of a Hertz contact, whose stiffness grows with the overlap."""
+        if not linear or not self.coefficient:
+            return None
+        spring = f'friction = {{ kind = "spring", coefficient = {self.coefficient:g}, ratio = 0.286 }}'
+        return "Mindlin's stiffness needs a Hertz contact", spring
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
         """Return 8 G* [Pa], the coefficient of friction and the damping."""
@@ -117,6 +128,12 @@ class LinearSpring(Friction):
     def _one_stiffness(self) -> LinearSpring:
         one_of("ratio = 0.286", stiffness=self.stiffness, ratio=self.ratio)
         return self
+
+    def unsuited(self, *, linear: bool) -> tuple[str, str] | None:
+        """Return the need of a linear contact, to whose stiffness the ratio refers."""
+        if linear or not self.ratio:
+            return None
+        return "a ratio of stiffnesses needs a linear contact", "friction = 0.3, for Mindlin's stiffness, or stiffness"
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
         """Return stiffness, ratio, the coefficient of friction and the damping."""

@@ -213,8 +213,7 @@ class TunedMass(Part):
         """Return mass over modal mass, and the natural frequency [Hz]."""
         trial = cls(mass=mass, frequency=1.0, **options)
         modes = structure.modes()
-        with at("mode"):
-            index = modes.elastic(mode)
+        index = modes.elastic(mode)
         shape = float(modes.shape(trial.point, trial.direction)[index])
         if shape == 0:
             raise Hint(f"mode {mode} does not move the point", "another point or direction", ["point"])
