@@ -1,8 +1,9 @@
-"""A stretch of a motion with its derivatives with respect to its start and to parameters."""
+"""Stretches of a motion with the derivatives of their ends with respect to the start and to parameters."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -10,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.core import _core
-from rattlebox.engines import transition
+from rattlebox.engines.transition import Flow as Stretches
+from rattlebox.engines.transition import Transition
 from rattlebox.model.paths import get
 from rattlebox.prepare.pack import pack
-from rattlebox.studies.orbits.flow_end import End, failed
 from rattlebox.studies.orbits.motion import MOST_EVENTS, GapLines
 
 if TYPE_CHECKING:
@@ -27,13 +28,36 @@ _CONTINUOUS = 1e-2
 """Largest part of the difference of both that their derivatives may leave if the motion is continuous in its start."""
 
 
+@dataclass(frozen=True)
+class End:
+    """End of a stretch of a motion from a state, and its derivatives.
+
+    `ok` is whether it was computed. `matrix` (n, n) is the derivative with respect to the state at the start, `by_parameter`
+    (n, p), `by_time` (n,) the rate of change at the end; all empty if they are not requested. `transition` is the
+    stretch itself; None if its derivatives are means of two others.
+    """
+
+    state: Vector
+    ok: bool
+    matrix: Vector
+    by_parameter: Vector
+    by_time: Vector
+    transition: Transition | None = None
+
+
+def _failed(size: int) -> End:
+    """Return the end of a motion that was not computed."""
+    empty = np.zeros((size, 0))
+    return End(np.full(size, np.nan), False, empty, empty, empty)
+
+
 class Flow:
     """Motions of a case from any state, at values of some parameters."""
 
     def __init__(self, case: Case, parameters: Sequence[str] = ()) -> None:
         most = min(get(case, "method.max_events"), MOST_EVENTS)
         self._case, self._parameters = case, tuple(parameters)
-        self._exact = transition.Flow.of(case.replaced({"method.max_events": most}), self._parameters)
+        self._exact = Stretches.of(case.replaced({"method.max_events": most}), self._parameters)
 
     def over(
         self,
@@ -55,7 +79,7 @@ class Flow:
         if derivatives and end.status in ("simultaneous", "kink"):
             return self._mean(state, duration, chosen, start)
         if end.status != "finished":
-            return failed(state.size)
+            return _failed(state.size)
         empty = np.zeros((state.size, 0))
         if not derivatives:
             return End(end.state, True, empty, empty, empty, end)
@@ -68,12 +92,12 @@ class Flow:
         sides = [self._exact.over(state + side * step, start, duration, values, True) for side in (1.0, -1.0)]
         here = self._exact.over(state, start, duration, values, False)
         if any(end.status != "finished" for end in (*sides, here)):
-            return failed(state.size)
+            return _failed(state.size)
         one, other = sides
         matrix = 0.5 * (one.matrix + other.matrix)
         change, rest = 2 * matrix @ step / self._sizes, (one.state - other.state) / self._sizes
         if np.abs(rest - change).max() > _CONTINUOUS * np.abs(change).max():
-            return failed(state.size)
+            return _failed(state.size)
         by_parameter = 0.5 * (one.by_parameter + other.by_parameter)
         return End(here.state, True, matrix, by_parameter, 0.5 * (one.by_time + other.by_time))
 

@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 
 from rattlebox.model.paths import replaced
 from rattlebox.prepare.pack import pack
-from rattlebox.studies.orbits.flow import Flow
+from rattlebox.studies.orbits.flow import End, Flow
 from rattlebox.studies.orbits.motion import GapLines
 
 if TYPE_CHECKING:
-    from rattlebox.studies.orbits.flow_end import End
     from rattlebox.studies.orbits.forcing import Forcing
 
 Vector = NDArray[np.float64]

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from rattlebox.core import _core
 from rattlebox.prepare.pack import pack
-from rattlebox.studies.orbits.flow_end import End
+from rattlebox.studies.orbits.flow import End
 from rattlebox.studies.orbits.motion import GapLines, motion_of
 from rattlebox.studies.orbits.shooting import ReturnMap
 
