@@ -197,3 +197,19 @@ def test_the_time_of_a_branch_is_predicted(run_cli: RunCli) -> None:
     assert (code, errors) == (0, "")
     assert "points: about" in out and "1 worker" in out
     assert not Path("branch.zarr").exists()
+
+
+def test_the_number_of_points_is_predicted(run_cli: RunCli) -> None:
+    """The number of points of the estimate depends on the range, and is right within the factor of 3 that is stated.
+
+    It was 100 for every branch.
+    """
+    text = Path("branch.toml").read_text()
+    for number, limits in enumerate(('["16 Hz", "26 Hz"]', '["20.5 Hz", "21 Hz"]')):
+        lines = [f"limits = {limits}" if line.startswith("limits") else line for line in text.splitlines()]
+        Path(f"range{number}.toml").write_text("\n".join(lines))
+        out = run_cli("sweep", f"range{number}.toml", "--estimate")[1]
+        predicted = int(out.partition(": ")[2].partition(" points")[0])
+        out = run_cli("sweep", f"range{number}.toml")[1]
+        points = int(out.partition(" points.")[0].rpartition(" ")[2])
+        assert 1 / 3 < predicted / points < 3

@@ -126,7 +126,9 @@ class ContinueOrbit(Study):
         found = time.process_time()
         near = self._follow(orbit, progress=lambda done, _: done <= _PROBED)
         each = (time.process_time() - found) / max(len(near), 1)
-        points = min(2 * self.points, round(2 / self.step))
+        # At the distance of the last points; the first ones are closer, and the branch may turn back.
+        last = np.abs(np.diff(near.data.value.values))[-1] / np.diff(near.data.attrs["limits"])[0]
+        points = min(2 * self.points, round(1 / max(last, 1e-9)))
         total = found - begun + each * points
         return Estimate(0, points, total, total, 1, _FACTOR, "point")
 
