@@ -131,6 +131,11 @@ def test_curve_of_a_torus_ends_at_a_resonance():
     angles = curve["angle"].values
     assert angles.size > 15
     assert 0 < angles.min() < 0.3
+    # Strong resonances are named where the angle passes 90 and 120 degrees.
+    passes = [(angles[:-1] - angle) * (angles[1:] - angle) < 0 for angle in (math.pi / 2, 2 * math.pi / 3)]
+    counts = [int((curve["special"].values == name).sum()) for name in ("1:4 resonance", "1:3 resonance")]
+    assert counts == [int(each.sum()) for each in passes]
+    assert sum(counts) > 0
 
 
 def oscillator(amplitude=1.0, gap=0.3):

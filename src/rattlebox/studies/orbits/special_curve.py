@@ -15,6 +15,7 @@ from rattlebox.model.units import whole_number
 from rattlebox.studies.orbits.bisected_curve import ContactCurve, StickingCurve
 from rattlebox.studies.orbits.branch import SpecialPoint
 from rattlebox.studies.orbits.branch_data import LONGEST_STEP, corrector_of
+from rattlebox.studies.orbits.codimension_two import names_along
 from rattlebox.studies.orbits.curve import TESTS, Curve, Row, StabilityCurve, TorusCurve
 from rattlebox.studies.orbits.grazing_curve import GrazingCurve
 
@@ -75,8 +76,10 @@ def continue_point(
     -------
     xarray.Dataset
         Over `point`: the values of both parameters, under their paths, the `amplitude` of the first point of the structure
-        [m], and `angle`, the angle of the critical multiplier [rad], NaN for grazing and sticking. Attributes: `equation`,
-        the condition on the curve, and `ended`, why it ends between the limits.
+        [m], `angle`, the angle of the critical multiplier [rad], NaN for grazing and sticking, and `special`, the name of
+        the points nearest to a second condition, or "": "cusp", "fold-flip", "1:1 resonance" (two multipliers +1), "1:2
+        resonance" (two multipliers -1), "1:3 resonance" and "1:4 resonance" (angles of 120 and 90 deg). Attributes:
+        `equation`, the condition on the curve, and `ended`, why it ends between the limits.
 
     Raises
     ------
@@ -162,6 +165,8 @@ def _dataset(curve: Curve, row: Sequence[Row], axes: Sequence[str], units: Seque
     angles = np.abs(np.angle(critical)) if kind in TESTS else np.full(len(row), np.nan)
     data["amplitude"] = "point", np.array(sizes), {"units": "m", "long_name": "amplitude"}
     data["angle"] = "point", angles, {"units": "rad", "long_name": "angle of the critical multiplier"}
+    multipliers = np.array([orbit.multipliers for orbit, _ in row])
+    data["special"] = "point", names_along(kind, multipliers, values / curve.width), {"long_name": "second condition"}
     ended = []
     # The side of the first point of the dataset is followed first.
     for (_, value), reason in zip((row[0], row[-1]), curve.reasons, strict=False):
