@@ -261,6 +261,27 @@ def test_resume_of_a_closed_branch(orbit, tmp_path, stop):
     assert again.is_closed and same(again, whole)
 
 
+@pytest.mark.parametrize("most", [70, pytest.param(110, marks=pytest.mark.slow)])
+def test_closed_branch_from_both_sides(orbit, tmp_path, most):
+    """A closed branch on which one side ended at the number of points had parts of it twice, also special points.
+
+    All closed branches of the tests had more points than the way around on the first side.
+    """
+    state, limits = [-2.778e-3, -0.2005, -3.195e-3, -0.6344], ("24 Hz", "42 Hz")
+    start = rb.find_orbit(orbit.case.replaced({"load.frequency": "30.5 Hz"}), near=state, period=1)
+    options = {"step": 0.05, "progress": False}
+    whole = rb.continue_orbit(start, "load.frequency", limits, **options)
+    branch = rb.continue_orbit(start, "load.frequency", limits, points=most, **options)
+    assert branch.is_closed and not branch.data.attrs["ended"]
+    assert sorted(point.kind for point in branch.specials) == sorted(point.kind for point in whole.specials)
+    assert len(branch) < 1.1 * len(whole)
+    file, most_done = tmp_path / "branch.nc", most + 20
+    stopped = options | {"progress": lambda done, _: done < most_done}
+    rb.continue_orbit(start, "load.frequency", limits, points=most, store=file, **stopped)
+    again = rb.continue_orbit(start, "load.frequency", limits, points=most, store=file, **options)
+    assert again.is_closed and same(again, branch)
+
+
 def test_files_keep_the_passage_at_a_grazing(tmp_path):
     """How the branch continues at a grazing is in its file, in its special points and in its text."""
     case = rb.Case(

@@ -87,9 +87,17 @@ class Follower:
         """Length, count and tiny steps of the loop when `proceed` is called, and whether the point before is known."""
 
     def follow(
-        self, start: Point, most: int, proceed: Callable[[], bool], restart: Restart | None = None
+        self,
+        start: Point,
+        most: int,
+        proceed: Callable[[], bool],
+        restart: Restart | None = None,
+        other_end: Point | None = None,
     ) -> Iterator[Point]:
-        """Yield the points after a start, with special points, up to the limits or the end of the branch."""
+        """Yield the points after a start, with special points, up to the limits or the end of the branch.
+
+        A branch that comes to `other_end`, the last point of the side that was followed before, is a closed curve.
+        """
         corrector = self.corrector
         longest = corrector.longest
         point, length, count, tiny = corrector.resection(start), longest / 4, 0, 0
@@ -138,6 +146,10 @@ class Follower:
                 length /= 2
             if count > _LOOP and self._has_returned(start, point, after):
                 self.is_closed = True
+                return
+            if other_end is not None and self._has_returned(other_end, point, after, -1.0):
+                self.is_closed = True
+                self.reasons.clear()  # the other side ended within the curve
                 return
             moved = corrector.resection(after)
             # Distances are between points whose maps begin at the same phase.
@@ -191,10 +203,10 @@ class Follower:
         last = self.corrector.at_limit(point, after)
         return [] if last is None else [*self._special(point, last)[0], last]
 
-    def _has_returned(self, start: Point, point: Point, after: Point) -> bool:
-        """Return whether the branch passes its start between two points, in the same direction."""
+    def _has_returned(self, start: Point, point: Point, after: Point, direction: float = 1.0) -> bool:
+        """Return whether the branch passes its start between two points, in the same direction or, with -1, in the other."""
         low, high = sorted((point.value, after.value))
-        if not low <= start.value <= high or after.tangent[-1] * start.tangent[-1] <= 0:
+        if not low <= start.value <= high or direction * after.tangent[-1] * start.tangent[-1] <= 0:
             return False
         share = (start.value - point.value) / (after.value - point.value) if high > low else 0.5
         sizes = start.orbit.amplitudes

@@ -115,7 +115,9 @@ class BranchFile:
             return proceed()
 
         restart, self.restart, self.written = self.restart, None, len(row)
-        for point in follower.follow(self.start, most, goes_on, restart):
+        # The other side of a closed curve may have ended anywhere on it, because of its number of points.
+        other_end = next(iter(self.sides[0][-1:]), None) if side == 1 else None
+        for point in follower.follow(self.start, most, goes_on, restart, other_end):
             row.append(point)
 
     def branch(self) -> Branch:
