@@ -138,7 +138,8 @@ def measure_bed(damper: ParticleDamper) -> BedMeasures:
     :math:`\sum R^3 z / \sum R^3` over the particles; for level layers of equal spheres this is the top of the highest
     layer. The density is the fill ratio over the bed fill. The density of the bulk is the share of points in spheres, of
     the points of the bed that are two diameters away from walls and surface; its standard error is estimated from eight
-    parts of equal volume. It is NaN if no point is three diameters away from them: a thinner bulk is a layer or a gap. Volumes are counted on at least 65 000 evenly spread points, with a relative error below 0.3 %.
+    parts of equal volume. It is NaN if no point is three diameters away from them: a thinner bulk is a layer
+    or a gap. Volumes are counted on at least 65 000 evenly spread points, with a relative error below 0.3 %.
 
     Examples
     --------

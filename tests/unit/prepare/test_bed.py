@@ -74,7 +74,7 @@ def test_the_bulk_of_a_lattice_has_its_density() -> None:
 
 @pytest.mark.parametrize("height", [15, 17, 19, 21, 23, 30])
 def test_a_thin_bed_has_no_bulk(height: float) -> None:
-    """A bulk of a part of a layer had the density of a plane through its centres, up to 0.71, with an error of 0.02.
+    """A bulk that is a part of a layer had the density of a plane through its centres, 0.675 ± 0.018.
 
     All beds with a stated density in the bulk were ten diameters deep, or commensurate lattices.
     """
