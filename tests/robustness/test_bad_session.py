@@ -79,11 +79,27 @@ MESSAGES = {
     ),
     "negative mass": (
         changed("20 kg", "-20 kg"),
-        "structure.mass = '-20 kg'\n  must be greater than zero",
+        "structure.mass = '-20 kg'\n  must be greater than zero\n  try: \"20 kg\"",
     ),
     "negative diameter": (
         changed('radius = "33.17 mm"', 'diameter = "-1 mm"'),
-        "damper.ball.diameter = '-1 mm'\n  must be greater than zero",
+        "damper.ball.diameter = '-1 mm'\n  must be greater than zero\n  try: \"1 mm\"",
+    ),
+    "negative gap": (
+        changed('gap = "0.4 mm"', "gap = -0.0004"),
+        "damper.gap = -0.0004\n  must not be negative\n  try: 0.0004",
+    ),
+    "one wrong letter in a short unit": (
+        changed('gap = "0.4 mm"', 'gap = "0.4 mn"'),
+        "damper.gap = '0.4 mn'\n  unknown unit 'mn'\n  try: known: cm, ft, in, m, mil, mm,",
+    ),
+    "unit in capitals": (
+        changed('gap = "0.4 mm"', 'gap = "0.4 MM"'),
+        "damper.gap = '0.4 MM'\n  a length (m) is needed, not a quantity in MM\n  try: \"0.4 mm\"",
+    ),
+    "stiffness with the unit of a modulus": (
+        changed("80 kN/m", "80 kN/mm2"),
+        "structure.stiffness = '80 kN/mm2'\n  a stiffness (N/m) is needed, not a pressure or modulus\n  try: \"80 kN/m\"",
     ),
     "structure without a kind": (
         changed('kind = "sdof"\n', ""),

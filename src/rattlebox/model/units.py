@@ -22,7 +22,7 @@ from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
 from rattlebox._util.narrow import unmasked
 from rattlebox._util.quantities import STANDARD_GRAVITY as STANDARD_GRAVITY
 
-from .errors import Hint, at, nearest
+from .errors import NEGATIVE, NOT_POSITIVE, Hint, at, nearest
 
 if TYPE_CHECKING:
     import pint
@@ -38,6 +38,8 @@ _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s
 _SUPERSCRIPTS = {ord("²"): "^2", ord("³"): "^3", ord("⁴"): "^4"}
 _DENSITY = re.compile(r"^\s*\(?\s*([^()]+?)\s*\)?\s*\^2\s*/\s*Hz\s*$")
 
+_POWER = re.compile(r"(?<=[A-Za-zµ])([234])\b")
+"""Exponent that directly follows a unit, as in mm2."""
 _TON = re.compile(r"(?<![a-z_])(k|kilo|mega)?tons?(?![a-z_])", re.I)
 
 _COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(.*?)\s*$")
@@ -204,12 +206,19 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
                     )
                 return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
         grams = "m/s^2" in units and str(value.units) == "gram"  # g of gravity is meant
-        advice = f'"{value.magnitude:.12g} g_0"' if grams else _example(units)
+        meant = "g_0" if grams else _same_letters(f"{value.units:~}", units)
+        advice = f'"{value.magnitude:.12g} {meant}"' if meant else _example(units)
         raise Hint(f"{_wanted(units)}, not {_described(value)}", advice)
     try:
         return _finite(float(value)), None
     except (TypeError, ValueError):
         raise Hint(_wanted(units), _example(units)) from None
+
+
+def _same_letters(text: str, units: tuple[str, ...]) -> str:
+    """Return the common unit with the same letters, capitals or not (MM for mm), or ""."""
+    known = (name for unit in units for name in _COMMON.get(unit, {}))
+    return next((name for name in known if name.lower() == text.lower()), "")
 
 
 def _is_number(value: object) -> bool:
@@ -377,12 +386,16 @@ def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
         raise Hint(f"unknown unit {text[:_LONGEST_UNIT]!r}...", _example(units))
     ureg = registry()
     try:
-        unit = ureg.parse_units(text.replace("µ", "u").replace("^", "**").replace("²", "**2"))
+        plain = _POWER.sub(r"**\1", text)
+        unit = ureg.parse_units(plain.replace("µ", "u").replace("^", "**").replace("²", "**2"))
         _ = unit.dimensionality  # pint computes it late, and fails for octaves and other logarithmic units
         return number * unit
     except Exception as error:
         known = {name for unit in units for name in _COMMON.get(unit, {})}
-        raise Hint(f"unknown unit {text!r}", nearest(text, known) if known else _example(units)) from error
+        # A similar spelling of one or two letters is often another unit: mn is closest to m, and may be mm.
+        is_short = len(text) < 3 and text.lower() not in map(str.lower, known)
+        suggestion = f"known: {', '.join(sorted(known))}" if is_short else nearest(text, known)
+        raise Hint(f"unknown unit {text!r}", suggestion if known else _example(units)) from error
 
 
 def _finite(value: float) -> float:
@@ -490,7 +503,7 @@ def quantity(unit: str, description: str = "") -> Any:
 
 def _positive(value: float) -> float:
     if not value > 0:
-        raise Hint("must be greater than zero")
+        raise Hint(NOT_POSITIVE)
     if value < 1 / LARGEST:
         raise Hint(f"no less than {1 / LARGEST:g} in SI units is allowed")
     return value
@@ -498,7 +511,7 @@ def _positive(value: float) -> float:
 
 def _not_negative(value: float) -> float:
     if value < 0:
-        raise Hint("must not be negative")
+        raise Hint(NEGATIVE)
     return value
 
 
