@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from rattlebox.studies.orbits.branch_words import size_of_motion, special_kinds
 
-from .labels import capitalised, name_of, unit_of
+from .labels import capitalised, log_ticks, name_of, unit_of
 from .style import INK, SERIES_MARKERS, StyledFigure, figure_style, label, legend_above, pen, scaled, series_colour
 from .types import Size
 
@@ -93,12 +93,14 @@ def plot_branches(
             _draw_branch(axes, branch, branch.data.value.values / across, heights[name] / scale, number, name, marks)
         if log:
             axes.set_yscale("log")
+            log_ticks(axes.yaxis)
         else:
             axes.set_ylim(bottom=0)
         axes.margins(x=0.02)
         path = capitalised(first.parameter.replace(".", " ").replace("_", " "))
         label(axes, "x", _WORDS.get(first.parameter, path), "" if across_unit == "1" else across_unit)
-        label(axes, "y", capitalised(name_of(shown)), unit)
+        place = f" of {shown.place.item()}" if "place" in shown.coords and first.data.sizes["place"] > 1 else ""
+        label(axes, "y", capitalised(name_of(shown)) + place, unit)
         for mark in marks.values():
             axes.add_line(mark)
         legend_above(axes)

@@ -109,7 +109,9 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
                 transient = _is_transient(one)
                 axes.plot(frequency, line.where((one.period == 0) & ~transient), "x", color=colour, **_mark())
                 axes.plot(frequency, line.where(transient), "v", color=colour, mfc="none", **_mark())
-    label(axes, "y", capitalised(name_of(response[name])) + " over level" * per_level, prefixed)
+    observed = response.attrs.get("observed") if name in _DISPLACEMENTS else None
+    place = f" of {observed}" if observed else ""
+    label(axes, "y", capitalised(name_of(response[name])) + place + " over level" * per_level, prefixed)
 
 
 def level_handles(response: xarray.Dataset) -> list[Line2D]:

@@ -131,3 +131,34 @@ def test_colours_in_grey():
     lightness = _colours()(np.linspace(0, 1, 200))[:, :3] @ [0.299, 0.587, 0.114]
     assert (np.diff(lightness) > 0).all()
     assert np.ptp(to_rgb(FAINT)) < 0.01
+
+
+def test_amplitudes_name_their_point() -> None:
+    """Figures of one case, a branch and a response, had amplitudes of different points and named neither.
+
+    The structures of all tests of these figures had one point.
+    """
+    frame = rb.Matrices(
+        M=[[2.0, 0.0], [0.0, 1.0]],
+        K=[[80e3, -40e3], [-40e3, 40e3]],
+        damping_ratio=0.01,
+        points={"lower": 0, "upper": 1},
+    )
+    ball = rb.ImpactDamper(
+        ball=rb.Sphere(radius="16 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6), point="upper"
+    )
+    base = rb.Harmonic(amplitude="1.2 m/s^2", frequency="19 Hz")
+    case = rb.Case(structure=frame, damper=ball, base=base, duration="8 s", method=rb.Newton())
+    options = {"levels": ["1.2 m/s^2"], "direction": "fresh", "cycles": (20, 8), "progress": False}
+    found = rb.frequency_response(case, ["19 Hz", "19.1 Hz"], **options)
+    labels = [axes.get_ylabel().replace("\n", " ") for axes in rb.plot_frequency_response(found).axes[:2]]
+    assert "first harmonic of upper (mm)" in labels[0] and "upper" not in labels[1]
+    at_base = rb.plot_frequency_response(rb.frequency_response(case, ["19 Hz", "19.1 Hz"], point="lower", **options))
+    assert "first harmonic of lower (mm)" in at_base.axes[0].get_ylabel().replace("\n", " ")
+    branch = rb.continue_orbit(rb.find_orbit(case, period=1), "base.frequency", ("18.9 Hz", "19.1 Hz"), progress=False)
+    for point, name in ((None, "lower"), ("upper", "upper")):
+        figure = rb.plot_branches(branch, point=point, log=True)
+        figure.canvas.draw()
+        axes = figure.axes[0]
+        assert axes.get_ylabel().replace("\n", " ") == f"Amplitude of {name} (mm)"
+        assert "times" not in "".join(text.get_text() for text in axes.get_yticklabels(which="both"))

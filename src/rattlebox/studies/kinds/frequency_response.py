@@ -210,6 +210,8 @@ class FrequencyResponse(Study):
             "tolerance": self.tolerance,
         }
         about |= {name: runs.attrs[name] for name in ("measures", "point") if name in runs.attrs}
+        if len(self.case.modes.lines()) > 1:
+            about["observed"] = self.point or (self.case.dampers[0].point if self.case.dampers else "")
         if not self.case.particle_dampers:
             orbits = Orbits(found.period.values, found.motion.values, found.multiplier.values, found.spread.values)
             notes |= unsettled(orbits, self.cycles, self.tolerance)
