@@ -75,7 +75,8 @@ def require_storeys(points: Iterable[str]) -> None:
     if not storeys_in(points):
         raise Hint(
             'largest_drift needs all floors of a building, points "storey 1", "storey 2", ...',
-            'ShearBuilding; or point = "a - b", whose peak is the drift between two points',
+            'ShearBuilding, or these names for its floors in the points of other structures; or point = "a - b", whose peak '
+            "is the drift between two points",
         )
 
 
