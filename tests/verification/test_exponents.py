@@ -61,6 +61,7 @@ def test_sum_of_exponents_is_the_loss_of_volume_at_hard_impacts() -> None:
     rule = 2 * hits * math.log(0.9) / (cycles / 10)
     assert found["sum"].item() == pytest.approx(rule, rel=0.05)
     assert found.attrs["left_out"] == 0
+    assert ("too_short" in found.attrs) == bool(np.isnan(found.exponent_interval).any())
     assert 1 < found.dimension.item() < 2
 
 

@@ -149,7 +149,7 @@ def sentences(data: xarray.Dataset) -> Iterator[str]:
 
 def stopped_words(count: int, most: int) -> str:
     """Return the reason why a branch or curve with some number of points ends at no limit of a parameter."""
-    return f"the limit of {counted(most, 'point')} is reached" if count >= most else "the continuation was stopped"
+    return f"the limit of points = {most} is reached" if count >= most else "the continuation was stopped"
 
 
 def noun(kind: str) -> str:

@@ -52,7 +52,7 @@ def lyapunov_spectrum(near: Case | Orbit, *, cycles: tuple[int, int] = (200, 500
         period; for a periodic motion it is the logarithm of the absolute value of a Floquet multiplier, over its cycles.
         Without dimensions: `sum` [1/s] of the exponents, the rate at which volumes of states shrink; `dimension`, that of
         the attractor by Kaplan and Yorke. `attrs["left_out"]` is the share of the time in which the derivative does not
-        exist, as at a grazing impact, which the means leave out.
+        exist, as at a grazing impact, which the means leave out; `attrs["too_short"]` how many exponents have no interval.
 
     Raises
     ------
@@ -185,6 +185,11 @@ def _dataset(exponents: Array, rates: Array, period: float, left_out: float, cyc
         return dims, values, {"units": units, "long_name": text}
 
     half = [mean_interval(each).half_width if np.isfinite(each).all() else np.nan for each in rates.T]
+    lacking = int(np.isnan(half).sum())
+    too_short = {
+        "too_short": f"no 95 % interval of {lacking} of {len(half)} exponents: the motion is regular, or its growth varies "
+        "too slowly for the evaluated cycles; try: more cycles to evaluate"
+    }
     each = "number"
     return xarray.Dataset(
         {
@@ -195,7 +200,8 @@ def _dataset(exponents: Array, rates: Array, period: float, left_out: float, cyc
             "dimension": over(_dimension(exponents), "1", "dimension of the attractor by Kaplan and Yorke"),
         },
         coords={"number": over(np.arange(1, exponents.size + 1), "1", "number of the exponent", each)},
-        attrs={"title": "Lyapunov exponents", "left_out": left_out, "cycles": list(cycles)},
+        attrs={"title": "Lyapunov exponents", "left_out": left_out, "cycles": list(cycles)}
+        | (too_short if lacking else {}),
     )
 
 

@@ -51,8 +51,9 @@ def find_orbit(case: Case, near: Run | Orbit | Any = None, *, period: int | None
         Case with harmonic loads or base motions of one common period, and impact dampers or stops.
     near
         Where the search begins: a run, whose last state is used; a periodic motion; or a state, an array with displacement
-        and velocity of each mode, then positions and velocities of all balls, at the phase of the loads at t = 0. Default: a
-        run of the case, which finds stable motions.
+        and velocity of each mode [kg^1/2 m, kg^1/2 m/s], the square root of the mass times those of an `SDOF`, then
+        positions and velocities of all balls, at the phase of the loads at t = 0. Default: a run of the case, which finds
+        stable motions.
     period
         Period of the motion in periods of the loads; by default the shortest one, up to 16, after which the motion at
         `near` nearly repeats.

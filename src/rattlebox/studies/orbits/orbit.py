@@ -96,7 +96,8 @@ class Orbit:
     period : float
         Period of the motion [s].
     state : (n,) ndarray
-        State at the beginning: displacement and velocity of each mode, then positions and velocities of all balls.
+        State at the beginning: displacement and velocity of each mode [kg^1/2 m, kg^1/2 m/s], then positions and velocities
+        of all balls.
     phase : float
         Part of the period of the loads at which the state is taken; 0 unless a contact is near then.
     residual : float
