@@ -101,7 +101,7 @@ def plot_particles(
     size: Size = "page",
     renderer: Renderer | None = None,
 ) -> Figure:
-    """Draw the particles in their cavities at one time, as seen from the base.
+    """Draw the particles in their cavities at one time, as seen from the base, or from a cavity that turns.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def film_particles(
     renderer: Renderer | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> Path:
-    """Write a film of the particles in their cavities, with a picture for each snapshot, as seen from the base.
+    """Write a film of the particles in their cavities, with a picture for each snapshot, seen as in `particles`.
 
     Parameters
     ----------

@@ -36,6 +36,12 @@ def test_derivatives_of_the_angle(motion: dict[str, Any]) -> None:
     assert np.abs(angle[inside]).max() <= most.angle * (1 + 1e-12)
 
 
+@pytest.mark.parametrize("text", ["90 rpm", "90 1/min", "90 rev/min", "90 r/min", "1.5 rev/s", "1.5 Hz", "540 deg/s"])
+def test_units_of_speeds(text: str) -> None:
+    """Spellings of one angular velocity are equal; that of data sheets, rev/min, was refused with 1/min as advice."""
+    assert rb.Rotation(arm=ARM, speed=text).speed == pytest.approx(3 * math.pi, rel=1e-15)
+
+
 def test_stated_values() -> None:
     """The angle passes through stated angles, and the angular velocity through stated speeds."""
     first = rb.Rotation(arm=ARM, times=[0, 0.4, 1.0], angles=["0 deg", "20 deg", "90 deg"])

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support import dem_cases
+from support import dem_cases, triangle_meshes
 from support.dem_cases import Ball
 
 import rattlebox as rb
@@ -243,13 +243,13 @@ PRESSED = 100.0
 """Acceleration of the base that presses a bed down and mobilises its friction at the walls [m/s^2]."""
 
 
-def pressed(cavity: Any, count: int, by: float = PRESSED, duration: float = 0.1, **options: Any) -> Any:
+def pressed(cavity: Any, count: int, by: float = PRESSED, duration: float = 0.1, seed: int = 1, **options: Any) -> Any:
     """Return the mean forces at the end of a run in which a bed is slowly pressed down, over the force on it, by wall."""
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="glass", diameter=BALL, count=count),
         cavity=cavity,
         contact=rb.Tsuji(restitution=0.3),
-        packing=rb.Settled(seed=1),
+        packing=rb.Settled(seed=seed),
         softening=3e4,
         **options,
     )
@@ -312,6 +312,30 @@ def test_side_walls_carry_a_deep_bed_as_in_janssen_s_law() -> None:
     filled = 0.55  # volume of the balls over that of their bed in a can of five diameters
     depth = saturated * BALL / (6 * filled * (5 / 2) ** 2)
     assert 0.35 < 5 * BALL / (4 * np.mean(friction) * depth) < 0.65
+
+
+@pytest.mark.slow
+def test_side_of_a_surface_carries_a_deep_bed_as_that_of_a_can() -> None:
+    """In a can of triangles whose floor and side are groups, a pressed bed loads the floor as in a can of exact walls.
+
+    Janssen's law was compared in exact cans only, in which no contact passes from the side to the floor.
+    """
+    length, side = 21 * BALL, rb.Wall(friction=0.2, rolling=0.5)
+    vertices, faces = triangle_meshes.cylinder(2.5 * BALL, length, 64)
+    groups = {"floor": "-z", "lid": "z", "side": "rest"}
+    surface = rb.Mesh(vertices=vertices, faces=faces, unit="m", groups=groups)
+    cans = {"floor": surface, "first end": rb.Cylinder(diameter=5 * BALL, length=length)}
+    means, errors = [], []
+    for floor, cavity in cans.items():
+        loads = []
+        for seed in range(1, 9):
+            walls, _ = pressed(cavity, 250, seed=seed, friction=0.3, walls={"side": side})
+            assert -(walls["side"][0] + walls[floor][0])[2] == pytest.approx(1, abs=5e-3)
+            loads.append(-walls[floor][0][2])
+        means.append(np.mean(loads))
+        errors.append(2.36 * np.std(loads, ddof=1) / 8**0.5)  # Student, eight values
+    assert 0.5 < means[1] < 0.8 and max(errors) < 0.04
+    assert abs(means[0] - means[1]) < np.hypot(*errors)
 
 
 @pytest.mark.slow

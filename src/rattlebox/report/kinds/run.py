@@ -26,7 +26,7 @@ _CAPTIONS = {
     "psd": "Power spectral density of the absolute acceleration, with its RMS value.",
     "third_octaves": "RMS value of the absolute acceleration in third-octave bands, with the largest one.",
     "shock_spectrum": "Shock response spectrum: largest absolute acceleration of oscillators on the points and on the base.",
-    "particles": "The particles at the end of the run, as seen from the base.",
+    "particles": "The particles at the end of the run, as seen from the base, or from a cavity that turns.",
 }
 _LOSSES = {
     "viscous": "in the structure",
