@@ -57,21 +57,28 @@ def loss(speed: float, seed: int) -> float:
 # %%
 # Each speed is computed with several random packings; the bars are 95 % intervals of their mean.
 
-if __name__ == "__main__":
+
+@rb.plots.figure_style("page")
+def main() -> None:
+    """Compute the losses, draw them, and check the collapse."""
     losses = np.array([[loss(speed, seed) for seed in range(1, PACKINGS + 1)] for speed in SPEEDS])
     mean = losses.mean(axis=1)
     half = t.ppf(0.975, PACKINGS - 1) * losses.std(axis=1, ddof=1) / np.sqrt(PACKINGS)
     critical = np.sqrt(60 * 9.80665 / 0.06) * 30 / np.pi
     for speed, value, bar in zip(SPEEDS, mean, half, strict=True):
         print(f"{speed:5.0f} rpm: {value:.2f} +- {bar:.2f} m V^2 a cycle")
-    figure, axes = plt.subplots(layout="constrained")
-    axes.errorbar(SPEEDS, mean, half, marker="o", capsize=3, label="mean of the packings, 95 %")
+    figure, axes = plt.subplots(figsize=(5, 3.2), layout="constrained")
+    axes.errorbar(SPEEDS, mean, half, marker="o", ms=4, capsize=3, label="mean of the packings, 95 %")
     axes.axvline(critical, linestyle="--", color="0.5", label="centrifugal acceleration = 60 g")
-    axes.set(xlabel="speed of the gear [rpm]", ylabel="loss in a cycle / (m V²)", ylim=(0, None))
+    axes.set(xlabel="Speed of the gear (rpm)", ylabel="Loss in a cycle over m V$^2$", ylim=(0, None), xlim=(-40, 1340))
     axes.legend()
-    figure.savefig("gear.png")
+    figure.savefig("gear.png", dpi=200)
 
     # The collapse, with its interval: the loss at 1000 rpm is well below that at 700 rpm.
     ratio = mean[SPEEDS == 1000][0] / mean[SPEEDS == 700][0]
     print(f"loss at 1000 rpm over that at 700 rpm: {ratio:.2f}")
     assert (mean + half)[SPEEDS == 1000][0] < 0.5 * (mean - half)[SPEEDS == 700][0]
+
+
+if __name__ == "__main__":
+    main()

@@ -59,7 +59,7 @@ def case(cavity, bodies, acceleration):
             contact=rb.Tsuji(restitution=0.7),
             friction=0.3,
             packing=rb.Settled(seed=1),
-            softening=2000,
+            softening=60,
         ),
         duration=24 / FREQUENCY,
         output=rb.Output(rate=40 * FREQUENCY),
