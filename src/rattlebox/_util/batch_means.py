@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .narrow import unmasked
+
 FloatArray = NDArray[np.float64]
 
 FEWEST_VALUES = 30
@@ -114,7 +116,7 @@ def mean_interval(values: ArrayLike) -> Interval:
     >>> result.lower < 5.0 < result.upper, round(result.half_width, 2)
     (True, 0.05)
     """
-    x = np.asarray(values, dtype=np.float64)
+    x = np.asarray(unmasked(values), dtype=np.float64)
     if x.ndim != 1 or not x.size or not np.isfinite(x).all():
         raise ValueError(f"values of shape {x.shape} must be a one-dimensional array of finite numbers")
     mean = float(np.mean(x))

@@ -25,4 +25,6 @@ def instance(value: object, kind: type[Value]) -> Value:
 
 def unmasked(values: Any) -> Any:
     """Return the values with NaN in place of masked ones, which are invalid and would become numbers in an array."""
-    return np.ma.filled(values.astype(float), np.nan) if isinstance(values, np.ma.MaskedArray) else values
+    if not isinstance(values, np.ma.MaskedArray):
+        return values
+    return np.ma.filled(values.astype(np.result_type(values, float)), np.nan)

@@ -20,6 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.narrow import unmasked
+
 from .signals import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -60,7 +62,7 @@ def minimum_real_part(frequency: FloatArray, response: ComplexArray) -> float:
     >>> round(minimum_real_part(frequency, 1e-6 / (1 - r**2 + 0.04j * r)) * 1e6, 4)  # -1 / (4 zeta (1 + zeta))
     -12.2549
     """
-    frequency, real = np.asarray(frequency, float), np.asarray(response).real
+    frequency, real = np.asarray(frequency, float), np.asarray(unmasked(response)).real
     if not np.isfinite(real).any():
         return math.nan
     return min(_bottom(frequency, real, int(k)) for k in _candidates(real))

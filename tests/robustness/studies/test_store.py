@@ -200,6 +200,14 @@ def test_full_and_read_only_file_systems(mount: str, message: str, tmp_path: Pat
     assert f"{message}\n  try: " in done.stderr.splitlines()[-2] + "\n" + done.stderr.splitlines()[-1] + "\n"
 
 
+@pytest.mark.parametrize("name", ["n" * 300, "file/study.zarr", "/proc/study.zarr"])
+def test_folders_that_cannot_be_made(name: str, tmp_path: Path) -> None:
+    """A name that no file system takes ends with the reason; only full and read-only disks were tested, others "damaged"."""
+    (tmp_path / "file").touch()
+    with pytest.raises(rb.StoreError, match=r"the study cannot be written: .*\n  try: another folder"):
+        study(tmp_path / name)
+
+
 def test_error_of_the_task_is_raised(tmp_path: Path) -> None:
     """An error of the task is raised unchanged, and the store can still be used."""
     with pytest.raises(ZeroDivisionError, match="an error of the task"):

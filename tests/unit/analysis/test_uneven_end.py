@@ -95,6 +95,21 @@ def test_times_of_single_precision(name: str, begin: float) -> None:
     np.testing.assert_allclose(values, others, rtol=2e-3, atol=2e-3 * float(abs(others).max()))
 
 
+def test_masked_numbers_elsewhere_are_refused() -> None:
+    """Means and measured rebounds refuse masked numbers, and the real part of a response leaves them out."""
+    values = np.ma.masked_greater(np.linspace(0.2, 0.7, 64), 0.69)
+    with pytest.raises(ValueError, match="finite numbers"):
+        analysis.mean_interval(values)
+    with pytest.raises(rb.CaseError, match="finite number"):
+        rb.Drops(["1 m"] * 64, values)
+    frequency = np.linspace(20, 40, 401)
+    response = 1 / (30**2 - frequency**2 + 0.6j * frequency)
+    whole = analysis.minimum_real_part(frequency, response)
+    assert whole == analysis.minimum_real_part(frequency, np.ma.masked_array(response))
+    peak = abs(frequency - 30) < 1
+    assert 0 > analysis.minimum_real_part(frequency, np.ma.masked_where(peak, response)) > 0.8 * whole
+
+
 def test_times_too_large_for_single_precision_are_refused() -> None:
     """A day after the start, single precision has steps of 8 ms, so that a step of 20 ms has no even times."""
     time = (86_400 + 0.02 * np.arange(400)).astype(np.float32)

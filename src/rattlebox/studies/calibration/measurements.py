@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rattlebox._util.frozen import complete
+from rattlebox._util.narrow import unmasked
 from rattlebox._util.quantities import amount
 from rattlebox.analysis.damping_curve import damping_over_amplitude
 from rattlebox.model.dampers import Sphere
@@ -45,7 +46,7 @@ def read_column(place: str | tuple[str | int, ...], values: Any, units: tuple[st
     if _has_shared_unit(values):
         values, shared = values
     if hasattr(values, "tolist") and not hasattr(values, "magnitude"):  # arrays of NumPy and xarray
-        values = np.asarray(values).tolist()
+        values = np.asarray(unmasked(values)).tolist()
     single = not _is_list(values)
     items = [values] if single else list(values)
     if not items:
@@ -347,7 +348,7 @@ class RingDown:
             If times are not evenly spaced, or the record is too short or too coarse.
         """
         levels, unit = read_column("amplitudes", amplitudes, ("m",))
-        found = damping_over_amplitude(time, np.asarray(displacement, float), levels).damping_ratio.values
+        found = damping_over_amplitude(time, np.asarray(unmasked(displacement), float), levels).damping_ratio.values
         missing = np.flatnonzero(~np.isfinite(found))
         if missing.size:
             with at("amplitudes", int(missing[0])):

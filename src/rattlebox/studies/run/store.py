@@ -367,10 +367,11 @@ def exclusive_writer(path: Path) -> Iterator[Path]:
     from rattlebox import __version__
 
     progress = path / PROGRESS
-    if path.exists() and not path.is_dir():
-        raise StoreError(f"{path} is a file; a study must be a folder", "another name, such as study.zarr")
-    with _explain_disk_errors(path), report_damage(path):
+    with _explain_disk_errors(path):
+        if path.exists() and not path.is_dir():
+            raise StoreError(f"{path} is a file; a study must be a folder", "another name, such as study.zarr")
         path.mkdir(parents=True, exist_ok=True)
+    with _explain_disk_errors(path), report_damage(path):
         if read_marker(path) is None:
             if not is_free(path):
                 raise StoreError(
