@@ -341,7 +341,9 @@ class Record(FileSignal):
         step, wanted = values.get("dt"), values.get("unit")
         with at("file"):
             path = absolute(values["file"])
-            is_table = step is not None or values.get("columns") == "rows" or np.size(values.get("columns") or ()) == 2
+            chosen = values.get("columns")
+            has_two = isinstance(chosen, (list, tuple)) and len(chosen) == 2
+            is_table = step is not None or chosen == "rows" or has_two
             form = _signal_format(path, is_table=is_table)
         with at("columns"):
             columns = as_columns(values.get("columns"), 1 if step is not None or form else 2)

@@ -549,3 +549,13 @@ def test_times_without_values_are_refused(delimiter: str, options: Any, tmp_path
     (tmp_path / "log.csv").write_text("\n".join(lines).replace(",", delimiter) + "\n")
     with pytest.raises(rb.DataError, match=r"column of values|'s', written above"):
         rb.Record.from_file(tmp_path / "log.csv", **options)
+
+
+@pytest.mark.parametrize("columns", [[["a"], 2], [(1, 2), 3], [1, {"a": 2}], {"a": 1}, [1.5, 2]])
+def test_columns_of_other_types(columns: object, tmp_path: Path) -> None:
+    """Lists in a list are no columns and are refused like other types; the message was one of NumPy without a place."""
+    (tmp_path / "push.csv").write_text("time (s),force (N)\n0,0\n0.1,3\n0.2,1\n")
+    with pytest.raises(
+        rb.CaseError, match=r"^Record: columns.*\n  two numbers or names are needed.*\n  try: columns = "
+    ):
+        rb.Record.from_file(tmp_path / "push.csv", columns=columns)
