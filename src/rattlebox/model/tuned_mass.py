@@ -199,7 +199,7 @@ class TunedMass(Part):
         if not 0 <= content < self.mass:
             raise Hint(
                 f"the content has a mass of {content:g} kg, but box and content together have {self.mass:g} kg",
-                f"less than {self.mass:g} kg; often 0.5 to 0.9 of it",
+                f"from 0 to less than {self.mass:g} kg; often 0.5 to 0.9 of it",
                 ["mass"],
             )
         lighter = math.sqrt(self.mass / (self.mass - content))

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 _BASE = "base"
 _ACCELERATIONS = {"acceleration": "Acceleration relative to base", "absolute_acceleration": "Absolute acceleration"}
+_UNDER = 0.05
+"""Share of the mean square below the lowest third-octave band from which on the legend states it."""
 _DECADES = 8  # of a power spectral density below its peak; numbers below are rounding
 
 
@@ -206,7 +208,8 @@ def plot_third_octaves(
     Returns
     -------
     Figure
-        Figure with one panel, and a second axis in g for accelerations.
+        Figure with one panel, and a second axis in g for accelerations. The legend has the largest band, and the share of
+        the mean square below the lowest band, for which the run is too short, above 5 %.
 
     Raises
     ------
@@ -218,18 +221,25 @@ def plot_third_octaves(
     `rattlebox.analysis.band_levels` of the density of `plot_psd`.
     """
     signals = _Signals.of(run, of, point, between)
+    densities = list(signals.densities(resolution))
     try:
-        levels = [band_levels(density) for density in signals.densities(resolution)]
+        levels = [band_levels(density) for density in densities]
     except ValueError as error:
         raise CaseError(str(error), "a longer run or a smaller resolution") from None
     with figure_style(size):
         figure = StyledFigure(size, 0.7)
         axes = figure.subplots()
         scale = scaled([level.max() for level in levels], signals.unit)
-        for number, (line, level) in enumerate(zip(signals.lines, levels, strict=True)):
+        for number, (line, density, level) in enumerate(zip(signals.lines, densities, levels, strict=True)):
             edges = np.append(level["lower"].values, level["upper"].values[-1])
             k = int(np.argmax(level.values))
             name = f"{signals.named(line, float(level[k]), '')} at {level['nominal'].values[k]} Hz"
+            # Bands that a short run does not resolve are not drawn, but may hold nearly all of its motion.
+            under = density.where(density.frequency < edges[0], 0.0).integrate("frequency") / density.integrate(
+                "frequency"
+            )
+            if under > _UNDER:
+                name += f" ({100 * float(under):.0f} % below)"
             axes.stairs(level / scale.divisor, edges, color=series_colour(number), lw=pen(0.9), label=name)
         axes.set_ylim(bottom=0)
         text = f"RMS of {signals.text[0].lower()}{signals.text[1:]} in third octaves"
