@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from rattlebox.studies.work.measures import INTERVAL
 
-from .labels import LabelledValues, capitalised, interval_ends
+from .labels import LabelledValues, capitalised, interval_ends, is_geometric, plain
 from .style import INK, SERIES_COLOURS, StyledFigure, figure_style, label, pen
 from .types import Size, Style, Vector
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
 _MAX_PARAMETERS = 3
+_MAX_TICKS = 5  # of the values of a list; more would touch each other
 _LEGEND_COLUMNS = 5
 _DOTS: Style = {"linestyle": "", "marker": "o", "color": SERIES_COLOURS[0], "alpha": 0.5, "markeredgewidth": 0}
 _RINGS: Style = {
@@ -152,7 +153,7 @@ def _draw_objective(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None
     axes.margins(0.04)
     x.label(axes, "x", log=_is_log(study, path))
     y.label(axes, "y")
-    _tick_whole_numbers(axes.xaxis, study[path])
+    _tick_choices(axes.xaxis, study, path)
 
 
 def _draw_parameter(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None:
@@ -163,7 +164,7 @@ def _draw_parameter(axes: Axes, study: xr.Dataset, path: str, goal: str) -> None
     axes.margins(0.04)
     x.label(axes, "x")
     y.label(axes, "y", log=_is_log(study, path))
-    _tick_whole_numbers(axes.yaxis, study[path])
+    _tick_choices(axes.yaxis, study, path)
 
 
 def _parameter(study: xr.Dataset, path: str) -> LabelledValues:
@@ -172,11 +173,23 @@ def _parameter(study: xr.Dataset, path: str) -> LabelledValues:
     return values._replace(text=capitalised(values.text.removeprefix("Damper ")))
 
 
-def _tick_whole_numbers(axis: Axis, values: xr.DataArray) -> None:
-    """Place ticks of a whole number at whole numbers only."""
+def _tick_choices(axis: Axis, study: xr.Dataset, path: str) -> None:
+    """Place ticks at the values of a short list of numbers, and those of a whole number at whole numbers only."""
+    values = study[path]
     if values.dtype.kind == "i":
         axis.set_major_locator(MaxNLocator(integer=True))
+    choices = _choices(study, path)
+    if 0 < choices.size <= _MAX_TICKS and not _is_log(study, path):
+        divisor = LabelledValues.of(values).divisor
+        axis.set_ticks(choices / divisor, [plain(choice) for choice in choices / divisor])
+
+
+def _choices(study: xr.Dataset, path: str) -> Vector:
+    """Return the numbers of which a parameter has one, in ascending order; none for bounds and lists of names."""
+    is_number = study[path].dtype.kind in "fiu"
+    chosen = json.loads(study.attrs["parameters"])[path]["choices"] if is_number else None
+    return np.unique(np.asarray(chosen or [], dtype=float))
 
 
 def _is_log(study: xr.Dataset, path: str) -> bool:
-    return bool(json.loads(study.attrs["parameters"])[path]["log"])
+    return bool(json.loads(study.attrs["parameters"])[path]["log"]) or is_geometric(_choices(study, path))

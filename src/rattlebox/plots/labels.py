@@ -88,7 +88,7 @@ class StudyAxis(NamedTuple):
     def of(cls, coord: xr.DataArray) -> StudyAxis:
         """Return the axis of a coordinate."""
         values = LabelledValues.of(coord)
-        log = values.names is None and _is_geometric(values.numbers)
+        log = values.names is None and is_geometric(values.numbers)
         numbers = np.log(values.numbers) if log else values.numbers
         if numbers.size == 1:
             half = 0.5 * abs(numbers[0]) or 0.5
@@ -105,7 +105,8 @@ class StudyAxis(NamedTuple):
             self.values.axis_in_g(axes, which)
 
 
-def _is_geometric(values: Vector) -> bool:
+def is_geometric(values: Vector) -> bool:
+    """Return whether values have the same ratio from each to the next."""
     if values.size < 4 or np.any(values <= 0):
         return False
     ratios = values[1:] / values[:-1]

@@ -417,6 +417,25 @@ def test_plot(objective: Any, size: Any, tmp_path: Path) -> None:
     assert len(np.asarray(marked.get_xdata())) == result.sizes["front"]
 
 
+@pytest.mark.parametrize("objective", ["impact_share", ["added_mass", "impact_share"]])
+def test_plot_has_ticks_at_the_values_of_a_list(objective: Any) -> None:
+    """Ticks are at the values of a list, which have equal distances on a logarithmic axis if their ratios are equal.
+
+    Figures of bounds and of names were looked at; those of a list of numbers had ticks between its values.
+    """
+    few, many = [2e-4, 5e-4, 1.2e-3], (1e-5 * 10 ** np.arange(4)).tolist()
+    options: dict[str, Any] = {"objective": objective, "starts": 2, "progress": False, "levels": {}}
+    result = rb.design(struck(), {GAP: few, RADIUS: [0.03, 0.04]}, **options)
+    axis = "xaxis" if isinstance(objective, str) else "yaxis"
+    shown = getattr(rb.plot_design(result).axes[1], axis)
+    np.testing.assert_allclose(shown.get_ticklocs(), [0.2, 0.5, 1.2])
+    assert [text.get_text() for text in shown.get_ticklabels()] == ["0.2", "0.5", "1.2"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the extreme gaps have no value
+        result = rb.design(struck(), {GAP: many, RADIUS: [0.03, 0.04]}, **options)
+    assert getattr(rb.plot_design(result).axes[1], axis).get_scale() == "log"
+
+
 def test_plot_shows_why_a_trial_is_not_feasible() -> None:
     """The legend distinguishes trials without a value and too heavy ones, and ticks of trials are whole numbers."""
     with pytest.warns(UserWarning, match="no trial is feasible"):
