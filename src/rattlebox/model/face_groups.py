@@ -95,7 +95,11 @@ class FaceGroup(Part):
         for name in ranges:
             low, high = getattr(self, name)
             if low > high:
-                raise Hint(f"the lowest coordinate, {low:g} m, is above the highest one, {high:g} m", "", [name])
+                raise Hint(
+                    f"the lowest coordinate, {low:g} m, is above the highest one, {high:g} m",
+                    "the lowest first",
+                    [name],
+                )
         return self
 
     def select(self, points: Vector, normals: Vector) -> tuple[NDArray[np.bool_], int]:
@@ -197,7 +201,7 @@ def select_groups(
             limits = f"; {counted(across, 'triangle')} {'reaches' if across == 1 else 'reach'} across its limits"
             raise Hint(
                 f"no triangle of the surface is in the group {name!r}{limits if across else nearby}",
-                "limits at edges of triangles, relative to the centre" if across else "a larger angle within",
+                _advice(group, points, normals, across),
                 [name],
             )
         if across:
@@ -240,6 +244,17 @@ def _with_ungrouped(names: list[str]) -> list[str]:
 
 def _natural(name: str) -> list[tuple[int, str]]:
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
+
+
+def _advice(group: FaceGroup, points: Vector, normals: Vector, across: int) -> str:
+    """Return what to try for a group without a triangle: the smallest whole angle with which it has one, if there is one."""
+    wide, _ = group.model_copy(update={"within": np.pi / 2}).select(points, normals)
+    if group.facing is None or across or not wide.any():
+        return "limits at edges of triangles, relative to the centre" + (
+            ", or another direction" * (group.facing is not None)
+        )
+    angle = np.degrees(np.arccos(min(1.0, float(_likeness(group, normals)[wide].max()))))
+    return f'within = "{min(90, np.ceil(angle)):.0f} deg"'
 
 
 def _likeness(group: FaceGroup, normals: Vector) -> Vector:

@@ -4,6 +4,7 @@ A surface was one wall with the name "mesh", so that no test named a part of it.
 """
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -52,6 +53,16 @@ def test_groups_by_direction_have_names_and_areas():
         {"one": 750, "wide": 500, "mesh": 2450}
     )
     assert areas(box(groups={"all": "rest"})) == pytest.approx({"all": 3700})
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_advice_on_an_angle_is_followed(seed):
+    """With the angle that the message names, the group has a triangle; no test could follow one without an angle."""
+    direction = tuple(np.random.default_rng(seed).normal(size=3))
+    with pytest.raises(rb.CaseError, match="no triangle") as raised:
+        box(groups={"one": rb.FaceGroup(direction, within="0.01 deg")})
+    angle = re.fullmatch(r'within = "(\d+ deg)"', raised.value.suggestion)[1]
+    assert areas(box(groups={"one": rb.FaceGroup(direction, within=angle)}))["one"] > 0
 
 
 def test_groups_by_place():
