@@ -16,7 +16,7 @@ from contextvars import ContextVar
 from difflib import get_close_matches
 from pathlib import Path
 
-from .exceptions import DataError, RattleboxError, ResourceError
+from .exceptions import DataError, RattleboxError, ResourceError, unreadable
 
 HDF5_ERRORS = (OSError, AttributeError, LookupError, RuntimeError, TypeError, ValueError, OverflowError)
 """Exceptions of the HDF5 libraries for damaged files and files with other content."""
@@ -79,7 +79,7 @@ def require_readable(path: Path) -> None:
     try:
         path.open("rb").close()
     except OSError as error:
-        raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
+        raise unreadable(path, error) from None
 
 
 def check_format(path: Path, version: object, supported: int, older: Collection[int] = ()) -> None:

@@ -85,6 +85,12 @@ class DataError(RattleboxError, OSError, ValueError):
     """A file of the user (a record, a result, a checkpoint) is missing, damaged, foreign, or cannot be read or written."""
 
 
+def unreadable(path: object, error: OSError) -> DataError:
+    """Return the error about a file that the system does not read."""
+    advice = "permission to read it, or a copy of the file in another folder"
+    return DataError(f"{path} cannot be read: {error.strerror or error}", advice)
+
+
 class StoreError(RattleboxError, OSError):
     """The folder of a study is damaged, is in use, or holds something else."""
 

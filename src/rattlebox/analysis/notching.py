@@ -309,7 +309,7 @@ def _limit(name: str, value: Any) -> float:
     if unit not in (None, "N"):
         raise Hint("the density of a force is needed", '"200 N^2/Hz"')
     if not (math.isfinite(number) and number > 0):
-        raise Hint("must be finite and greater than zero")
+        raise Hint("must be finite and greater than zero", '"200 N" or "200 N^2/Hz"')
     return float(number)
 
 

@@ -56,12 +56,15 @@ class Draft:
         self.text, self.is_toml = text, False
         try:
             if len(text) > MOST_CHARACTERS:
-                raise rb.CaseError(f"the text has {len(text)} characters, more than {MOST_CHARACTERS}")
+                raise rb.CaseError(
+                    f"the text has {len(text)} characters, more than {MOST_CHARACTERS}",
+                    "records and tables in files of their own",
+                )
             if _has_long_key(text):  # for which tomllib needs a time that grows with the square of its length
-                raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}")
+                raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}", "fewer tables within each other")
             given = tomllib.loads(text)
             if _depth(given) > DEEPEST:
-                raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}")
+                raise rb.CaseError(f"the tables are nested deeper than {DEEPEST}", "fewer tables within each other")
         except rb.CaseError as error:
             self._invalid({"": str(error)})
         except ValueError as error:  # also numbers of thousands of digits

@@ -156,7 +156,7 @@ def inside(folder: Path, name: str, suffix: str) -> Path:
     if not _is_name(name) or not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder)):
         raise rb.DataError(f"{name!r} is not the name of a result", "letters, digits and -")
     if not _is_result(path):
-        raise rb.DataError(f"{path} does not exist; it may have been removed")
+        raise rb.DataError(f"{path} does not exist; it may have been removed", "another result, or run the case again")
     return path
 
 

@@ -167,7 +167,10 @@ class Flow:
             if isinstance(number, Part):  # a number in place of a law is its only coefficient
                 number = getattr(number, "e", None)
             if isinstance(number, bool) or not isinstance(number, (int, float)):
-                raise CaseError(f"{path}: a derivative needs a number, not {value!r:.60}")
+                raise CaseError(
+                    f"{path}: a derivative needs a number, not {value!r:.60}",
+                    "a path of one number, such as damper.gap",
+                )
             values.append(float(number))
         # Gives each number a field of its own: that of a ratio, for instance, in place of a value.
         whole = replaced(case, dict(zip(parameters, values, strict=True))) if parameters else case

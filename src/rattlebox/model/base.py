@@ -60,7 +60,11 @@ class _PartMeta(_ModelType):
         if args:
             names: tuple[str, ...] = getattr(cls, "positional", ())
             if len(args) > len(names) or set(names[: len(args)]) & set(values):
-                raise Hint(f"{cls.__name__} takes its fields by name: {', '.join(getattr(cls, 'model_fields', ()))}")
+                fields = tuple(getattr(cls, "model_fields", ()))
+                first = next((name for name in fields if name != "kind"), "name")
+                raise Hint(
+                    f"{cls.__name__} takes its fields by name: {', '.join(fields)}", f"{cls.__name__}({first}=...)"
+                )
             values = dict(zip(names, args, strict=False)) | values
         try:
             return super().__call__(**values)

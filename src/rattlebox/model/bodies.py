@@ -158,7 +158,9 @@ class PlateBody(Body):
     def _has_size(self) -> PlateBody:
         for index, length in enumerate(self.size):
             if not length > 0:
-                raise Hint("must be greater than zero", place=["size", index])
+                raise Hint(
+                    "must be greater than zero", 'three lengths, such as ("20 mm", "20 mm", "1 mm")', ["size", index]
+                )
         return self
 
     def solids(self, cavity: Cavity) -> list[Solid]:

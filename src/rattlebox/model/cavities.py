@@ -276,7 +276,9 @@ class Box(Cavity):
     def _has_size(self) -> Box:
         for index, length in enumerate(self.size):
             if not length > 0:
-                raise Hint("must be greater than zero", place=["size", index])
+                raise Hint(
+                    "must be greater than zero", 'three lengths, such as ("20 mm", "20 mm", "30 mm")', ["size", index]
+                )
         return self
 
     def walls(self) -> Walls:

@@ -106,6 +106,7 @@ def translate(
         if not missing and value is not _NOTHING and not _holds_tables(value):
             head += f" = {_shown(value)}"
         complaint, suggestion = _complaint_and_suggestion(finding, value, str(source), vocabulary, place)
+        suggestion = suggestion or _plain_advice(finding)
         part = kind(complaint, suggestion, words, head=head, allowed=_allowed(finding, str(source), vocabulary))
         parts.setdefault(str(part), part)
     count = len(parts) + len(findings[_EXAMINED:])
@@ -284,6 +285,35 @@ def _example_of(location: Sequence[Any], source: str, vocabulary: Vocabulary) ->
     return example and f"{location[-1]} = {example}"
 
 
+def _plain_advice(finding: Any) -> str:
+    """Return what to try for a value of a field that has no example."""
+    context = finding.get("ctx") or {}
+    limit = context.get("ge", context.get("le"))
+    value = next((text for start, text in _VALUES.items() if finding["type"].startswith(start)), "")
+    if finding["type"] == "literal_error":
+        value = f'"{_choices(finding)[0]}"'
+    elif limit is not None:
+        value = f"{limit}"  # all digits of a large limit
+    name = next((part for part in reversed(finding["loc"]) if isinstance(part, str)), "")
+    if value:
+        return f"{name} = {value}" if name else value
+    if "gt" in context:
+        return f"a number above {context['gt']:g}" if context["gt"] else "a positive number"
+    return f"a number below {context['lt']:g}" if "lt" in context else "a value that the reference of case files lists"
+
+
+_VALUES = {
+    "float": "1.5",
+    "finite": "1.5",
+    "int": "1",
+    "string": '"text"',
+    "bool": "true",
+    "list": "[...]",
+    "tuple": "[...]",
+}
+"""Values of a field without an example, by the beginning of the type of the error."""
+
+
 def _complaint_and_suggestion(
     finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str
 ) -> tuple[str, str]:
@@ -326,7 +356,7 @@ def _complaint_and_suggestion(
     # A missing value gets an example.
     if what == "missing":
         if isinstance(location[-1], int):
-            return "one more is needed", ""
+            return "one more is needed", "as many as the field has"
         return _PLAIN[what], _table_of(location[-1], vocabulary) or _example_of(location, source, vocabulary)
     # What is left are texts, lists and numbers out of range.
     if what == "literal_error" and isinstance(value, str):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.atomic_io import existing as existing
-from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox._util.exceptions import CaseError, DataError, unreadable
 from rattlebox._util.mat_check import check_mat
 from rattlebox.exchange.read.guarded import arrays_from_child, errors_of
 
@@ -46,7 +46,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
     except UnicodeDecodeError:
         raise DataError(f"{file}: not text in UTF-8", "a TOML file, saved as UTF-8") from None
     except OSError as error:
-        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
+        raise unreadable(file, error) from None
 
 
 def read_toml(content: str, source: str) -> dict[str, Any]:
@@ -80,7 +80,19 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
         elif names and names[-1] in _SEVERAL:
             table = ".".join([*names[:-1], _SEVERAL[names[-1]]])
             advice.append(f"double brackets for each of them, [[{table}]]")
-        raise CaseError("\n".join(complaint), "; or ".join(advice)) from None
+        raise CaseError("\n".join(complaint), "; or ".join(advice) or _advice_on_toml(str(error))) from None
+
+
+def _advice_on_toml(error: str) -> str:
+    """Return what to try after an error of the TOML parser without a better known cause."""
+    causes = (
+        ("overwrite", "one of the two lines"),
+        ("twice", "one table with all of these fields"),
+        ("nested", "fewer brackets within each other"),
+        ("Unclosed", "the bracket that closes the list or table"),
+        ("string", "quotes at both ends of the text"),
+    )
+    return next((advice for word, advice in causes if word in error), 'lines such as name = 1.5 or name = "text"')
 
 
 def _has_long_key(content: str) -> bool:

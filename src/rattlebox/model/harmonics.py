@@ -64,7 +64,7 @@ class Harmonic(Signal):
     @model_validator(mode="after")
     def _in_order(self) -> Harmonic:
         if self.stop is not None and self.stop <= self.start:
-            raise Hint(f"must be later than start, {self.start:g} s", place=["stop"])
+            raise Hint(f"must be later than start, {self.start:g} s", "a later time, or no stop", ["stop"])
         return self
 
     @property

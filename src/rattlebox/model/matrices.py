@@ -85,7 +85,7 @@ class Matrices(FilePart, DampedModes):
             return values
         twice = sorted({"M", "C", "K"} & set(values))
         if twice:
-            raise Hint(f"give {twice[0]} or a file, not both")
+            raise Hint(f"give {twice[0]} or a file, not both", "one of them")
         with at("file"):
             path: str | dict[str, str]
             if isinstance(values["file"], dict):
@@ -130,14 +130,17 @@ class Matrices(FilePart, DampedModes):
                 raise Hint("there is no such degree of freedom", f"0 to {n - 1}", ["points", name])
             if not isinstance(point, int) and np.shape(point)[-1] != n:
                 raise Hint(
-                    f"{np.shape(point)[-1]} weights, but there are {n} degrees of freedom", place=["points", name]
+                    f"{np.shape(point)[-1]} weights, but there are {n} degrees of freedom",
+                    f"{n} weights, or the number of a degree of freedom",
+                    ["points", name],
                 )
         for name in ("influence", "displacement", "velocity"):
             row = getattr(self, name)
             if row is not None and np.shape(row)[-1] != n:
-                raise Hint(f"{np.shape(row)[-1]} numbers, but there are {n} degrees of freedom", place=[name])
+                raise Hint(f"{np.shape(row)[-1]} numbers, but there are {n} degrees of freedom", f"{n} numbers", [name])
         if self.influence is not None and (np.ndim(self.influence) == 2) != bool(self._spatial()):
-            raise Hint("influence has three rows if points move in 3-D, else one", place=["influence"])
+            rows = "three rows, for x, y and z" if self._spatial() else "one row of numbers"
+            raise Hint("influence has three rows if points move in 3-D, else one", rows, ["influence"])
         self.modes()
         return self
 

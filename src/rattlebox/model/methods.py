@@ -246,7 +246,7 @@ class Dem(Method):
     @classmethod
     def _forward(cls, dt: float | str) -> float | str:
         if isinstance(dt, float) and not dt > 0:
-            raise Hint("must be greater than zero")
+            raise Hint("must be greater than zero", '"auto", or a time such as "1 us"')
         return dt
 
     @model_validator(mode="after")

@@ -327,7 +327,10 @@ def _table(columns: int, unit: str, what: str) -> Any:
         array = numbers(in_si(value, unit))
         array = np.atleast_2d(array) if columns > 1 else array
         if array.ndim != (2 if columns > 1 else 1) or (columns > 1 and array.shape[1] != columns):
-            raise Hint(f"rows of {columns} numbers are needed" if columns > 1 else "a list of numbers is needed")
+            raise Hint(
+                f"rows of {columns} numbers are needed" if columns > 1 else "a list of numbers is needed",
+                f"one row of {columns} for each particle" if columns > 1 else "one number for each particle",
+            )
         return tuple(map(tuple, array.tolist())) if columns > 1 else tuple(array.tolist())
 
     schema = {"type": "array", "description": f"{what}, in {unit} or with units"}

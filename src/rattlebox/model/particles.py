@@ -48,7 +48,11 @@ class _Bounded(Distribution):
     @model_validator(mode="after")
     def _in_order(self) -> _Bounded:
         if self.smallest >= self.largest:
-            raise Hint(f"must be larger than the smallest, {1e3 * self.smallest:.4g} mm", place=["largest"])
+            raise Hint(
+                f"must be larger than the smallest, {1e3 * self.smallest:.4g} mm",
+                "particles of one diameter, or a larger value",
+                ["largest"],
+            )
         return self
 
     def _between(self, share: Vector, low: float, high: float) -> Vector:

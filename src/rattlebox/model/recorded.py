@@ -192,9 +192,9 @@ def _column(value: object) -> Vector:
         array = numbers(value)
     except Hint as hint:
         advice = "numbers without units: times in s, values in `unit` times `scale`"
-        raise Hint(hint.complaint, hint.suggestion or advice, hint.place) from None
+        raise Hint(hint.complaint, advice if hint.place else hint.suggestion, hint.place) from None
     if array.ndim != 1:
-        raise Hint(f"one row of numbers is needed, not shape {array.shape}")
+        raise Hint(f"one row of numbers is needed, not shape {array.shape}", "one column of them, such as table[:, 1]")
     array = np.array(array)  # what the user keeps may change
     array.flags.writeable = False
     return array
@@ -318,7 +318,7 @@ class Record(FileSignal):
             with at("dt"):
                 step = parse(values["dt"], ("s",))[0]
                 if not step > 0:
-                    raise Hint("must be greater than zero")
+                    raise Hint("must be greater than zero", 'dt = "0.01 s"')
         if values.get("file") is not None:
             return {**values, "dt": step}
         if values.get("columns") is not None:

@@ -151,6 +151,12 @@ def _by_rows_error(file: Path, width: int, advice: str) -> DataError:
     return DataError(f"{file}: its {width} columns are one signal, whose samples go on from row to row", advice)
 
 
+def _not_a_row(file: Path, name: str, array: Array) -> DataError:
+    return DataError(
+        f"{file}: {name} has shape {array.shape}; one row of numbers is needed", "a file with one signal an array"
+    )
+
+
 def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) -> tuple[Array, str, tuple[str, ...]]:
     """Return the samples of a column of the only array, or of one variable, the name of the variable, and notes."""
     if len(arrays) == 1 and next(iter(arrays.values())).ndim == 2 and not (columns and isinstance(columns[0], str)):
@@ -175,7 +181,7 @@ def _select_samples(file: Path, arrays: dict[str, Array], columns: Selection) ->
     (index,) = _column_indices(file, columns, list(arrays), variables, needed=1)
     name, array = list(arrays.items())[index]
     if array.size != max(array.shape, default=1):
-        raise DataError(f"{file}: {name} has shape {array.shape}; one row of numbers is needed")
+        raise _not_a_row(file, name, array)
     return check_finite(array.ravel(), f"{file}: {name}"), name, ()
 
 
@@ -293,7 +299,7 @@ def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Colum
     pair = [list(arrays.items())[k] for k in _column_indices(file, columns, list(arrays), variables)]
     for name, array in pair:
         if array.size != max(array.shape, default=1):
-            raise DataError(f"{file}: {name} has shape {array.shape}; one row of numbers is needed")
+            raise _not_a_row(file, name, array)
         check_finite(array.ravel(), f"{file}: {name}")
     (time, times), (value, values) = pair
     if times.size != values.size:

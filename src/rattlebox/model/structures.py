@@ -62,7 +62,7 @@ def _matrix(value: object) -> Any:
 
 def _of_shape(array: Vector, dimensions: int, wanted: str) -> Any:
     if array.ndim != dimensions:
-        raise Hint(f"{wanted} is needed")
+        raise Hint(f"{wanted} is needed", "[[1.0, 0.5], [0.5, -1.0]]" if dimensions == 2 else "[1.0, 0.5]")
     return array.tolist()
 
 
@@ -535,7 +535,8 @@ class Modal(FilePart, StructurePart):
         if self.participation is not None and isinstance(self.participation[0], list) != bool(self._spatial()):
             raise Hint(
                 "participation has three numbers for each mode if points move in 3-D, else one",
-                place=["participation"],
+                "a list of three for each mode" if self._spatial() else "one number for each mode",
+                ["participation"],
             )
         self._check_total_mass()
         return self
@@ -545,7 +546,11 @@ class Modal(FilePart, StructurePart):
         if self.total_mass is None:
             return
         if isinstance(self.total_mass, list) != bool(self._spatial()):
-            raise Hint("total_mass is three numbers if points move in 3-D, else one", place=["total_mass"])
+            raise Hint(
+                "total_mass is three numbers if points move in 3-D, else one",
+                "[m, m, m] with the mass m" if self._spatial() else "one mass",
+                ["total_mass"],
+            )
         if self.participation is not None:
             effective = np.sum(np.square(self.participation), axis=0)
             if np.any(self._effective_share() > 1 + 1e-3):

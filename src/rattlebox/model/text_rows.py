@@ -13,7 +13,7 @@ from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
-from rattlebox._util.exceptions import DataError
+from rattlebox._util.exceptions import DataError, unreadable
 from rattlebox._util.text_tables import Dialect, decode, dialect_of, has_point
 from rattlebox.exchange.read.sheets import SHEETS, sheet_lines
 
@@ -215,7 +215,7 @@ def split_lines(file: Path) -> tuple[list[Row], Dialect]:
         is_sheet = file.suffix.lower() in SHEETS
         text = sheet_lines(file) if is_sheet else _decoded(file, file.read_bytes()).splitlines()
     except OSError as error:
-        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
+        raise unreadable(file, error) from None
     dialect = dialect_of(text, any('"' in line for line in text))
     return _as_rows(file, text, dialect), dialect
 

@@ -173,7 +173,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         try:
             return _finite(float(value)), None
         except OverflowError:
-            raise Hint("a finite number is needed") from None
+            raise Hint("a finite number is needed", _example(units)) from None
     if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str) and _is_number(value[0]):
         value = f"{value[0]} {value[1]}"
     if isinstance(value, str):
@@ -402,9 +402,9 @@ def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
 def _finite(value: float) -> float:
     """Return a number unchanged; raise if it is not finite or larger than `LARGEST`."""
     if not math.isfinite(value):
-        raise Hint("a finite number is needed")
+        raise Hint("a finite number is needed", "omit the field, or give the number that is meant")
     if abs(value) > LARGEST:
-        raise Hint(f"no more than {LARGEST:g} in SI units is allowed")
+        raise Hint(f"no more than {LARGEST:g} in SI units is allowed", "check the exponent and the unit")
     return value
 
 
@@ -433,11 +433,11 @@ def numbers(value: object) -> NDArray[np.float64]:
         array = np.asarray(unmasked(value), dtype=float)
     except (TypeError, ValueError, OverflowError):
         _raise_at_invalid_number(value)
-        raise Hint("rows of numbers of one length are needed") from None
+        raise Hint("rows of numbers of one length are needed", "as many numbers in each row") from None
     bad = np.flatnonzero(~(np.abs(array) <= LARGEST))
     if bad.size:
         fault = f"more than {LARGEST:g}" if np.isfinite(array.flat[bad[0]]) else "not finite"
-        raise Hint(f"number {int(bad[0]) + 1} of {array.size} is {fault}")
+        raise Hint(f"number {int(bad[0]) + 1} of {array.size} is {fault}", "correct this number, or remove it")
     return array
 
 
@@ -466,7 +466,7 @@ def _raise_at_invalid_number(value: Any) -> None:
     try:
         float(value)
     except (TypeError, ValueError, OverflowError):
-        raise Hint("a finite number is needed") from None
+        raise Hint("a finite number is needed", "numbers without quotes or units") from None
 
 
 def text(value: float, unit: str) -> str:
@@ -506,7 +506,7 @@ def _positive(value: float) -> float:
     if not value > 0:
         raise Hint(NOT_POSITIVE)
     if value < 1 / LARGEST:
-        raise Hint(f"no less than {1 / LARGEST:g} in SI units is allowed")
+        raise Hint(f"no less than {1 / LARGEST:g} in SI units is allowed", "check the exponent and the unit")
     return value
 
 
@@ -519,7 +519,7 @@ def _not_negative(value: float) -> float:
 def not_boolean(value: object) -> Any:
     """Return a value unchanged unless it is a boolean, which is an integer in Python."""
     if isinstance(value, (bool, np.bool_)):
-        raise Hint("a number is needed")
+        raise Hint("a number is needed", "1 or 0 in place of true or false")
     return value
 
 
@@ -538,7 +538,7 @@ def whole_number(value: Any, name: str, least: int) -> int:
     except TypeError:
         number = least - 1
     if number < least or isinstance(value, bool):
-        raise Hint(f"{name} = {value!r}: a whole number of at least {least} is needed")
+        raise Hint(f"{name} = {value!r}: a whole number of at least {least} is needed", f"{name} = {max(least, 1)}")
     return number
 
 

@@ -93,7 +93,8 @@ def unit_above(heads: Sequence[str], units: tuple[str, ...]) -> tuple[float, str
         if unknown is not None:
             raise Hint(
                 f"{unknown[:_SHOWN]!r}, written above the column as {head[:_SHOWN]!r}, is not a unit of "
-                f"{' or '.join(unit_name(si) for si in units)}; known: {', '.join(names_of_units(units))}"
+                f"{' or '.join(unit_name(si) for si in units)}; known: {', '.join(names_of_units(units))}",
+                f'unit = "{names_of_units(units)[0]}", if the numbers have this unit',
             )
     return None
 
@@ -110,7 +111,10 @@ def units_in_lines(lines: Sequence[Line], units: tuple[str, ...]) -> tuple[list[
         other = next((match[1] for match in _MARKED.finditer(line) if not factor_of(match[1], units)), None)
         if other and unit_name(other) not in _BESIDE_THE_VALUES:
             kinds = " or ".join(unit_name(si) for si in units)
-            raise Hint(f"line {number}, {line.strip()[:60]!r}, states {other!r}, which is not a unit of {kinds}")
+            raise Hint(
+                f"line {number}, {line.strip()[:60]!r}, states {other!r}, which is not a unit of {kinds}",
+                f'unit = "{names_of_units(units)[0]}", if the numbers have this unit',
+            )
     return list(stated.values()), [each for key, each in mentioned.items() if key not in stated]
 
 

@@ -267,9 +267,11 @@ def _check(file: Node, path: Path, blocks: Collection[str] | None) -> None:
     if layout is None and "study" in file.attrs:
         raise DataError(f"{path} holds the result of a study, not a run", "rb.open_study, or 'rattlebox report'")
     if layout is None:
-        raise DataError(f"{path} is a netCDF-4 file, but not a run written by Rattlebox")
+        raise DataError(
+            f"{path} is a netCDF-4 file, but not a run written by Rattlebox", "run.nc, or xarray.open_dataset"
+        )
     if SNAPSHOTS in file:
-        raise DataError(f"{path} holds snapshots of particles, not a run; rattlebox.Snapshots reads them")
+        raise DataError(f"{path} holds snapshots of particles, not a run", "rattlebox.Snapshots, which reads them")
     check_format(path, np.asarray(layout).item(), FORMAT, OLDER)
     for name, group in _groups(file).items():
         if blocks is not None and name not in blocks:

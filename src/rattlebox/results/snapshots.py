@@ -388,7 +388,9 @@ class Snapshots:
         """Raise if an HDF5 file holds no snapshots, or snapshots of another format."""
         layout = file.attrs.get("rattlebox_format")
         if layout is None or ROOT not in file:
-            raise DataError(f"{self.path} holds no snapshots of particles written by Rattlebox")
+            raise DataError(
+                f"{self.path} holds no snapshots of particles written by Rattlebox", "run.vtkhdf of a particle run"
+            )
         check_format(self.path, layout, FORMAT)
 
     def _damaged(self, block: str) -> DataError:

@@ -128,7 +128,7 @@ def _flat(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     table: dict[str, Any] = {}
     for path, value in pairs:
         if path in table:
-            raise Hint(f"{path} is given twice")
+            raise Hint(f"{path} is given twice", "one of them")
         table[path] = value
     return table
 

@@ -68,7 +68,7 @@ def test_contacts_without_rebound_are_refused() -> None:
 )
 def test_sizes_of_zero_have_the_same_message(make: Any) -> None:
     """The message for a zero where a positive number is needed is the same in all parts."""
-    with pytest.raises(rb.CaseError, match=r"= 0\n  must be greater than zero$"):
+    with pytest.raises(rb.CaseError, match=r"= 0\n  must be greater than zero\n  try: a positive number$"):
         make()
 
 

@@ -450,8 +450,8 @@ def test_seeds_beyond_64_bits_are_refused(seed: int) -> None:
     assert rb.Case(**options, seed=2**63 - 1).seed == 2**63 - 1
     with pytest.raises(rb.CaseError) as caught:
         rb.Case(**options, seed=seed)
-    limit = "must be at least 0" if seed < 0 else "must be at most 9.22337e+18"
-    assert str(caught.value).splitlines() == [f"Case: seed = {seed}", f"  {limit}"]
+    limit, nearest = ("must be at least 0", 0) if seed < 0 else ("must be at most 9.22337e+18", 2**63 - 1)
+    assert str(caught.value).splitlines() == [f"Case: seed = {seed}", f"  {limit}", f"  try: seed = {nearest}"]
 
 
 def test_the_library_of_materials_is_a_copy() -> None:

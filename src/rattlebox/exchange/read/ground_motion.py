@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.exceptions import DataError
+from rattlebox._util.exceptions import DataError, unreadable
 
 from .formats import SignalInFile, record_reader
 from .guarded import errors_of
@@ -53,7 +53,7 @@ def read_ground_motion(path: Path) -> GroundMotion:
         try:
             lines = path.read_text(encoding="latin-1").splitlines()
         except OSError as error:
-            raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
+            raise unreadable(path, error) from None
         above, count, step = _header(path, lines)
         header = "\n".join(lines[:above])
         _check_quantity(path, header)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.exceptions import DataError
+from rattlebox._util.exceptions import DataError, unreadable
 
 FloatArray = NDArray[np.float64]
 _LISTED = 12  # labels in a message
@@ -76,7 +76,7 @@ def read_start(path: Path, size: int) -> bytes:
         with path.open("rb") as file:
             start = file.read(size)
     except OSError as error:
-        raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
+        raise unreadable(path, error) from None
     if not start.strip():
         raise DataError(f"{path} is empty", "the complete file, as it was written")
     return start

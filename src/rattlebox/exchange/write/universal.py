@@ -79,7 +79,9 @@ def write_universal(path: Path, sets: Sequence[bytes]) -> Path:
     require_folder(path)
     check_replaceable(path)
     if not sets:
-        raise DataError(f"{path} would be empty: there is nothing that a universal file can hold")
+        raise DataError(
+            f"{path} would be empty: there is nothing that a universal file can hold", "a run with output of its motion"
+        )
     content = b"".join(sets)
     with atomic_write(path, "free disk space and write the file again") as name:
         name.write_bytes(_header(content) + content)
@@ -135,7 +137,10 @@ def function_set(function: Function) -> bytes:
     """Return the set 58b of a function."""
     x, values = np.asarray(function.x, float), np.asarray(function.values)
     if x.size < 2 or x.shape != values.shape:
-        raise DataError(f"{function.name} has {values.size} points at {x.size} places; two or more are needed")
+        raise DataError(
+            f"{function.name} has {values.size} points at {x.size} places; two or more are needed",
+            "a longer run, or a higher output.rate",
+        )
     is_complex = np.iscomplexobj(values)
     # Readers take the abscissa of even points from the header, as text.
     step = (x[-1] - x[0]) / (x.size - 1)

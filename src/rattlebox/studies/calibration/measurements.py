@@ -56,7 +56,9 @@ def read_column(place: str | tuple[str | int, ...], values: Any, units: tuple[st
         with at(*place, *([] if single else [index])):
             number, unit = parse(item if shared is None else (item, shared), units) if units else (_pure(item), None)
             if not number > least:
-                raise Hint(f"{number:g} is not greater than {'zero' if least == 0 else f'{least:g}'}")
+                raise Hint(
+                    f"{number:g} is not greater than {'zero' if least == 0 else f'{least:g}'}", "omit this measurement"
+                )
             numbers.append(number)
             found.append(unit)
     if len(set(found)) > 1:
@@ -81,7 +83,7 @@ def _pure(value: object) -> float:
     except (TypeError, ValueError) as error:
         raise error if isinstance(error, Hint) else Hint("a number is needed", '0.02 or "2 %"') from None
     if not np.isfinite(number):
-        raise Hint("a finite number is needed")
+        raise Hint("a finite number is needed", "omit this measurement")
     return number
 
 
@@ -170,7 +172,10 @@ class Drops:
             if (falls <= 0).any():
                 k = int(np.argmin(falls))
                 with at(name, k):
-                    raise Hint(f"the {self.measured_to} of the ball would be below that of a ball on the plate")
+                    raise Hint(
+                        f"the {self.measured_to} of the ball would be below that of a ball on the plate",
+                        "measured_to, the part of the ball to which heights were measured",
+                    )
         high = np.flatnonzero(rebounds > heights)
         if high.size:
             k = int(high[0])
@@ -256,7 +261,7 @@ def _uncertainty(value: object, unit: str) -> float:
     with at("error"):
         number, _ = parse(value, (unit,))
         if not number > 0:
-            raise Hint(f"{number:g} is not greater than zero")
+            raise Hint(f"{number:g} is not greater than zero", "a positive uncertainty, or none")
     return number
 
 

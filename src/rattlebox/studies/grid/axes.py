@@ -128,7 +128,7 @@ class ParsedAxes:
         """Return the dimension along which the starts vary, and these."""
         found = [(direction.name, direction.starts) for direction in directions if direction.starts is not None]
         if len(found) > 1:
-            raise Hint(f"{STARTS} varies twice")
+            raise Hint(f"{STARTS} varies twice", "one list of all starts")
         return found[0] if found else None
 
 
@@ -211,7 +211,10 @@ class _Reader:
             sizes[STARTS] = len(starts.points)
         if len(set(sizes.values())) > 1:
             counts = ", ".join(f"{path} has {size}" for path, size in sizes.items())
-            raise Hint(f"parameters that vary together must have the same number of values, but {counts}")
+            raise Hint(
+                f"parameters that vary together must have the same number of values, but {counts}",
+                "as many values of each, or separate axes",
+            )
         return _Direction(name, next(iter(sizes.values())), read, starts=starts)
 
     def starts(self, given: object) -> Starts:
@@ -260,7 +263,7 @@ class _Reader:
             if number is None or number[0] <= 0:
                 raise parameter.wrong("a reach greater than zero is needed", '"1 um"', "reach", reach)
             if parameter.place in [other.parameter.place for other in read]:
-                raise Hint(f"{path} varies twice")
+                raise Hint(f"{path} varies twice", "one reach for each parameter")
             read.append(Values(parameter, number[0] * offsets, number[1]))
         return _Direction("replica", replicas.count, [], read)
 

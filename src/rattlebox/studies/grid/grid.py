@@ -217,7 +217,8 @@ class Parameter:
         """Raise if other parameters are the same as this one, or exclude it."""
         for other in others:
             if other.place == self.place:
-                raise Hint(f"{self.path} varies twice" + (f", also as {other.path}" if other.path != self.path else ""))
+                also = f", also as {other.path}" if other.path != self.path else ""
+                raise Hint(f"{self.path} varies twice{also}", "one axis with all of its values")
             pairs = self.part.alternatives if other.place[:-1] == self.place[:-1] else ()
             if (other.name, self.name) in pairs or (self.name, other.name) in pairs:
                 raise Hint(f"{other.path} and {self.path} exclude each other", "one of them")

@@ -120,7 +120,7 @@ def _spaced(start: object, stop: object, count: object, *, log: bool = False) ->
         (first, unit), (last, other) = low, high
         ends = f"start = {start!r}, stop = {stop!r}"
         if unit and other and not are_alike(unit, other):
-            raise Hint(f"{ends}: the dimensions of the ends differ")
+            raise Hint(f"{ends}: the dimensions of the ends differ", "ends with the same unit")
         if log and not np.sign(first) * np.sign(last) > 0:
             raise Hint(
                 f"{ends}: the ends of geometric spacing must not be zero and must have the same sign", "linear spacing"

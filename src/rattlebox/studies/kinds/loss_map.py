@@ -152,7 +152,8 @@ class LossMap(Study):
             for path, column in axis.grid(self.case).columns.items():
                 for number, value in enumerate(column):
                     if not value > 0:
-                        raise CaseError(f"{source}: {path}[{number}] = {value:g}\n  must be greater than zero")
+                        head = f"{source}: {path}[{number}] = {value:g}"
+                        raise CaseError("must be greater than zero", "omit this value", head=head)
         self.work.validate()
 
     def compute(self) -> xarray.Dataset:

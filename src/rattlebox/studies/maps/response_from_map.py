@@ -208,7 +208,7 @@ def _quantities(value: object, units: tuple[str, ...], name: str) -> tuple[Float
     if len(units_found) > 1:
         raise Hint(f"{value!r:.80} has values of different dimensions", "one unit for all", [name])
     if not found or min(found) <= 0:
-        raise Hint(f"{value!r:.80}: values must be greater than zero", place=[name])
+        raise Hint(f"{value!r:.80}: values must be greater than zero", "omit the others", [name])
     return np.array(found), units_found.pop()
 
 
