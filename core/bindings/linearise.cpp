@@ -88,7 +88,7 @@ Linearised linearise(const ProblemNumbers& packed, const std::optional<Doubles<1
     }
     run.state.t = run.last_jump = from;
     run.loads.advance(from);
-    run.find_touching();
+    trajectory.find_touching();
     Linearisation linearisation(run, std::move(slopes), !start);
     if (derivatives) run.listener = &linearisation;
     if (!smooth) linearisation.refuse(NotLinear::kink, -1);

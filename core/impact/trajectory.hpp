@@ -242,6 +242,13 @@ public:
     Output& output() { return output_; }
     ContactStarter& contact_starter() { return starter_; }
 
+    // Finds the contacts that touch at the start. Hard ones at rest to rounding, as at the end of a period in
+    // which a ball rode on a wall, touch: an impact at a speed of rounding has no derivatives.
+    void find_touching() {
+        run_.find_touching();
+        if (run_.hard()) hard_.gather_touching();
+    }
+
     // Continues until the time `until`, or until the run stops early.
     void advance() {
         // Saving takes a tenth of the time of a hard impact.
@@ -265,7 +272,7 @@ public:
 
     Result run() {
         if (problem_.start_state.empty()) {
-            run_.find_touching();
+            find_touching();
             if (output_.is_due(0)) {
                 output_.next_time();
                 output_.record_now();

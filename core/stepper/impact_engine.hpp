@@ -44,7 +44,7 @@ public:
         extremes_.overlap.assign(problem.contacts.size(), 0), extremes_.speed = extremes_.overlap;
         run_.until = 0;
         sample(0);
-        run_.find_touching();
+        trajectory_.find_touching();
         trajectory_.output().record_now();
     }
 

@@ -275,3 +275,107 @@ def test_route_of_period_doublings():
         assert branch.data.stable.values[1]
     ratio = (values[1] - values[0]) / (values[2] - values[1])
     assert 3 < ratio < 8  # towards the constant of Feigenbaum, 4.67
+
+
+def lying(restitution):
+    """Return a ball that lies on the floor of a cavity at the tip of a structure with two modes."""
+    return rb.Case(
+        structure=rb.Modal(frequencies=[17.0, 45.9], damping_ratios=[0.03, 0.02], shapes={"tip": [0.9, 0.5]}),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="13 mm", material="steel"),
+            gap="1.2 mm",
+            contact=rb.Tsuji(restitution=0.4),
+            gravity="9.81 m/s^2",
+        ),
+        load=rb.Harmonic(amplitude="2 N", frequency="13 Hz"),
+        method=rb.Newton(restitution=restitution),
+        duration="6 s",
+    )
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_ball_that_lies_on_the_floor(restitution):
+    """A ball that rests at all times moves with the structure, with its multipliers, and leaves the floor at 1 g.
+
+    Searches began at the last sample in flight, in the transient, and found no motion; along the branch the ball hit the
+    floor at speeds of rounding, which changed multipliers and stability; the end of the rest was not named. Tests had balls
+    that rest for a part of the period only.
+    """
+    case = lying(restitution)
+    shape, omega, zeta = np.array([0.9, 0.5]), 2 * np.pi * np.array([17.0, 45.9]), np.array([0.03, 0.02])
+    mass = np.eye(2) + 7850 * 4 / 3 * np.pi * 0.013**3 * np.outer(shape, shape)
+    damping, stiffness = np.diag(2 * zeta * omega), np.diag(omega**2)
+    system = np.block(
+        [[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)]]
+    )
+    exact = np.sort_complex(np.exp(np.linalg.eigvals(system) / 13.0))
+    drive = 2 * np.pi * 13.0
+    reply = shape @ np.linalg.solve(stiffness + 1j * drive * damping - drive**2 * mass, shape)
+    lifts = 9.81 / (drive**2 * abs(reply))
+
+    branch = rb.continue_orbit(rb.find_orbit(case), "load.amplitude", (1.0, 1.2 * lifts), points=120, progress=False)
+    data = branch.data
+    multipliers = data.multiplier_real.values + 1j * data.multiplier_imaginary.values
+    resting = data.impacts.values == 0
+    assert resting.sum() > 20
+    assert (data.value.values[resting] <= lifts * (1 + 1e-9)).all()
+    for row in multipliers[resting]:
+        sizes = np.argsort(np.abs(row))
+        np.testing.assert_allclose(row[sizes[:2]], 0, atol=1e-12)
+        np.testing.assert_allclose(np.sort_complex(row[sizes[2:]]), exact, rtol=1e-9)
+    assert data.stable.values.all()
+    (point,) = branch.specials
+    assert point.kind == "grazing"
+    assert point.value == pytest.approx(lifts, rel=1e-9)
+
+
+def test_order_of_impacts_of_two_dampers():
+    """A branch ends where impacts of two dampers coincide, because the motion with the other order is another one.
+
+    A step led over the jump to the other motion, so that the stability changed without a special point: sequences were
+    compared without their order, and a jump was only noticed by the direction of the branch. Tests had one damper.
+    """
+    case = rb.Case(
+        structure=rb.SDOF(mass="1 kg", stiffness="12.1 kN/m", damping_ratio=0.071),
+        dampers=[
+            rb.ImpactDamper(
+                name=name, ball=rb.Sphere(radius=radius, material="steel"), gap=gap, contact=rb.Tsuji(restitution=0.3)
+            )
+            for name, radius, gap in (("one", "7.2 mm", "0.61 mm"), ("other", "9 mm", "0.64 mm"))
+        ],
+        load=rb.Harmonic(amplitude="2.85 N", frequency="14.1 Hz"),
+        method=rb.Newton(restitution=0.3),
+        duration="8 s",
+    )
+    branch = rb.continue_orbit(rb.find_orbit(case), "dampers[0].gap", ("0.52 mm", "0.74 mm"), points=40, progress=False)
+    orders = [[impact.contact for impact in branch.orbit(k).impacts] for k in range(len(branch))]
+    # Without an impact more or less in between, impacts of different dampers keep their order.
+    for one, other in itertools.pairwise(orders):
+        assert one == other or sorted(one) != sorted(other)
+    assert "coincide" in branch.data.attrs["ended"]
+
+
+def test_motion_without_losses():
+    """Impacts below the speed of yield lose nothing: the multipliers are on the circle along the branch, and are no torus.
+
+    Rounding made a Neimark-Sacker bifurcation of it every few points, and changed the stability. Tests had constant
+    restitution below 1.
+    """
+    case = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="0.4 mm", frequency="14 Hz")),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="11 mm", material="steel"),
+            gap="0.45 mm",
+            contact=rb.Tsuji(restitution=rb.JacksonGreen()),
+        ),
+        duration="4 s",
+    )
+    branch = rb.continue_orbit(
+        rb.find_orbit(case, period=1), "structure.motion.amplitude", ("0.3 mm", "0.5 mm"), points=60, progress=False
+    )
+    assert [point.kind for point in branch.specials] == ["pitchfork", "flip"]
+    stable = branch.data.stable.values.astype(bool)
+    flip = branch.specials[1].index
+    assert stable[1:flip].all()
+    assert not stable[flip + 1 :].any()
+    assert branch.orbit(5).stability == "at the limit of stability"

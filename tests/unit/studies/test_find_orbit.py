@@ -98,6 +98,31 @@ def test_chaotic_motion():
     assert not rb.find_orbit(chaotic, near=run, period=1).is_stable
 
 
+def named(name, **changes):
+    """Return the damper with a name."""
+    return rb.ImpactDamper(name=name, ball=BALL, gap="1 mm", contact=rb.Tsuji(restitution=0.6), **changes)
+
+
+def test_soft_ball_that_lies_on_the_floor():
+    """A soft contact that stays closed is refused with its reason, and the advice finds the motion.
+
+    The search began at the last sample in flight, in the transient.
+    """
+    lying = case(
+        damper=named("floor", gravity="9.81 m/s^2"),
+        load=rb.Harmonic(amplitude="0.8 N", frequency="20 Hz"),
+        structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.03),
+        method=rb.EventDriven(),
+        duration="3 s",
+    )
+    with pytest.raises(rb.CaseError, match="rests on a wall") as raised:
+        rb.find_orbit(lying)
+    assert "rb.Newton()" in raised.value.suggestion
+    orbit = rb.find_orbit(lying.model_copy(update={"method": rb.Newton()}))
+    assert orbit.sticks
+    assert not orbit.impacts
+
+
 def test_words():
     """The text of a motion names its kind, multipliers, impacts and checks."""
     orbit = rb.find_orbit(case())

@@ -211,11 +211,18 @@ class Corrector:
         return point if corrected is None else self.finish(new, *corrected[:3], point.scale, guide) or point
 
     def is_near(self, point: Point, after: Point) -> bool:
-        """Return whether the branch has turned little between two points."""
-        scaled = after.tangent * np.append(after.scale / point.scale, 1.0)
+        """Return whether the branch has turned little between two points, and does not jump to another one."""
         weights = self.weights(point.scale.size)
-        size = np.sqrt(np.sum(weights * scaled**2) * np.sum(weights * point.tangent**2))
-        return bool(np.sum(weights * scaled * point.tangent) > _TURN * size)
+
+        def is_along(direction: Vector) -> bool:
+            size = np.sqrt(np.sum(weights * direction**2) * np.sum(weights * point.tangent**2))
+            return bool(np.sum(weights * direction * point.tangent) > _TURN * size)
+
+        # The chord leaves the tangent where the branch jumps, though both tangents may be parallel.
+        chord = np.append(
+            (after.orbit.state - point.orbit.state) / point.scale, (after.value - point.value) / self.width
+        )
+        return is_along(after.tangent * np.append(after.scale / point.scale, 1.0)) and is_along(chord)
 
     def at_limit(self, point: Point, after: Point) -> Point | None:
         """Return the point at the limit that lies between two points, or at the second one."""

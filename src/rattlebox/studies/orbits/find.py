@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.quantities import quantity
 from rattlebox.engines.simulate import require_case, simulate
 from rattlebox.model.errors import Hint, several
+from rattlebox.model.methods import Newton, Output
 from rattlebox.model.units import whole_number
 from rattlebox.results.run import Run
 from rattlebox.studies.orbits.forcing import Forcing
@@ -182,11 +184,11 @@ def _state_near(returns: ReturnMap, near: object) -> Vector:
     """Return the state at which a search begins, at the phase of the loads at t = 0."""
     case, period = returns.forcing.case, returns.forcing.period
     if near is None:
-        near = simulate(case, progress=False)
+        near = simulate(case.model_copy(update={"output": Output()}), progress=False)
     if isinstance(near, Orbit):
         start, state = near.phase * period, near.state
     elif isinstance(near, Run):
-        start, state = _end_of(near)
+        start, state = _end_of(near, LONGEST * period)
     else:
         start, state = 0.0, state_of(near)
     check_state(returns, state)
@@ -224,8 +226,8 @@ def check_state(returns: ReturnMap, state: Vector) -> None:
         )
 
 
-def _end_of(run: Run) -> tuple[float, Vector]:
-    """Return time and state of the last sample of a run with all contacts open."""
+def _end_of(run: Run, last: float) -> tuple[float, Vector]:
+    """Return time and state of the last sample of a run with all contacts open, if it is within the last part [s]."""
     arrays = run.arrays
     if arrays.engine == "dem":
         raise Hint("near is a run with particles", "a run of the same impact damper")
@@ -240,6 +242,16 @@ def _end_of(run: Run) -> tuple[float, Vector]:
         gaps.append(np.diff(row, axis=1).min(axis=1))
     open_ = np.flatnonzero(np.min(gaps, axis=0) > 0)
     k = int(open_[-1]) if open_.size else -1
+    if not open_.size or arrays.time[k] < arrays.time[-1] - last:
+        # The state within a hard contact is complete, as where a ball rests on a wall; that within a soft one is not.
+        k = -1
+        if not isinstance(run.case.method, Newton):
+            raise Hint(
+                f"contacts are closed at all samples of the last {quantity(last, 's', 3)} of the run, as where a ball rests "
+                "on a wall, and a motion cannot start within a contact that has a duration",
+                "method = rb.Newton(), with which bodies rest on each other; or more samples of the run",
+                ["method"],
+            )
     modal = np.stack([arrays.modal_displacement[k], arrays.modal_velocity[k]], axis=1).ravel()
     state = np.concatenate([modal, arrays.ball_position[k] - arrays.ball_centre, arrays.ball_velocity[k]])
     return float(arrays.time[k]), state

@@ -8,7 +8,6 @@ Applications of Bifurcation Theory, Academic Press, 359-384.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -30,7 +29,7 @@ from rattlebox.studies.orbits.grazing import (
     with_passage,
 )
 from rattlebox.studies.orbits.shooting import ReturnMap, solve
-from rattlebox.studies.orbits.stability import flip_test
+from rattlebox.studies.orbits.stability import ON_CIRCLE, flip_test
 from rattlebox.studies.orbits.symmetry import stays_mirrored
 
 _FEW, _MANY = 3, 5
@@ -58,6 +57,10 @@ _IMAGES = {
 """Reasons why a branch ends where it turns back into its image, by the special point there."""
 _JUMP = 1e-3
 """Change of the state over the size of the motion, between neighbouring points, that no single branch has."""
+_SAME_PHASE = 9
+"""Number of decimal places to which the phases of impacts at the same time agree."""
+_COINCIDES = 1e-4
+"""Time between two impacts over the period of the loads, at which a branch ends because they coincide."""
 _LOOP = 10
 """Number of points after which a branch may be closed."""
 
@@ -122,7 +125,7 @@ class Follower:
             if taken is None or not is_near or self._jumps(point, taken[0]):
                 length /= 2
                 if length < _SHORTEST or tiny > _MOST_TINY:
-                    self.reasons.append("no further motion was found")
+                    self.reasons.append(_end_words(point))
                     return
                 continue
             after, corrections = taken
@@ -224,7 +227,7 @@ class Follower:
             low, high = test(point), test(after)
             if low * high < 0 and (located := self.corrector.locate(point, after, test)) is not None:
                 kind = _kind(name, located)
-                if kind:
+                if kind and (kind != "torus" or _leaves_circle(located, point, after)):
                     found.append(_named(located, kind))
         found += self._changes(point, after)
         names = [each.special for each in found]
@@ -295,8 +298,10 @@ class Follower:
         if point.contacts != after.contacts:
             low, high = self.corrector.change(point, after, lambda each: each.contacts)
             gains = high.contacts.total() > low.contacts.total()
-            # The number of impacts of complete chatter depends on the threshold of sticking.
-            if low.orbit.sticks and high.orbit.sticks and is_pressed(high if gains else low):
+            # The number of impacts of complete chatter depends on the threshold of sticking, but not whether there is one:
+            # a ball that rests at all times leaves its wall where the force between them reaches zero.
+            chatters = low.orbit.sticks and high.orbit.sticks and low.contacts.keys() == high.contacts.keys()
+            if chatters and is_pressed(high if gains else low):
                 return []
             located = 0.5 * (low.value + high.value)
             passage = passage_words(high, (point.value - located) * (after.value - located) > 0)
@@ -305,9 +310,25 @@ class Follower:
         return []
 
 
-def _sequence(point: Point) -> tuple[bool, Counter[int]]:
-    """Return whether bodies stick in the motion of a point, and the number of impacts of each contact."""
-    return point.orbit.sticks, point.contacts
+def _sequence(point: Point) -> tuple[bool, tuple[int, ...]]:
+    """Return whether bodies stick in the motion of a point, and the contacts of its impacts in their order."""
+    # Impacts at the same time to rounding, as in equal dampers, are in the order of their contacts.
+    impacts = sorted(point.orbit.impacts, key=lambda impact: (round(impact.phase, _SAME_PHASE), impact.contact))
+    row = tuple(impact.contact for impact in impacts)
+    # The order is that around the period, wherever an impact passes its beginning.
+    return point.orbit.sticks, min((row[k:] + row[:k] for k in range(len(row))), default=row)
+
+
+def _end_words(point: Point) -> str:
+    """Return the reason why no further motion was found after a point."""
+    impacts, cycles = point.orbit.impacts, point.orbit.cycles
+    for one, other in pairwise((*impacts, *impacts[:1])):
+        if one.contact != other.contact and (other.phase - one.phase) % 1.0 * cycles < _COINCIDES:
+            return (
+                f"impacts of {one.place} and {other.place} coincide, and the motion jumps where their order changes; no "
+                "further motion was found"
+            )
+    return "no further motion was found"
 
 
 def _kind(name: str, point: Point) -> str:
@@ -325,6 +346,19 @@ def _kind(name: str, point: Point) -> str:
         # The tangent may turn in chatter, too, where the branch has corners.
         return name if np.abs(values - 1).min() < 1e-3 else ""
     return name
+
+
+def _leaves_circle(located: Point, *ends: Point) -> bool:
+    """Return whether the product of the pair on the circle at a point differs from 1 at a neighbour, beyond rounding."""
+    # The product is 1 along a whole branch of motions without losses, such as impacts below the speed of yield; it stays 1
+    # where the pair meets and becomes real.
+    values = located.multipliers()
+    pair = min(values[values.imag > 0], key=lambda value: abs(abs(value) - 1))
+    products = []
+    for each in ends:
+        both = sorted(each.multipliers(), key=lambda value: min(abs(value - pair), abs(value - pair.conjugate())))[:2]
+        products.append(abs(both[0] * both[1]))
+    return bool(np.abs(np.array(products) - 1).max() > ON_CIRCLE)
 
 
 def _named(point: Point, kind: str) -> Point:

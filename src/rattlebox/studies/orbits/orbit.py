@@ -143,8 +143,8 @@ class Orbit:
 
     @property
     def is_stable(self) -> bool:
-        """Whether all multipliers are inside of the unit circle."""
-        return bool((np.abs(self.multipliers) < 1).all())
+        """Whether no multiplier is outside of the unit circle by more than rounding."""
+        return bool((np.abs(self.multipliers) < 1 + ON_CIRCLE).all())
 
     @property
     def stability(self) -> str:

@@ -29,11 +29,9 @@ def torus_test(multipliers: NDArray[np.complex128]) -> float:
 def stability_words(multipliers: NDArray[np.complex128]) -> str:
     """Return the kind of stability of a motion with some multipliers."""
     sizes = np.abs(multipliers)
-    if (np.abs(sizes - 1) < ON_CIRCLE).any() and not (sizes > 1 + ON_CIRCLE).any():
-        return "at the limit of stability"
-    outside = multipliers[sizes > 1]
+    outside = multipliers[sizes > 1 + ON_CIRCLE]
     if not outside.size:
-        return "stable"
+        return "at the limit of stability" if (sizes > 1 - ON_CIRCLE).any() else "stable"
     real = np.abs(outside.imag) <= 1e-12 * np.abs(outside)
     parts = []
     if above := int((real & (outside.real > 0)).sum()):
