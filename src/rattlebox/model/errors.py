@@ -321,7 +321,7 @@ def _complaint_and_suggestion(
     # An error of our own validators has its words already.
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
     if isinstance(raised, RattleboxError):
-        if raised.complaint in (NEGATIVE, NOT_POSITIVE) and not raised.suggestion and str(value).startswith("-"):
+        if raised.complaint in (NEGATIVE, NOT_POSITIVE) and str(value).startswith("-"):
             positive = str(value)[1:]
             return raised.complaint, f'"{positive}"' if isinstance(value, str) else positive
         return (raised.without_suggestion if raised.head else raised.complaint), raised.suggestion

@@ -504,7 +504,7 @@ def quantity(unit: str, description: str = "") -> Any:
 
 def _positive(value: float) -> float:
     if not value > 0:
-        raise Hint(NOT_POSITIVE)
+        raise Hint(NOT_POSITIVE, "a positive number")
     if value < 1 / LARGEST:
         raise Hint(f"no less than {1 / LARGEST:g} in SI units is allowed", "check the exponent and the unit")
     return value
@@ -512,7 +512,7 @@ def _positive(value: float) -> float:
 
 def _not_negative(value: float) -> float:
     if value < 0:
-        raise Hint(NEGATIVE)
+        raise Hint(NEGATIVE, "zero or a positive number")
     return value
 
 

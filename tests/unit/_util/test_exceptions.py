@@ -148,7 +148,6 @@ ERRORS = {
 PASSED_ON = {
     "cli/plot_run.py": 1,  # of a function of a figure, as it is
     "engines/stepper.py": 1,  # of a status, with its advice
-    "model/units.py": 2,  # limits of a field, whose example `translate` adds
     "prepare/variants.py": 1,  # of a variant
     "studies/basin_stability.py": 1,
     "studies/design/search.py": 1,  # of a design

@@ -264,6 +264,23 @@ def test_shaking_is_the_damping_of_a_forced_vibration() -> None:
     assert lost / viscous == pytest.approx(float(curve.damping_ratio.mean()), rel=0.006)
 
 
+@pytest.mark.parametrize(
+    ("number", "mass", "share"), [(1, "0.25 kg", ""), (3, "0.15 kg", "15 %"), (1, "0.6 kg", "20 %")]
+)
+def test_heavy_dampers_have_a_warning(number: int, mass: str, share: str) -> None:
+    """Shaking neglects that dampers lower the frequency, which the docstring alone said, however heavy they were."""
+    ball = rb.Striker(mass=mass, radius="12 mm")
+    damper = rb.ImpactDamper(ball=ball, number=number, gap="0.8 mm", contact=rb.Tsuji(restitution=0.5))
+    structure = rb.Modal(
+        frequencies=["40 Hz"], shapes={"tip": [3**-0.5]}, damping_ratios=[0.01]
+    )  # 3 kg move with the tip
+    case = rb.Case(structure=structure, damper=damper, duration="1 s")
+    curve = rb.damping_curve(case, ["0.2 mm", "0.5 mm"], way="shaking", packings=1, cycles=(5, 10), progress=False)
+    found = [text for text in curve.attrs["warnings"] if "mass that moves in the mode" in text]
+    assert len(found) == bool(share)
+    assert share in "".join(found)
+
+
 def test_a_design_counts_the_cycles_that_are_given() -> None:
     """The damping ratio of a design is the smallest of its curve with the same cycles at each amplitude."""
     case, levels = ball_case(), ["0.3 mm", "0.4 mm"]
