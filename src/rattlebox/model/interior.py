@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rattlebox._util.quantities import amount
 
@@ -25,6 +26,7 @@ _ON_WALLS = 2**17
 _TOUCHING = (
     1e-7  # distance of two surfaces that touch, over the size of the cavity: files round coordinates to half of it
 )
+_STEPS, _HALVINGS, _SIGHT = 16, 24, 65  # points on an edge of a drawn body, halvings at the wall, points along the view
 _SMALL = 0.05  # size of a body over the radius of a particle that suggests a wrong unit
 
 
@@ -158,9 +160,42 @@ class Interior(Cavity):
         return Surface(np.concatenate([part.points for part in parts]), tuple(polygons))
 
     def outline(self, view: Vector) -> list[Vector]:
-        """Return the lines of the cavity and of the bodies."""
-        bodies = [line for solid in self.solids for line in solid.surface().lines(view[2])]
-        return [*self.shape.outline(view), *bodies]
+        """Return the lines of the cavity, and what is seen of those of the bodies, which may reach out of it."""
+        bodies = [(solid, line) for solid in self.solids for line in solid.surface().lines(view[2])]
+        parts = [part for solid, line in bodies for part in self._seen_parts(solid, line, view[2])]
+        return [*self.shape.outline(view), *parts]
+
+    def _seen_parts(self, solid: Solid, line: Vector, towards_viewer: Vector) -> list[Vector]:
+        """Return the parts of a line of a body at which a viewer sees the body in the cavity, each (n, 3) [m]."""
+        steps = np.linspace(line[:-1], line[1:], _STEPS, endpoint=False).transpose(1, 0, 2)
+        points = np.concatenate([steps.reshape(-1, 3), line[-1:]])
+        seen = self._is_seen(solid, points, towards_viewer)
+        if seen.all():
+            return [line]
+        last = np.flatnonzero(seen[1:] != seen[:-1])
+        a, b = points[last], points[last + 1]
+        for _ in range(_HALVINGS):
+            middle = (a + b) / 2
+            same = (self._is_seen(solid, middle, towards_viewer) == seen[last])[:, None]
+            a, b = np.where(same, middle, a), np.where(same, b, middle)
+        points, seen = np.insert(points, last + 1, a, axis=0), np.insert(seen, last + 1, True)
+        ends = np.flatnonzero(np.diff(seen.astype(int), prepend=0, append=0)).reshape(-1, 2)
+        return [points[first:end] for first, end in ends if end - first > 1]
+
+    def _is_seen(self, solid: Solid, points: Vector, towards_viewer: Vector) -> NDArray[np.bool_]:
+        """Return whether some of a body that is in the cavity is in front of points of its surface or behind them, (n,)."""
+        size = float(self.lengths.max())
+        seen: NDArray[np.bool_] = self.shape.depth(points) >= -_TOUCHING * size
+        rest = np.flatnonzero(~seen)
+        low, high = solid.bounds
+        # Points of the surface are moved inside, where rounding does not decide.
+        start = points[rest] + _TOUCHING * ((low + high) / 2 - points[rest])
+        reach = float(np.linalg.norm(high - low))
+        sight = start[:, None] + np.linspace(-reach, reach, _SIGHT)[:, None] * towards_viewer
+        both = solid.is_within(sight.reshape(-1, 3))
+        both[both] = self.shape.depth(sight.reshape(-1, 3)[both]) >= 0
+        seen[rest] = both.reshape(-1, _SIGHT).any(axis=1)
+        return seen
 
     def extent(self, direction: Vector) -> float:
         """Return the width of the cavity along a unit vector [m]."""

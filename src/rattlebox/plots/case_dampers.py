@@ -87,9 +87,12 @@ def _draw_impact_damper(damper: ImpactDamper, axes: Axes, cells: Cells) -> None:
             dimension(axes, (a, bottom + high), (b, bottom + high), amount(gap, "m"), 0.8 * unit)
     sizes = list(dict.fromkeys(halves[halves > 0].tolist()))
     diameters = " and ".join(amount(2 * radius, "m") for radius in sizes) if len(sizes) < 4 else "of several sizes"
-    noun = joined(list(dict.fromkeys(ball.noun for ball in damper.balls)))
+    many = "s" if len(damper.balls) > 1 else ""
+    noun = joined(list(dict.fromkeys(ball.noun + many for ball in damper.balls)))
     words = [
-        counted(len(damper.balls), f"{joined([name.replace('_', ' ') for name in names])} {noun}" if sizes else noun),
+        f"{len(damper.balls)} {joined([name.replace('_', ' ') for name in names])} {noun}"
+        if sizes
+        else f"{len(damper.balls)} {noun}",
         (f"diameter {diameters}, " if sizes else "") + amount(float(np.sum(damper.masses)), "kg"),
         f"gap 2 x {amount(gap, 'm')}" + (", enlarged on the right" if small and gap > 0 else ""),
     ]
@@ -145,7 +148,7 @@ def _draw_particle_damper(damper: ParticleDamper, axes: Axes, cells: Cells) -> N
     for place in places[:, :2]:
         _draw_walls(axes, cavity, place)
     if cavity.is_aligned:  # else the extents are no dimensions of the cavity
-        corners = np.concatenate(cavity.outline(_FRONT)) @ _FRONT[:2].T
+        corners = np.concatenate(damper.cavity.outline(_FRONT)) @ _FRONT[:2].T
         low, high = corners.min(axis=0), corners.max(axis=0)
         # The dimensions are those of the lowest and of the rightmost cell, so that they cross no other one.
         lowest, rightmost = places[np.lexsort((places[:, 0], places[:, 1]))[0]], places[np.argmax(places[:, 0])]

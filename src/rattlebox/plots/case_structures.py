@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import singledispatch
 from typing import Any
@@ -50,24 +50,25 @@ def _equal_scales(axes: Axes) -> None:
 
 @dataclass
 class _Attached:
-    """What is drawn at a point of a structure: marks of dampers, number of loads, tuned masses."""
+    """What is drawn at a point of a structure, or on a tuned mass: marks of dampers, number of loads, tuned masses."""
 
     marks: list[str] = field(default_factory=list)
     loads: int = 0
-    tuned: list[TunedMass] = field(default_factory=list)
+    tuned: list[tuple[TunedMass, _Attached]] = field(default_factory=list)
 
 
 def _attached(case: Case, marks: Marks) -> dict[str, _Attached]:
-    """Return the points with dampers, loads or tuned masses, in this order."""
+    """Return the points of the structure with dampers, loads or tuned masses, in this order."""
     points: defaultdict[str, _Attached] = defaultdict(_Attached)
-    modes = case.structure.modes()
+    tuned = [part.label(number, len(case.tuned_masses)) for number, part in enumerate(case.tuned_masses)]
     for number, damper in enumerate(each_damper(case)):
-        there = points[modes.point(damper.point)].marks
+        there = points[case.modes.point(damper.point)].marks
         there += [marks[number]] if marks[number] not in there else []  # cells and equal dampers share a mark
     for load in case.loads:
-        points[modes.point(load.point)].loads += 1
-    for part in case.tuned_masses:
-        points[modes.point(part.point)].tuned.append(part)
+        points[case.modes.point(load.point)].loads += 1
+    carried = [points.pop(name, _Attached()) for name in tuned]
+    for part, parts in zip(case.tuned_masses, carried, strict=True):
+        points[case.structure.modes().point(part.point)].tuned.append((part, parts))
     return dict(points)
 
 
@@ -108,14 +109,15 @@ def _draw_block(axes: Axes, case: Case, marks: Marks, words: str, left: float) -
     """Draw a block without size, its dampers, loads and tuned masses; `left` is the edge of what is drawn beside it."""
     _equal_scales(axes)
     body(axes, (0.0, -0.4), 1.2, 0.8)
-    text(axes, (0.6, 0.2 if case.dampers else 0.0), words)
-    _row_of_marks(axes, case, marks, (0.6, -0.15))
+    own = next(iter(_attached(case, marks).values()), _Attached())  # of the only point
+    text(axes, (0.6, 0.2 if own.marks else 0.0), words)
+    _row_of_marks(axes, own.marks, (0.6, -0.15), 0.13)
     right = 1.2
-    if case.loads:
+    if own.loads:
         arrow(axes, (1.3, 0.0), (1.95, 0.0), colour=LOAD_COLOUR, width=1.4)
         text(axes, (1.62, 0.12), "F(t)", va="bottom", color=LOAD_COLOUR)
         right = 2.1
-    top = 0.5 + _draw_tuned_masses(axes, case, {"mass": (0.6, 0.4)})
+    top = 0.5 + _draw_tuned_masses(axes, own, (0.6, 0.4), 0.45)
     _draw_base_motion(axes, case, (left - 0.35, -0.75), (left + 0.35, -0.75), (left + 0.45, -0.75), ha="left")
     text(axes, ((left + right) / 2, -1.15), "symbols, not to scale", color=FAINT, fontsize="small")
     axes.set_xlim(left - 0.5, right + 0.3)
@@ -129,31 +131,25 @@ def _draw_base_motion(axes: Axes, case: Case, start: Point, end: Point, at: Poin
         text(axes, at, "motion of the base", color=LOAD_COLOUR, fontsize="small", **options)
 
 
-def _row_of_marks(axes: Axes, case: Case, marks: Marks, at: Point) -> None:
-    """Draw the marks of all dampers next to each other."""
-    radius, shown = 0.13, list(dict.fromkeys(marks[number] for number in range(len(marks))))
-    for k, words in enumerate(shown):
-        mark(axes, (at[0] + 2.4 * radius * (k - (len(shown) - 1) / 2), at[1]), words, radius)
+def _row_of_marks(axes: Axes, words: Sequence[str], at: Point, radius: float) -> None:
+    """Draw marks next to each other."""
+    for k, each in enumerate(words):
+        mark(axes, (at[0] + 2.4 * radius * (k - (len(words) - 1) / 2), at[1]), each, radius)
 
 
-def _draw_tuned_masses(axes: Axes, case: Case, places: Mapping[str, Point], step: float = 0.0) -> float:
-    """Draw tuned masses above their points; return the height that they take."""
-    modes = case.structure.modes()
-    height = 0.0
-    for number, part in enumerate(case.tuned_masses):
-        try:
-            x, y = places[modes.point(part.point)]
-        except (KeyError, ValueError):
-            continue
-        size = step or 0.35
-        x, top = x + number * size, y + 1.2 * size
+def _draw_tuned_masses(axes: Axes, parts: _Attached, at: Point, size: float) -> float:
+    """Draw tuned masses, with their dampers, above their point; return the height that they take."""
+    x, y = at
+    for part, carried in parts.tuned:
+        top = y + 1.2 * size
         spring(axes, (x - 0.3 * size, y), (x - 0.3 * size, top), 0.25 * size, 3)
         dashpot(axes, (x + 0.3 * size, y), (x + 0.3 * size, top), 0.25 * size)
         body(axes, (x - 0.6 * size, top), 1.2 * size, 0.6 * size)
-        words = f"{amount(part.mass, 'kg')}, {amount(part.frequency, 'Hz')}"
-        text(axes, (x + 0.75 * size, y + 1.5 * size), words, ha="left", fontsize="small")
-        height = max(height, 2.2 * size)
-    return height
+        _row_of_marks(axes, carried.marks, (x, top + 0.3 * size), 0.22 * size)
+        words = f"{amount(part.mass, 'kg')}, {amount(part.frequency, 'Hz')}" + (", F(t)" if carried.loads else "")
+        text(axes, (x + 0.75 * size, top + 0.3 * size), words, ha="left", fontsize="small")
+        y = top + 0.6 * size  # further ones, which stand on the same point, are drawn above
+    return y - at[1] + (0.4 * size if parts.tuned else 0.0)
 
 
 @_draw.register
@@ -179,7 +175,9 @@ def _draw_beam(beam: Beam, axes: Axes, case: Case, marks: Marks) -> None:
     dimension(axes, (0.0, -shown / 2), (length, -shown / 2), amount(length, "m"), -3.0 * unit)
     beside = length * 1.15 + (3 * unit if beam.tip_mass else 0.0)  # the tip mass has its value there
     _draw_section(axes, beam, beside, unit, thick)
-    top = 4.5 * unit + _draw_tuned_masses(axes, case, above, 2.2 * unit)
+    attached = _attached(case, marks).items()
+    heights = [_draw_tuned_masses(axes, parts, above[name], 2.2 * unit) for name, parts in attached]
+    top = 4.5 * unit + max(heights, default=0.0)
     axes.set_xlim(-3 * unit, beside + max(thick, unit) + 6 * unit)
     axes.set_ylim(-0.5 * shown - 5.5 * unit, 0.5 * shown + top)
 
@@ -267,7 +265,8 @@ def _draw_plate(plate: Plate, axes: Axes, case: Case, marks: Marks) -> None:
         if parts.loads:
             axes.plot(x, y, marker="x", color=LOAD_COLOUR, ms=pen(6), mew=pen(1.4), zorder=9)
             _force(axes, (x + unit, y - unit))
-        if parts.tuned:
+        for k, (_, carried) in enumerate(parts.tuned):
+            _row_of_marks(axes, carried.marks, (x, y - 2.0 * unit * (k + 1)), 0.75 * unit)
             axes.add_patch(Rectangle((x - unit / 2, y - unit / 2), unit, unit, facecolor=SERIES_COLOURS[2], zorder=7))
         text(axes, (x, y + 1.2 * unit), shorten(name, 14), va="bottom", fontsize="small", zorder=9)
     dimension(axes, (0.0, 0.0), (a, 0.0), amount(a, "m"), -1.5 * unit)
@@ -303,8 +302,12 @@ def _draw_building(building: ShearBuilding, axes: Axes, case: Case, marks: Marks
         beside = 0.45 * len(parts.marks)
         if parts.loads:
             arrow(axes, (1.9 + beside, y), (1.2 + beside, y), colour=LOAD_COLOUR, width=1.4)
-        for part in parts.tuned:
-            words = f"+ tuned mass {amount(part.mass, 'kg')}"
+        for part, carried in parts.tuned:
+            for words in carried.marks:
+                mark(axes, (1.45 + beside, y), words, 0.2)
+                beside += 0.45
+            beside += 0.1 if carried.marks else 0.0
+            words = ("in" if carried.marks else "+") + f" tuned mass {amount(part.mass, 'kg')}"
             text(axes, (1.25 + beside, y), words, ha="left", fontsize="small")
     _draw_base_motion(axes, case, (-0.2, -0.45), (1.2, -0.45), (0.5, -0.6), va="top")
     text(axes, (0.5, -1.3), "symbols, not to scale", color=FAINT, fontsize="small")
@@ -316,14 +319,18 @@ def _draw_modes(axes: Axes, case: Case, marks: Marks) -> None:
     """Draw the effective mass of each mode at the points of the dampers over the natural frequency."""
     modes, frequencies = case.structure.modes(), np.array(case.structure.natural_frequencies)
     stiff = np.asarray(modes.stiffness) > 0
-    attached = {name: parts for name, parts in _attached(case, marks).items() if parts.marks or parts.loads}
+    attached = {
+        name: parts for name, parts in _attached(case, marks).items() if parts.marks or parts.loads or parts.tuned
+    }
     names = list(attached) or list(modes.shapes)[:1]
     divisor, unit = scaled(frequencies, "Hz")
     for k, name in enumerate(names[: len(SERIES_COLOURS)]):
         shape = np.asarray(modes.shapes[name])[stiff]
         square = (shape.reshape(len(shape), -1) ** 2).sum(axis=1)
         moved = square > 1e-12 * square.max(initial=0.0)
-        numbers = ", ".join(filter(None, attached[name].marks)) if attached else ""
+        there = attached.get(name, _Attached())
+        carried = [words for _, each in there.tuned for words in each.marks]
+        numbers = ", ".join(filter(None, [*there.marks, *carried]))
         style: Style = {"color": SERIES_COLOURS[k], "marker": "o", "ms": pen(3), "ls": ""}
         x, y = frequencies[moved][:_MAX_STEMS] / divisor, square[moved][:_MAX_STEMS]
         axes.plot(x, y, label=f"at {shorten(name, 20)}" + (f" ({numbers})" if numbers else ""), **style)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 import rattlebox as rb
+from rattlebox._util.quantities import amount
 
 from .conftest import is_within_page
 
@@ -220,3 +222,71 @@ def test_other_objects_are_refused() -> None:
     """An object that is not a case is refused."""
     with pytest.raises(TypeError, match="a case is needed"):
         rb.plot_case("case.toml")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("cavity", "body", "lines"),
+    [
+        (rb.Box(size=("30 mm", "24 mm", "20 mm")), rb.RodBody(diameter="6 mm", length="80 mm", axis="x"), 2),
+        (
+            rb.Cylinder(diameter="40 mm", length="20 mm", axis="y"),
+            rb.Honeycomb(cell="12 mm", thickness="1 mm", rings=3, axis="y"),
+            9,
+        ),
+        (rb.Cylinder(diameter="36 mm", length="24 mm", axis="x"), rb.BodyCross(count=3, thickness="2 mm", axis="x"), 0),
+        (rb.SphericalCavity(diameter="36 mm"), rb.RodBody(diameter="8 mm", axis="y", position=("3 mm", 0, 0)), 1),
+        (rb.SphericalCavity(diameter="36 mm"), rb.PlateBody(size=("50 mm", "50 mm", "2 mm")), 2),
+        (rb.Box(size=("30 mm", "24 mm", "20 mm")), rb.BallBody(diameter="8 mm", position=("14 mm", 0, 0)), 1),
+    ],
+    ids=["rod", "honeycomb", "cross", "end of a rod", "plate", "ball"],
+)
+def test_bodies_are_drawn_in_their_cavity_only(cavity: Any, body: Any, lines: int) -> None:
+    """Bodies that reach through the wall were drawn outside, with their dimensions; those of the tests were inside."""
+    particles = rb.Particles(material="glass", diameter="2 mm", count=5)
+    lattice = damper(cavity, bodies=[body], particles=particles, packing=rb.Settled(seed=1))
+    view = np.eye(3)[[0, 2, 1]] * [[1], [1], [-1]]
+    alone = cavity.outline(view)
+    drawn = lattice.interior.outline(view)[len(alone) :]
+    assert len(drawn) >= lines
+    limits = np.concatenate(alone) @ view[:2].T
+    for line in drawn:
+        seen = line @ view[:2].T
+        assert (seen >= limits.min(axis=0) - 1e-6).all() and (seen <= limits.max(axis=0) + 1e-6).all()
+        if isinstance(cavity, rb.SphericalCavity):
+            assert np.linalg.norm(seen, axis=1).max() < 18e-3 + 1e-6
+    figure = rb.plot_case(on(SDOF, lattice))
+    assert is_within_page(figure)
+    for length in cavity.lengths[[0, 2]]:
+        assert amount(length, "m") in texts(figure)
+
+
+STRUCTURES = {
+    "oscillator": (SDOF, "mass"),
+    "beam": (beam(), "tip"),
+    "plate": (rb.Plate(length="0.7 m", width="0.5 m", thickness="4 mm", material="steel"), "middle"),
+    "building": (rb.ShearBuilding(masses=["12 t"] * 2, stiffnesses=["9 MN/m"] * 2), "storey 2"),
+    "modes": (rb.Modal(frequencies=[8], damping_ratio=0.01, shapes={"tip": [0.5], "root": [0.1]}), "tip"),
+}
+
+
+@pytest.mark.parametrize("name", STRUCTURES)
+def test_dampers_in_tuned_masses_are_drawn(name: str) -> None:
+    """Only an oscillator had a drawing of a damper in its tuned mass, at the wrong place; no test had another structure."""
+    structure, point = STRUCTURES[name]
+    carried = BALL.model_copy(update={"point": "tuned mass"})
+    other = BALL.model_copy(update={"point": point, "gap": 1e-3, "name": "other"})
+    case = on(
+        structure,
+        carried,
+        other,
+        tuned_masses=rb.TunedMass(mass="1 kg", frequency="9.5 Hz", point=point),
+        loads=FORCE.model_copy(update={"point": "tuned mass"}),
+    )
+    figure = rb.plot_case(case)
+    assert is_within_page(figure)
+    if name == "modes":
+        assert "at tip (2, 1)" in texts(figure)
+        return
+    marks = {each.get_text(): each.get_position()[1] for each in figure.axes[0].texts}
+    assert {"1", "2"} <= set(marks)
+    assert name in ("plate", "building") or marks["1"] > marks["2"]
