@@ -30,6 +30,8 @@ Damper = TypeVar("Damper", "ImpactDamper", "ParticleDamper")
 
 _MANY_CONTACT_STEPS = 20_000_000
 """Steps in closed contacts, about ten seconds of processor time, from which a run has a note about them."""
+_CLOSED = 1e-15
+"""Gap of a hard contact at rest that is closed to rounding [m]."""
 _CONTACT_GAP = 1e-9
 """Gap over the clearance below which a ball counts as touching."""
 
@@ -66,7 +68,8 @@ def impact_notes(
         else:
             smallest = float(stop_gaps[:, index - len(case.impact_dampers)].min())
             name, gap = " ".join(stop.name.split()), _length(stop.gap)
-            notes.append(f"note: no impact at {name} (smallest gap {_length(smallest)}, at rest {gap})")
+            if smallest > _CLOSED:  # otherwise the stop may carry a force from the start
+                notes.append(f"note: no impact at {name} (smallest gap {_length(smallest)}, at rest {gap})")
     return tuple(notes)
 
 

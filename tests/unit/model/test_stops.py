@@ -147,6 +147,20 @@ def test_point_beside_a_point_that_moves_alike_is_refused() -> None:
         case(structure=structure, stop=rb.Stop(point="a", other="b", gap=1e-3, contact=SOFT))
 
 
+@pytest.mark.parametrize("load", [{"base": "m/s^2"}, {"load": "N"}])
+def test_a_stop_that_is_pressed_from_the_start_is_not_out_of_reach(load: dict[str, str]) -> None:
+    """A hard stop that carries a steady force has no impact and no note, which tests of stops that are hit did not see."""
+    (name, unit), *_ = load.items()
+    steady = rb.Record(times=[0, 10], values=[-7.0, -7.0] if name == "base" else [14.0, 14.0], unit=unit)
+    stop = rb.Stop(gap="0 mm", contact=rb.Linear(stiffness="2 MN/m", restitution=0.5))
+    structure = rb.SDOF(mass="3 kg", frequency="4 Hz", damping_ratio=0.02)
+    run = rb.simulate(
+        rb.Case(structure=structure, stop=stop, method=rb.Newton(), duration="1 s", **{name: steady})  # type: ignore[arg-type]
+    )
+    assert run.arrays.impacts.time.size == 0
+    assert not run.notes
+
+
 def test_notes_say_which_limits_were_exceeded() -> None:
     """Deep overlaps, fast impacts, an extrapolated curve, a stop that is not reached and few modes have notes."""
     sized: dict[str, Any] = {"radius": "5 mm", "material": "steel"}
