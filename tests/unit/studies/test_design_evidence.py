@@ -12,6 +12,7 @@ import xarray as xr
 import rattlebox as rb
 from rattlebox.cli.show import show_study
 from rattlebox.report.kinds.design import KIND
+from rattlebox.studies.design.candidate import added_mass
 from rattlebox.studies.design.evidence import curves_of, order_note, with_order
 
 NUMBER = "damper.number"
@@ -152,3 +153,44 @@ def test_the_front_is_open_within_intervals() -> None:
     )
     apart = with_order(planted([[3], [1]], [[0.1], [0.1]], [0], ("max",)), [-1.0])
     assert order_note(apart) == ""
+
+
+def test_a_best_value_at_an_end_is_stated(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The best gap at an end of its list or range has a remark; before, nothing told such a trial from an optimum.
+
+    Tests of designs looked at optima inside the values only. A limit that no case can exceed, names, a limit of the mass,
+    and a best value in the middle have no remark.
+    """
+    base = rb.reference_case(rb.Tsuji(restitution=0.6), duration=0.1)
+    gap, start, radius = "damper.gap", "damper.start", "damper.ball.radius"
+
+    def nearest_to(path: str, best: float, values: Any, **options: Any) -> xr.Dataset:
+        """Return a search for the value of a parameter that is next to a given one."""
+        name = path.rpartition(".")[2]
+
+        def objective(run: rb.Run) -> float:
+            (damper,) = run.case.impact_dampers
+            return abs(float(getattr(damper.balls[0] if name == "radius" else damper, name)) - best)
+
+        return rb.design(base, {path: values}, objective, progress=False, **options)
+
+    low = nearest_to(gap, 0.0, ["0.3 mm", "0.4 mm", "0.6 mm"], store=tmp_path / "design")
+    note = "the best damper gap, 0.3 mm, is the smallest value tried; try: a smaller damper gap"
+    assert low.attrs["at_end"] == note and f" {note[:50]}" in str(low)
+    assert f"T{note[1:]}." in list(KIND.answer(low))
+    show_study(tmp_path / "design")
+    assert note in " ".join(capsys.readouterr().out.split())
+    high = nearest_to(gap, 1.0, ["0.3 mm", "0.6 mm"])
+    assert high.attrs["at_end"].startswith("the best damper gap, 0.6 mm, is the largest value tried")
+    near = nearest_to(gap, 0.0, ("0.3 mm", "3 mm"), trials=30)
+    assert "the smallest value of its range, 0.3 mm; try: a smaller damper gap" in near.attrs["at_end"]
+    heaviest = added_mass(base.replaced({radius: "20 mm"}))
+    for other in (
+        nearest_to(gap, 0.4e-3, ["0.3 mm", "0.4 mm", "0.6 mm"]),
+        nearest_to(gap, 0.0, ["0.3 mm"]),
+        nearest_to(start, 1.0, [-1.0, 0.0, 1.0]),
+        nearest_to(radius, 1.0, ["10 mm", "20 mm"], max_added_mass=1.0001 * heaviest),
+        rb.design(base, {"damper.ball.material": ["steel", "brass"]}, "impact_share", progress=False),
+    ):
+        assert "at_end" not in other.attrs
+    assert "at_end" in nearest_to(radius, 1.0, ["10 mm", "20 mm"]).attrs

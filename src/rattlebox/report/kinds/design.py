@@ -19,6 +19,7 @@ from rattlebox.plots.labels import name_of, unit_of
 from rattlebox.report import study_words as words
 from rattlebox.report.limits import limit
 from rattlebox.report.parts import Call, Limit, Picture, Table
+from rattlebox.studies.design.ends import AT_END
 from rattlebox.studies.design.evidence import CURVE, CYCLES_RUN, DROPPED, LEVEL, PACKINGS_RUN, amplitude_text, curves_of
 from rattlebox.studies.design.space import ADDED_MASS, DAMPING_RATIO
 from rattlebox.studies.run.estimate import duration
@@ -85,6 +86,8 @@ def _answer(study: xr.Dataset) -> Iterator[str]:
         yield f"{counted(count, 'trial')} {verb} dropped early, as certainly not the best: {_stages(study)}."
     if order := str(study.attrs.get("order", "")):
         yield f"{order[0].upper()}{order[1:].partition('; try: ')[0]}."
+    if note := str(study.attrs.get(AT_END, "")):
+        yield f"{note[0].upper()}{note[1:]}."
 
 
 def _stages(study: xr.Dataset) -> str:

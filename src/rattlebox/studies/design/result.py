@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.flags import flag_masks
+from rattlebox.studies.design.ends import AT_END, end_note
 from rattlebox.studies.design.evidence import (
     CYCLES_RUN,
     DROPPED,
@@ -114,9 +115,14 @@ def _with_evidence(search: DesignSearch, found: xr.Dataset, trials: Sequence[Any
     if not found.front.size:
         found.attrs["warnings"] = [_none_feasible([str(reason) for reason in found.reason.values])]
     elif note := deciding_note(found):
-        found.attrs["warnings"] = [note]
+        found.attrs["warnings"] = [note]  # nothing is ranked, so that no parameter has a best value
+    elif note := end_note(search, found, search.case_of(trials[int(found.front[0])].params)):
+        found.attrs[AT_END] = note
     if note := order_note(found):
         found.attrs["order"] = note
+    # xarray prints the first attributes only: remarks stand before the description of the search.
+    remarks = {name: found.attrs[name] for name in ("title", "order", AT_END) if name in found.attrs}
+    found.attrs = remarks | found.attrs
     return found
 
 

@@ -128,8 +128,10 @@ class Design(Study):
         `front`: the numbers of the Pareto-optimal trials (of the best trial for one objective) and their case files; if no
         trial is feasible it is empty, and a warning, also in the attribute `warnings`, lists the reasons.
         Attributes: `predicted_wall_time` and `predicted_cpu_time` [s] of all trials before the first one, `wall_time`
-        and, on threads, `cpu_time` [s] that they took; `order`, the trials that cannot be told apart; `flagged`, if a trial
-        on the front exceeds validity limits; and `stopped`, if the budget ended the search.
+        and, on threads, `cpu_time` [s] that they took; `order`, the trials that cannot be told apart; `at_end`, the
+        parameters whose best value is the smallest or largest one of its list, or within 5 % of a bound, where values
+        beyond it are valid; `flagged`, if a trial on the front exceeds validity limits; and `stopped`, if the budget ended
+        the search.
 
     Raises
     ------

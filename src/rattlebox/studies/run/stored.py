@@ -304,7 +304,9 @@ def status_lines(study: xr.Dataset) -> list[str]:
     if not none and "reason" in study and (refused := [str(reason) for reason in study.reason.values if reason]):
         first = refused[0].replace("\n", "\n  ")
         lines.append(f"{len(refused):,} of {study.sizes['trial']:,} trials are not feasible, for example: {first}")
-    lines += [str(study.attrs["order"])] if "order" in study.attrs else []  # of the trials of a design
+    lines += [
+        str(study.attrs[name]) for name in ("order", "at_end") if name in study.attrs
+    ]  # of the trials of a design
     return [*lines, *warning_lines(study)]
 
 
