@@ -375,6 +375,22 @@ def test_numbers_of_the_answer_are_those_of_the_result() -> None:
     assert f"The peak displacement of mass is {1e3 * peak:.3f} mm" in page_of("run").text
 
 
+def test_recorded_walls_have_a_table(tmp_path: Path) -> None:
+    """Forces, pressures and losses of walls that were recorded were on no page, because tables were those of every run."""
+    run = rb.simulate(particles().model_copy(update={"output": rb.Output(rate="1 kHz", walls=True)}))
+    text = Page(run.report(tmp_path / "walls.html")).text
+    assert "power of friction" in text and "power of friction" not in page_of("particles").text
+    table = re.sub(r"\s+", " ", text[text.index("power of friction") :])
+    pressures, wear = rb.analysis.wall_pressures(run), rb.analysis.wall_wear(run)
+    losses = sum(run.energy[f"wall_{channel}_loss"][-1] for channel in ("normal", "plastic", "sliding", "rolling"))
+    forces = np.linalg.norm(run.motion.wall_force, axis=2).max(axis=0)
+    assert list(pressures) == ["side", "first end", "last end"]
+    for k, wall in enumerate(pressures):
+        numbers = ((forces[k], "N"), (pressures[wall], "Pa"), (losses[k], "J"), (wear[wall], "W/m"))
+        words = [amount(float(value), unit, 3) for value, unit in numbers]
+        assert re.sub(r"\s+", " ", "".join([wall, *words])) in table
+
+
 @pytest.mark.parametrize(
     ("options", "words", "keys"),
     [

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rattlebox._util.phrases import counted, joined
 from rattlebox._util.quantities import amount, with_interval
 from rattlebox.analysis.signals import is_even
@@ -14,6 +16,7 @@ from rattlebox.report.limits import readable_case, run_limits
 from rattlebox.report.parts import Call, Kind, Picture, Table
 from rattlebox.results.case_words import dampers_words, loads_words
 from rattlebox.results.summary import Value
+from rattlebox.results.wall_measures import wall_pressures, wall_wear
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -38,6 +41,8 @@ _LOSSES = {
 _SPECTRA = ("psd", "third_octaves", "shock_spectrum")
 """Figures that a report has only for loads and base motions that they suit."""
 _MIN_SAMPLES = 512
+_MAX_WALLS = 24
+"""Most walls in the table."""
 _NEGLIGIBLE = 5e-4
 """Share of the energy that is not mentioned."""
 
@@ -122,6 +127,29 @@ def _pictures(run: Run) -> Iterator[Picture]:
             yield Picture(caption, partial(getattr(run.plot, name), **options))
 
 
+def _tables(run: Run) -> Iterator[Table]:
+    yield Table("Summary", (), run.summary().lines(), numbers=True)
+    if not run.arrays.walls:
+        return
+    arrays, pressures, wear = run.arrays, wall_pressures(run), wall_wear(run)
+    losses = sum(getattr(arrays, f"wall_{channel}_loss")[[0, -1]] for channel in _LOSSES if channel != "viscous")
+    largest = np.linalg.norm(arrays.wall_force, axis=2).max(axis=0)
+    rows = [
+        (
+            wall,
+            amount(largest[k], "N", 3),
+            amount(pressures[wall], "Pa", 3),
+            amount(losses[1, k] - losses[0, k], "J", 3),
+            amount(wear[wall], "W/m^2", 3),
+        )
+        for k, wall in enumerate(arrays.walls[:_MAX_WALLS])
+    ]
+    note = "The largest force is that of the samples. The power of friction over the area is proportional to the wear."
+    note += f" {len(arrays.walls) - _MAX_WALLS} more walls are in run.motion." if len(arrays.walls) > _MAX_WALLS else ""
+    header = ("wall", "largest force", "mean pressure", "energy lost", "power of friction")
+    yield Table("Walls", header, rows, note, numbers=True)
+
+
 def _has_spectrum(run: Run, name: str) -> bool:
     """Return whether a run has even times and a load or base motion whose response a figure over frequency suits."""
     case = readable_case(run)
@@ -154,7 +182,7 @@ KIND: Kind[Run] = Kind(
     answer=_answer,
     call=_call,
     pictures=_pictures,
-    tables=lambda run: [Table("Summary", (), run.summary().lines(), numbers=True)],
+    tables=_tables,
     warnings=lambda run: run.notes,
     limits=run_limits,
     about=_about,
