@@ -19,6 +19,10 @@ _HATCHES = ("////", "....", "xxxx", "\\\\\\\\", "++++", "oooo", "****")
 _MARKERS = ("x", "+", "1", "2", "3", "4", "*")
 
 
+NOT_STEADY = "not steady"
+"""Text of the legend for runs whose motion is not steady."""
+
+
 class Gap(NamedTuple):
     """Variants that have no value for one reason."""
 
@@ -43,6 +47,16 @@ def gaps_of(study: xr.Dataset, name: str) -> list[Gap]:
             groups.append((reason, states == status, "none", "" if status < 0 else _HATCHES[number], _MARKERS[number]))
     groups.append(("no value", ~explained, GREY, "", "|"))
     return [Gap(f"{reason} ({int(mask.sum())})", mask, *style) for reason, mask, *style in groups if mask.any()]
+
+
+def unsteady_runs(study: xr.Dataset) -> xr.DataArray | None:
+    """Return the variants whose motion is not steady; None for a study without the flag of them."""
+    names = str(study["warnings"].attrs.get("flag_meanings", "")).split() if "warnings" in study else []
+    return (
+        (study["warnings"].fillna(0).astype(np.int64) >> names.index("unsteady")) % 2 == 1
+        if "unsteady" in names
+        else None
+    )
 
 
 def add_gap_legend(figure: Figure, study: xr.Dataset, name: str) -> None:

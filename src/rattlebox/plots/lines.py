@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
-from .gaps import gaps_of
+from .gaps import NOT_STEADY, gaps_of, unsteady_runs
 from .labels import REPLICA, LabelledValues, StudyAxis, interval_ends, log_ticks, name_of, upper_limit, value_of
 from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, colour_bar, map_colours, pen
 from .types import Style, Vector
@@ -31,6 +32,8 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
     for other in others:
         styles = _series_styles(figure, axes, study[other])
         values = values.transpose(other, ...)
+    marks: list[Line2D] = []
+    doubtful = unsteady_runs(study)
     half_widths = study.get(f"{name}_interval")
     for number, (member, style) in enumerate(zip(values if others else [values], styles, strict=True)):
         # Names have no order, so no line connects them; few points are marked, many are not.
@@ -44,8 +47,13 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
         if half_widths is not None:
             half = half_widths.transpose(*values.dims)[number if others else ...] / measure.divisor
             ends = interval_ends(name, member, half)
+        count = len(axes.lines)
         _draw_line(axes, x_axis.values.numbers, member, ends, style)
-    marks = _clip_peaks(axes, name, values, along, x_axis) + _mark_gaps(axes, study, name, along, x_axis)
+        if doubtful is not None and set(dims) <= set(doubtful.dims):
+            replicas = set(doubtful.dims) - set(dims)
+            hollow = doubtful.any(replicas).transpose(*others, along)
+            marks = _draw_hollow(axes, axes.lines[count], hollow.values[number if others else ...], style) or marks
+    marks += _clip_peaks(axes, name, values, along, x_axis) + _mark_gaps(axes, study, name, along, x_axis)
     x_axis.label(axes, "x")
     measure.label(axes, "y")
     measure.axis_in_g(axes, "y")
@@ -89,6 +97,18 @@ def _draw_line(
     if isolated.any():
         dots: Style = {"linestyle": "", "marker": "o", "markersize": 2.5, "clip_on": False}
         axes.plot(x[isolated], middle.values[isolated], color=style["color"], **dots)
+
+
+def _draw_hollow(axes: Axes, line: Line2D, hollow: NDArray[np.bool_], style: Style) -> list[Line2D]:
+    """Draw hollow marks at the points of a line that are not steady; return the mark for the legend."""
+    x, middle = (np.asarray(each, float) for each in line.get_data())
+    marks: Style = {"linestyle": "", "marker": "o", "markersize": pen(2.4), "markerfacecolor": "white", "zorder": 3}
+    marks |= {name: style[name] for name in ("marker", "markersize") if name in style}
+    hollow = hollow & np.isfinite(middle)
+    if not hollow.any():
+        return []
+    axes.plot(x[hollow], middle[hollow], color=style["color"], clip_on=False, **marks)
+    return [Line2D([], [], label=NOT_STEADY, color=INK, **marks)]
 
 
 def _series_styles(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[Style]:

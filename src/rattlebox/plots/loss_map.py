@@ -45,7 +45,8 @@ def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
     -------
     Figure
         Figure with three panels over frequency and amplitude: in one row, or in one column at the size "column". A study
-        at one frequency is drawn as lines over the amplitude, one at one amplitude as lines over the frequency.
+        at one frequency is drawn as lines over the amplitude, one at one amplitude as lines over the frequency; points
+        whose motion is not steady are hollow there.
 
     Raises
     ------

@@ -38,7 +38,8 @@ def plot_map(
 
     Axes with a constant ratio between their values are logarithmic. For replicas, and along an axis of seeds, a map shows
     the median, and lines show the median with a band from 10 to 90 %. Without replicas, lines have a band of the 95 %
-    interval if the measure has one. Lines of up to 30 points have markers. Runs that did not finish are hatched in a map
+    interval if the measure has one. Lines of up to 30 points have markers; points are hollow if the motion is not
+    steady. Runs that did not finish are hatched in a map
     and marked on the axis below lines; a legend states why.
 
     Parameters

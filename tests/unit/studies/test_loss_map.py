@@ -131,3 +131,32 @@ def test_one_frequency_or_amplitude_is_drawn_as_lines(
         assert panel.lines[0].get_ydata() == pytest.approx(values.values.ravel())
     title = figure.get_suptitle()
     assert ("10 Hz" if along == "mm" else "1 mm") in title
+
+
+def test_lines_show_points_that_are_not_steady_hollow() -> None:
+    """Points whose motion is not steady have hollow marks and a legend; before, only `warnings` of the dataset had them.
+
+    Damping curves had such marks, and figures of loss maps were looked at for their numbers only.
+    """
+    result = rb.loss_map(shaken(), ["0.5 mm", "1 mm", "2 mm"], ["10 Hz", "20 Hz"], cycles=(40, 20), progress=False)
+    flags = {"flag_masks": [1, 2], "flag_meanings": "overlap unsteady"}
+    result["warnings"] = result.status.dims, np.array([[1, 0], [2, 0], [3, 2]], np.int8), flags
+    one = result.isel({FREQUENCY: [0]})
+    panels = rb.plot_loss_map(one).axes[:3]
+    for panel, values in zip(panels[1:], (one.effective_mass / one.particle_mass, one.reduced_loss), strict=False):
+        line, hollow = panel.lines[:2]
+        assert list(hollow.get_xdata()) == list(line.get_xdata()[1:]) and hollow.get_markerfacecolor() == "white"
+        assert hollow.get_ydata() == pytest.approx(values.values[1:, 0])
+    for figure, count in ((rb.plot_loss_map(one), 1), (rb.plot_map(result, "reduced_loss", kind="lines"), 1)):
+        texts = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+        assert texts.count("not steady") == count
+    two = rb.plot_map(result, "reduced_loss", kind="lines").axes[0]
+    hollow_points = sum(line.get_xdata().size for line in two.lines if line.get_markerfacecolor() == "white")
+    assert hollow_points == 3
+    many = result.isel({FREQUENCY: [0]}).interp({AMPLITUDE: np.linspace(0.5e-3, 2e-3, 40)}, method="nearest")
+    many["warnings"] = many.warnings.astype("int8").assign_attrs(flags)
+    many["status"] = many.status.astype("int8")
+    many["reduced_loss"][[3, 5]] = np.nan  # the point between two gaps has a dot of its own
+    assert rb.plot_map(many.squeeze(), "reduced_loss").axes[0].lines[-1].get_xdata().size > 1
+    result["warnings"][:] = 1
+    assert not rb.plot_loss_map(result.isel({FREQUENCY: [0]})).legends
