@@ -220,7 +220,8 @@ def test_a_budget_that_does_not_suffice_is_refused(options: Any, monkeypatch: py
     monkeypatch.setattr(DesignSearch, "evaluate", lambda *_: pytest.fail("a trial ran"))
     total = options.get("trials", 2)
     monkeypatch.setattr(
-        DesignSearch, "predict", lambda self, trials: Estimate(trials, 2 * trials, 40.0 * trials, 20.0 * trials, 2)
+        "rattlebox.studies.kinds.design.predict",
+        lambda search, trials: Estimate(trials, 2 * trials, 40.0 * trials, 20.0 * trials, 2),
     )
     with pytest.raises(rb.CaseError) as caught:
         searched(**options, budget="30 s")
@@ -257,7 +258,9 @@ def test_a_search_ends_at_its_budget(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 def test_the_budget_ends_a_run_in_progress(monkeypatch: pytest.MonkeyPatch) -> None:
     """If the prediction was wrong, a run is stopped at the budget; without a finished trial it is an error."""
-    monkeypatch.setattr(DesignSearch, "predict", lambda self, trials: Estimate(trials, trials, 0.1, 0.1, 2))
+    monkeypatch.setattr(
+        "rattlebox.studies.kinds.design.predict", lambda search, trials: Estimate(trials, trials, 0.1, 0.1, 2)
+    )
     for objective, more in (("rms", {}), ("damping_ratio", {"amplitudes": ["0.1 mm", "0.2 mm"]})):
         begun = time.monotonic()
         with pytest.raises(rb.CaseError, match=r"the budget of 0\.5 s ended before the first trial"):
@@ -357,7 +360,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_clear_refusals(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Wrong arguments are refused before anything runs, with advice."""
-    monkeypatch.setattr(DesignSearch, "predict", lambda *_: pytest.fail("something ran"))
+    monkeypatch.setattr("rattlebox.studies.kinds.design.predict", lambda *_: pytest.fail("something ran"))
     options, message = REFUSED[name]
     with pytest.raises(rb.CaseError) as caught:
         searched(**options)

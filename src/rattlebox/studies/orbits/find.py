@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rattlebox._util.quantities import quantity
 from rattlebox.engines.simulate import require_case, simulate
 from rattlebox.model.errors import Hint, several
-from rattlebox.model.methods import Newton, Output
+from rattlebox.model.methods import Output
 from rattlebox.model.units import whole_number
 from rattlebox.results.run import Run
 from rattlebox.studies.orbits.forcing import Forcing
@@ -245,7 +245,7 @@ def _end_of(run: Run, last: float) -> tuple[float, Vector]:
     if not open_.size or arrays.time[k] < arrays.time[-1] - last:
         # The state within a hard contact is complete, as where a ball rests on a wall; that within a soft one is not.
         k = -1
-        if not isinstance(run.case.method, Newton):
+        if not run.case.method.is_exact:
             raise Hint(
                 f"contacts are closed at all samples of the last {quantity(last, 's', 3)} of the run, as where a ball rests "
                 "on a wall, and a motion cannot start within a contact that has a duration",

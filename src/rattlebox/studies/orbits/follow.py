@@ -147,12 +147,8 @@ class Follower:
                 length = min(1.4 * length, longest)
             elif corrections >= _MANY:
                 length /= 2
-            if count > _LOOP and self._has_returned(start, point, after):
+            if (count > _LOOP and self._has_returned(start, point, after)) or self._meets(other_end, point, after):
                 self.is_closed = True
-                return
-            if other_end is not None and self._has_returned(other_end, point, after, -1.0):
-                self.is_closed = True
-                self.reasons.clear()  # the other side ended within the curve
                 return
             moved = corrector.resection(after)
             # Distances are between points whose maps begin at the same phase.
@@ -219,6 +215,13 @@ class Follower:
                 return False
         old, new = (np.sort([impact.approach_speed for impact in each.orbit.impacts]) for each in (start, after))
         return old.size == new.size and bool(np.allclose(old, new, rtol=0.1))
+
+    def _meets(self, other_end: Point | None, point: Point, after: Point) -> bool:
+        """Return whether the branch comes to the end of its other side, which then ended within a closed curve."""
+        meets = other_end is not None and self._has_returned(other_end, point, after, -1.0)
+        if meets:
+            self.reasons.clear()
+        return meets
 
     def _special(self, point: Point, after: Point) -> tuple[list[Point], str]:
         """Return the special points between two points in their order, and the reason if the branch ends there, or ""."""
