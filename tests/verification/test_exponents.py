@@ -155,7 +155,7 @@ def test_case_that_starts_on_a_motion_repeats_it(structure: Any, tuned: bool) ->
         ),
     )
     run = rb.simulate(case, progress=False)
-    time, state = _end_of(run)
+    time, state = _end_of(run, math.inf)
     forcing = Forcing.of(case)
     phase = time / forcing.period % 1.0
     nan = np.zeros(0)

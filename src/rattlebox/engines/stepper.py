@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from rattlebox._util.exceptions import CaseError, StepError
 from rattlebox._util.quantities import quantity
 from rattlebox.core import _core
-from rattlebox.model.case import Case
+from rattlebox.model.case import Case, first_contacts
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Method
@@ -371,6 +371,6 @@ class Stepper:
             number = member + sum(each.contents.radius.size for each in particles[:damper])
             where = f"Particle {number}, in {particles[damper].label(damper)!r},"
         else:
-            where = self._case.contact_names[self._case.first_contacts[damper] + member]
+            where = self._case.contact_names[first_contacts(self._case)[damper] + member]
         softened = damper >= 0 and bool(particles) and particles[damper].softening_factor > 1
         return describe(status, self.time, where, value, self._case.method.kind, softened=softened)[1]

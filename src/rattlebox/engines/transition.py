@@ -12,6 +12,7 @@ import numpy as np
 from rattlebox._util.exceptions import CaseError
 from rattlebox.core import _core
 from rattlebox.model.base import Part
+from rattlebox.model.case import first_contacts
 from rattlebox.model.errors import Hint
 from rattlebox.model.paths import get, replaced
 from rattlebox.prepare.pack import pack_columns, pack_parts, shape_columns
@@ -191,7 +192,7 @@ class Flow:
             *(f"position of {ball}" for ball in balls),
             *(f"velocity of {ball}" for ball in balls),
         )
-        flow = cls(whole, tuple(parameters), np.array(values), names, tuple(case.first_contacts))
+        flow = cls(whole, tuple(parameters), np.array(values), names, tuple(first_contacts(case)))
         # Compares a batch with cases that are packed one by one: formulas must take arrays.
         pack_parts(whole, {path: np.full(2, value) for path, value in zip(parameters, values, strict=True)}, (2,))
         flows = (replace(flow, _step=step) for step in _STEPS)

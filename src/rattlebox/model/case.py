@@ -397,12 +397,6 @@ class Case(Part):
             names += [f"{damper.label(index)} ({place})" for place in ("trailing wall", *between, "leading wall")]
         return [*names, *(stop.name for stop in self.each_stop)]
 
-    @property
-    def first_contacts(self) -> list[int]:
-        """Number of the first contact of each impact damper and stop in `contact_names`."""
-        counts = [*(len(damper.balls) + 1 for damper in self.impact_dampers), *(1 for _ in self.each_stop)]
-        return [0, *np.cumsum(counts).tolist()][:-1]
-
     def cavity_displacement(self, damper: ImpactDamper) -> Any:
         """Return the displacement of the cavity of an impact damper at the start [m], an array in a batch of variants."""
         shape, displacement = self.modes.shape(damper.point), self.modes.q0
@@ -738,3 +732,9 @@ class _Library(Part):
             if name in materials():
                 raise Hint("the library already has a material of this name", "another name", [name])
         return {name: {"name": name, **item} if isinstance(item, dict) else item for name, item in own.items()}
+
+
+def first_contacts(case: Case) -> list[int]:
+    """Return the number of the first contact of each impact damper and stop in `Case.contact_names`."""
+    counts = [*(len(damper.balls) + 1 for damper in case.impact_dampers), *(1 for _ in case.each_stop)]
+    return [0, *np.cumsum(counts).tolist()][:-1]

@@ -330,12 +330,14 @@ def _check_places(damper: ParticleDamper, places: Vector) -> Iterator[str]:
 def _check_packings(case: Case) -> Iterator[str]:
     """Yield a warning about each damper whose particles begin and move like those of another one."""
     first: dict[tuple[str, ...], str] = {}
-    starts = [(damper.point, damper.packing.model_dump_json()) for damper in case.particle_dampers]
+    starts = [(damper.point, damper.packing.model_dump_json(warnings=False)) for damper in case.particle_dampers]
     for index, (damper, start) in enumerate(zip(case.particle_dampers, starts, strict=True)):
         if not damper.packing.is_random or starts.count(start) == 1:  # text of a large surface takes long
             continue
         name = " ".join(damper.label(index).split())
-        other = first.setdefault((*map(str, start), damper.model_copy(update={"name": ""}).model_dump_json()), name)
+        other = first.setdefault(
+            (*map(str, start), damper.model_copy(update={"name": ""}).model_dump_json(warnings=False)), name
+        )
         if other != name:
             yield (
                 f"the particles of {name} have the same random packing as those of {other}, at the same point, and move"

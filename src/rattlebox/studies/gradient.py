@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.quantities import quantity
 from rattlebox.engines.transition import Flow, Transition
-from rattlebox.model.case import Case
+from rattlebox.model.case import Case, first_contacts
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import unit_of
 from rattlebox.studies.orbits.forcing import Forcing
@@ -278,7 +278,7 @@ class _Motion(ABC):
 
     def _place(self, damper: int, contact: int) -> str:
         case = self.flow.case
-        return case.contact_names[case.first_contacts[damper] + contact]
+        return case.contact_names[first_contacts(case)[damper] + contact]
 
     def _refusal(self, end: Transition) -> CaseError:
         """Return the error of a motion without derivatives."""

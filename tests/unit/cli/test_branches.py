@@ -202,10 +202,11 @@ def test_the_time_of_a_branch_is_predicted(run_cli: RunCli) -> None:
 def test_the_number_of_points_is_predicted(run_cli: RunCli) -> None:
     """The number of points of the estimate depends on the range, and is right within the factor of 3 that is stated.
 
-    It was 100 for every branch.
+    It was 100 for every branch. The longer range ends above a grazing near 19.2 Hz, past which the motion that a search
+    finds, and with it the number of points, depends on the last bit.
     """
     text = Path("branch.toml").read_text()
-    for number, limits in enumerate(('["16 Hz", "26 Hz"]', '["20.5 Hz", "21 Hz"]')):
+    for number, limits in enumerate(('["19.6 Hz", "26 Hz"]', '["20.5 Hz", "21 Hz"]')):
         lines = [f"limits = {limits}" if line.startswith("limits") else line for line in text.splitlines()]
         Path(f"range{number}.toml").write_text("\n".join(lines))
         out = run_cli("sweep", f"range{number}.toml", "--estimate")[1]
