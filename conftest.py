@@ -35,7 +35,7 @@ def examples_write_into_an_own_folder(request: pytest.FixtureRequest, monkeypatc
 
 
 def _names_before(text: str) -> dict[str, object]:
-    """Return the names from which the example of a docstring goes on: those of "the example of `rattlebox.find_orbit`"."""
+    """Return the names that the example of a docstring starts with: those of "the example of `rattlebox.find_orbit`"."""
     names: dict[str, object] = {}
     for name in re.findall(r"example\s+of\s+`(rattlebox\.[\w.]+)`", text):
         names |= _names_of_example(name)

@@ -25,6 +25,13 @@ def flag_masks(names: Iterable[str]) -> dict[str, Any]:
     return {"flag_masks": [1 << bit for bit in range(len(names))], "flag_meanings": " ".join(names)}
 
 
+def has_flag(variable: Any, name: str) -> Any:
+    """Return where a variable of xarray with `flag_masks` has the bit of a name; nowhere if it has no such bit or is NaN."""
+    names = str(variable.attrs.get("flag_meanings", "")).split()
+    mask = 1 << names.index(name) if name in names else 0
+    return (variable.fillna(0).astype(np.int64) & mask) != 0
+
+
 def type_flags(data: Any) -> Any:
     """Give the flags in a dataset of xarray the types of their variables, which files of Zarr do not keep; return it."""
     for variable in data.variables.values():

@@ -106,11 +106,11 @@ class Interior(Cavity):
         """Return that of the cavity."""
         return self.shape.face_instead(name, labels)
 
-    @property
+    @cached_property
     def face_areas(self) -> Vector:
         """Area of each face of the cavity, then of each body, (f,) [m^2]; the bodies of an array are one face.
 
-        What is inside of the cavity and in no other body, from points on the surfaces.
+        The areas are those inside the cavity and outside all other bodies, computed from points on the surfaces.
         """
         labels = self.walls().labels
         areas = np.zeros(len(labels))

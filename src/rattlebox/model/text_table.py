@@ -100,13 +100,15 @@ class TextTable:
         return probe.reshape(-1, self.width)
 
     def goes_by_rows(self) -> bool:
-        """Return whether the samples go on from row to row, as far as that can be told."""
+        """Return whether the samples continue from row to row, as far as the lines above and the numbers show it."""
         if self.width == 1:
             return False
         cells = self.rows.cells
-        beside = {int(number) for _, line in self.lines for pair in _SAMPLES.findall(line) for number in pair if number}
+        stated_together = {
+            int(number) for _, line in self.lines for pair in _SAMPLES.findall(line) for number in pair if number
+        }
         anywhere = {int(number) for _, line in self.lines for number in _WHOLE.findall(line)}
-        for stated in (beside, anywhere if cells >= _LARGE else set()):
+        for stated in (stated_together, anywhere if cells >= _LARGE else set()):
             if (cells in stated) != (len(self.rows) in stated):
                 return cells in stated
         if self.names is None and len(self.rows.end.cells) < self.width:
@@ -133,7 +135,7 @@ class TextTable:
         return 0 if increases(table) and not self.counts_rows(0) else None
 
     def counts_rows(self, index: int) -> bool:
-        """Return whether a column counts the rows, by its name, or without a name beside others, as those of pandas."""
+        """Return whether a column counts the rows, by its name, or unnamed among named ones, as in files of pandas."""
         if self.names is None:
             return False
         name, column = without_unit(self.names[index]), self.table()[:, index]
@@ -168,7 +170,7 @@ def without_unit(name: str) -> str:
 
 
 def continues(table: Array) -> bool:
-    """Return whether the numbers of a table go on from row to row as they do within rows.
+    """Return whether the numbers of a table continue from row to row as they do within rows.
 
     Samples of one signal change as much from the end of a row to the beginning of the next one as within rows, and more
     from row to row. Columns of several signals do neither.
@@ -242,13 +244,13 @@ def _layout(
             "semicolons between the columns, or decimal points",
         )
     rows = Rows(head, below, last)
-    # One row with another number of digits tells; a factor of a thousand is not a matter of a note.
+    # One row with another number of digits decides it; a note would not do for a factor of a thousand.
     if dialect.has_comma and may_separate_thousands(row.content for row in rows):
         if below.size:
-            return None  # a row that is not here as text may tell
+            return None  # a row that is not stored as text may decide it
         raise DataError(
-            f"{file}, line {head[0].number}: the commas are decimal marks or separate thousands, which rows such as"
-            f" {head[0].content.strip()[:60]!r} do not tell",
+            f"{file}, line {head[0].number}: the commas are decimal marks or separate thousands; rows such as"
+            f" {head[0].content.strip()[:60]!r} may be either",
             "decimal points, or numbers without commas",
         )
     # What the lines above and the first row state about the sampling.

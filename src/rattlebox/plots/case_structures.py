@@ -299,16 +299,16 @@ def _draw_building(building: ShearBuilding, axes: Axes, case: Case, marks: Marks
         parts = attached.get(f"storey {k + 1}", _Attached())
         for j, words in enumerate(parts.marks):
             mark(axes, (1.45 + 0.45 * j, y), words, 0.2)
-        beside = 0.45 * len(parts.marks)
+        offset = 0.45 * len(parts.marks)
         if parts.loads:
-            arrow(axes, (1.9 + beside, y), (1.2 + beside, y), colour=LOAD_COLOUR, width=1.4)
+            arrow(axes, (1.9 + offset, y), (1.2 + offset, y), colour=LOAD_COLOUR, width=1.4)
         for part, carried in parts.tuned:
             for words in carried.marks:
-                mark(axes, (1.45 + beside, y), words, 0.2)
-                beside += 0.45
-            beside += 0.1 if carried.marks else 0.0
+                mark(axes, (1.45 + offset, y), words, 0.2)
+                offset += 0.45
+            offset += 0.1 if carried.marks else 0.0
             words = ("in" if carried.marks else "+") + f" tuned mass {amount(part.mass, 'kg')}"
-            text(axes, (1.25 + beside, y), words, ha="left", fontsize="small")
+            text(axes, (1.25 + offset, y), words, ha="left", fontsize="small")
     _draw_base_motion(axes, case, (-0.2, -0.45), (1.2, -0.45), (0.5, -0.6), va="top")
     text(axes, (0.5, -1.3), "symbols, not to scale", color=FAINT, fontsize="small")
     axes.set_xlim(-1.6, 3.2)

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from matplotlib.patches import Patch
 
+from rattlebox._util.flags import has_flag
+from rattlebox.analysis.cycle_loss import UNSTEADY
+
 from .style import FAINT, pen
 from .types import Style
 
@@ -17,8 +20,6 @@ if TYPE_CHECKING:
 GREY = "#c8c8c8"
 _HATCHES = ("////", "....", "xxxx", "\\\\\\\\", "++++", "oooo", "****")
 _MARKERS = ("x", "+", "1", "2", "3", "4", "*")
-
-
 NOT_STEADY = "not steady"
 """Text of the legend for runs whose motion is not steady."""
 
@@ -50,13 +51,8 @@ def gaps_of(study: xr.Dataset, name: str) -> list[Gap]:
 
 
 def unsteady_runs(study: xr.Dataset) -> xr.DataArray | None:
-    """Return the variants whose motion is not steady; None for a study without the flag of them."""
-    names = str(study["warnings"].attrs.get("flag_meanings", "")).split() if "warnings" in study else []
-    return (
-        (study["warnings"].fillna(0).astype(np.int64) >> names.index("unsteady")) % 2 == 1
-        if "unsteady" in names
-        else None
-    )
+    """Return the variants whose motion is not steady; None for a study without warnings."""
+    return has_flag(study["warnings"], UNSTEADY) if "warnings" in study else None
 
 
 def add_gap_legend(figure: Figure, study: xr.Dataset, name: str) -> None:

@@ -461,7 +461,7 @@ def test_the_library_of_materials_is_a_copy() -> None:
 
 
 def test_an_alias_without_a_value_is_not_given() -> None:
-    """A program that passes `damper=None` beside `dampers` has a case; it was refused as if both were given."""
+    """A program that passes `damper=None` together with `dampers` has a case; it was refused as if both were given."""
     soft = rb.Linear(stiffness="3 MN/m", restitution=0.4)
     ball = rb.ImpactDamper(ball=rb.Striker(mass="40 g"), gap="0.6 mm", contact=soft)
     usual = {"structure": rb.SDOF(mass="3 kg", frequency="17 Hz"), "duration": "0.2 s", "dampers": [ball, ball]}

@@ -28,6 +28,13 @@ def test_second_multiplier(kind, first, second, name):
     assert names_along(kind, rows(first, second), PLACES) == [name if k == 4 else "" for k in range(LINE.size)]
 
 
+def test_a_point_exactly_at_the_condition():
+    """A second multiplier that is exactly +1 at a point is named there; products of neighbours, which are 0, missed it."""
+    second = np.array([0.5, 0.75, 1.0, 1.25, 1.5])
+    multipliers = np.stack([np.full(5, -1.0), second, np.full(5, 0.1)], axis=1).astype(complex)
+    assert names_along("flip", multipliers, PLACES[:5]) == ["", "", "fold-flip", "", ""]
+
+
 def test_angles_of_a_torus():
     """Angles of 90 and 120 degrees are named along a Neimark-Sacker curve."""
     angles = np.linspace(1.4, 2.3, 19)

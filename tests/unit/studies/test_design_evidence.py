@@ -156,7 +156,7 @@ def test_the_front_is_open_within_intervals() -> None:
 
 
 def test_a_best_value_at_an_end_is_stated(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The best gap at an end of its list or range has a remark; before, nothing told such a trial from an optimum.
+    """The best gap at an end of its list or range has a remark; before, nothing distinguished such a trial from an optimum.
 
     Tests of designs looked at optima inside the values only. A limit that no case can exceed, names, a limit of the mass,
     and a best value in the middle have no remark.

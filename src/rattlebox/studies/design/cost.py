@@ -72,7 +72,7 @@ def _costs(search: DesignSearch, designs: Sequence[Values]) -> _Costs:
 def _time_of(search: DesignSearch, costs: _Costs, times: Sequence[float], designs: Sequence[Values]) -> float:
     """Return the processor time of a trial [s]; `times`: those of the groups of particle runs [s]."""
     each = TRIAL + (sum(times) if costs.groups else costs.others) / max(1, len(designs))
-    # If it is short, what is done beside the runs counts.
+    # In a short trial the work between the runs counts, too.
     return (_time_of_trial(search, designs) or each) if each < _TINY else each
 
 

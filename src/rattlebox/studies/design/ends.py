@@ -49,8 +49,8 @@ def end_note(search: DesignSearch, found: xr.Dataset, best: Case) -> str:
                 if (np.abs(places - number) > near).any() or not _is_valid(search, best, path, end + sign * step):
                     continue
                 value, name, unit = pick(front.tolist()), found[path].attrs["long_name"], found[path].attrs["units"]
-                beside = f"next to the {extreme} value of its range, {amount(end, unit)}"
-                where = f"the {extreme} value tried" if value == end else beside
+                nearby = f"next to the {extreme} value of its range, {amount(end, unit)}"
+                where = f"the {extreme} value tried" if value == end else nearby
                 notes.append(f"the {which} {name}, {amount(value, unit)}, is {where}")
                 advice.append(f"a {more} {name}")
     return f"{joined(notes)}; try: {joined(advice)}" if notes else ""

@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from rattlebox._util.flags import has_flag
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
@@ -278,15 +279,9 @@ def compared(
         data[f"{name}_changed"] = along, changed, {"long_name": f"whether the {quantity} changes"}
         data[f"{name}_kept"] = along, kept, {"long_name": f"whether the {quantity} is kept"}
     about_values = (along, list(variants), {"units": unit, "long_name": long_name})
-    exceeded = [name for name in WARNINGS if any(_exceeds(study, name) for study in studies)]
+    exceeded = [name for name in WARNINGS if any(has_flag(study.warnings, name).any() for study in studies)]
     attributes = {"packings": count, "tolerance": tolerance, "exceeded": exceeded}
     return xarray.Dataset(data, {along: about_values}, attributes)
-
-
-def _exceeds(study: xarray.Dataset, name: str) -> bool:
-    """Return whether a run of a study exceeds a validity limit."""
-    bit = 2 ** study.warnings.attrs["flag_meanings"].split().index(name)
-    return bool((study.warnings.values.astype(int) & bit).any())
 
 
 # ---- softening

@@ -35,7 +35,7 @@ def names_along(kind: str, multipliers: NDArray[np.complex128], places: NDArray[
     names = [""] * len(multipliers)
 
     def mark(values: NDArray[np.float64], name: str) -> None:
-        for k in np.flatnonzero(values[:-1] * values[1:] < 0):
+        for k in np.flatnonzero(np.diff(values >= 0)):  # a point exactly at the condition counts, too
             names[k + int(abs(values[k + 1]) < abs(values[k]))] = name
 
     if kind == "torus":
